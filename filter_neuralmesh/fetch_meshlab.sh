@@ -1,0 +1,60 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+# Puts the sources of the three MeshLab releases into the user's cache, as Debian publishes them: asked of
+# the mirror this system installs from, checked against the sums below, unpacked once.
+# Prints nothing when all is there already.
+set -euo pipefail
+
+cache="${XDG_CACHE_HOME:-$HOME/.cache}/neural-mesh"
+releases="
+2020.09 meshlab_2020.09+dfsg1.orig.tar.xz d6715352ff65caffdec0292858d4263eb0c3cbbf3b1e5c2e2bab218e3f234630
+2022.02 meshlab_2022.02+dfsg1.orig.tar.xz 11da26ec46c3fbbbc806d410a3221542ec21ec13fdcc55d624304600029435fd
+2025.07 meshlab_2025.07~dfsg.orig.tar.xz d22c98d362f2a284e481af8dbfc272b2222f5b9c67b3cf8bec57d1c3161886f4
+"
+
+fail() {
+    echo "$1" >&2
+    echo "Or take MeshLab's sources from where you like and build for them alone:" >&2
+    echo "  cmake -S . -B build -DMESHLAB_SOURCE_DIR=DIR && cmake --build build" >&2
+    exit 1
+}
+
+# The mirror that Debian's own packages come from; asked of apt, so that no host is named here.
+mirror() {
+    apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Origin: Debian' 'Label: Debian' |
+        sort -u | head -n 1
+}
+
+holds() { echo "$2  $1" | sha256sum --check --status 2> /dev/null; }
+
+fetch() {
+    local tarball="$1" sum="$2" uri
+    uri="$(mirror)"
+    if [ -z "$uri" ]; then
+        fail "apt knows no Debian mirror, so MeshLab's sources cannot be fetched: run apt-get update on a Debian system."
+    fi
+    echo "Fetching $tarball from $uri"
+    rm -f "$cache/$tarball.part"
+    # apt's own downloader, so that its proxies and mirrors hold here, too.
+    /usr/lib/apt/apt-helper -qq download-file "${uri%/}/pool/main/m/meshlab/$tarball" "$cache/$tarball.part" \
+        "SHA256:$sum" 2> "$cache/fetch.log" ||
+        fail "$tarball could not be fetched ($(tail -n 1 "$cache/fetch.log")). Check the network and run this again."
+    mv "$cache/$tarball.part" "$cache/$tarball"
+}
+
+mkdir -p "$cache"
+while read -r version tarball sum; do
+    [ -n "$version" ] || continue
+    [ -e "$cache/meshlab-$version/ML_VERSION" ] && continue
+    holds "$cache/$tarball" "$sum" || fetch "$tarball" "$sum"
+    holds "$cache/$tarball" "$sum" || fail "$tarball does not have the expected sum; remove it from $cache."
+    echo "Unpacking $tarball"
+    # Unpacked aside and renamed, so that an interrupted run leaves nothing half done behind.
+    rm -rf "$cache/unpacking"
+    mkdir "$cache/unpacking"
+    tar -xf "$cache/$tarball" -C "$cache/unpacking" --strip-components=1
+    rm -rf "$cache/meshlab-$version"
+    mv "$cache/unpacking" "$cache/meshlab-$version"
+done <<< "$releases"
