@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""How far a mesh is from a true surface, and what its topology is.
+
+    evaluate.py MESH TRUE [--samples 100000] [--json]
+
+Lengths are percentages of the bounding-box diagonal of the true surface. "Forward" is true surface to mesh
+(what is missing), "backward" mesh to true surface (what is too much: webs, spikes). Distances are MeshLab's
+Hausdorff filter, exact from each sample to the nearest triangle; the samples are uniform over the area under a
+fixed seed, so the figures of a mesh are always the same.
+"""
+
+import argparse
+import json
+import sys
+
+import numpy as np
+import pymeshlab
+from scipy.spatial import cKDTree
+
+import models
+
+SAMPLES = 100_000
+NORMAL_SAMPLES = 20_000
+
+
+class Truth:
+    """A true surface with its samples, made once and used for many meshes."""
+
+    def __init__(self, vertices, faces, samples=SAMPLES):
+        self.vertices, self.faces, self.samples = vertices, faces, samples
+        self.diagonal = models.diagonal(vertices)
+        self.points, of_face = models.sample_surface(vertices, faces, samples, np.random.default_rng(20030101))
+        self.normals = face_normals(vertices, faces)[of_face]
+
+
+def face_normals(vertices, faces):
+    corners = vertices[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
+
+
+def evaluate(vertices, faces, truth):
+    """All measures of one mesh, as a dictionary. Raises ValueError for a mesh without faces or with NaN."""
+    if len(faces) == 0:
+        raise ValueError("The mesh has no faces, so there is nothing to compare.")
+    if not np.isfinite(vertices).all():
+        raise ValueError("The mesh has vertices whose coordinates are not finite numbers.")
+    points, of_face = models.sample_surface(vertices, faces, truth.samples, np.random.default_rng(20030102))
+    meshes = pymeshlab.MeshSet(verbose=False)
+    for mesh in (pymeshlab.Mesh(truth.vertices, truth.faces), pymeshlab.Mesh(truth.points), pymeshlab.Mesh(points),
+                 pymeshlab.Mesh(vertices, faces)):
+        meshes.add_mesh(mesh)
+    # samplenum's default is the size of the current layer, not of the sampled one.
+    every = {"samplevert": True, "samplenum": truth.samples, "maxdist": pymeshlab.PercentageValue(100)}
+    forward = meshes.get_hausdorff_distance(sampledmesh=1, targetmesh=3, **every)
+    backward = meshes.get_hausdorff_distance(sampledmesh=2, targetmesh=0, **every)
+    percent = 100 / truth.diagonal
+    result = {
+        "forward_rms": forward["RMS"] * percent,
+        "forward_max": forward["max"] * percent,
+        "backward_rms": backward["RMS"] * percent,
+        "backward_max": backward["max"] * percent,
+        "sum_rms": (forward["RMS"] + backward["RMS"]) * percent,
+    }
+    result["normal_error"], result["inside_out"] = _normal_error(truth, points, face_normals(vertices, faces)[of_face])
+    # The filter drops a sample beyond its search distance without a word.
+    if forward["n_samples"] != truth.samples or backward["n_samples"] != truth.samples:
+        result["lost_samples"] = 2 * truth.samples - forward["n_samples"] - backward["n_samples"]
+    meshes.set_current_mesh(3)
+    result.update(_topology(meshes))
+    valence = np.bincount(faces.ravel(), minlength=len(vertices))
+    result["valence_5_to_7"] = float(np.mean((valence >= 5) & (valence <= 7)))
+    return result
+
+
+def _normal_error(truth, points, normals):
+    """Mean angle in degrees between the true normal and that of the mesh's sample next to it, and whether the mesh is
+    inside out, in which case the angle is that of the mesh turned over."""
+    # Every few-th sample of the truth is enough for a mean; the mesh keeps all its samples, for nearness.
+    step = max(1, truth.samples // NORMAL_SAMPLES)
+    _, nearest = cKDTree(points).query(truth.points[::step])
+    cosine = np.einsum("ij,ij->i", truth.normals[::step], normals[nearest])
+    angle = float(np.degrees(np.arccos(cosine.clip(-1, 1))).mean())
+    return min(angle, 180 - angle), angle > 90
+
+
+def _topology(meshes):
+    measures = meshes.get_topological_measures()
+    meshes.compute_selection_by_self_intersections_per_face()
+    return {
+        "vertices": measures["vertices_number"] - measures["unreferenced_vertices"],
+        "faces": measures["faces_number"],
+        "components": measures["connected_components_number"],
+        "genus": measures["genus"],  # -1: not a manifold, so there is none
+        "boundary_loops": measures["number_holes"],
+        "boundary_edges": measures["boundary_edges"],
+        "manifold": bool(measures["is_mesh_two_manifold"]),
+        "self_intersecting_faces": meshes.current_mesh().selected_face_number(),
+    }
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("mesh", help="the mesh to judge")
+    parser.add_argument("true", help="the true surface: a mesh file, or the name of a model of models.py")
+    parser.add_argument("--samples", type=int, default=SAMPLES, help="per direction (default %(default)s)")
+    parser.add_argument("--data", help="data folder for models by name (default: NEURAL_MESH_DATA)")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    options = parser.parse_args(arguments)
+    try:
+        vertices, faces = models.load_mesh(options.mesh)
+        named = options.true in models.MODELS
+        surface = models.load_model(options.true, options.data) if named else models.load_mesh(options.true)
+        result = evaluate(vertices, faces, Truth(*surface, options.samples))
+    except (models.ModelError, ValueError) as error:
+        sys.exit(str(error))
+    if options.json:
+        print(json.dumps(result))
+        return
+    for key, value in result.items():
+        print(f"{key:24} {value:.5f}" if isinstance(value, float) else f"{key:24} {value}")
+
+
+if __name__ == "__main__":
+    main()

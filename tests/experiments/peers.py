@@ -1,0 +1,228 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""What people use today to get a mesh of N vertices from a cloud, all in pymeshlab, and the neural mesh itself.
+
+Each runs in a process of its own, so that its peak memory is its own and a crash is a result like any other:
+
+    peers.py METHOD CLOUD.ply FOLDER vertices=500,2000,10000 [plugin=LIBRARY.so] [key=value...]
+
+writes FOLDER/N.ply for every N and prints one JSON object {N: {seconds, cpu_seconds, peak_mb}}. Reading and writing
+files is not timed.
+"""
+
+import json
+import os
+import re
+import resource
+import shlex
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+import pymeshlab
+
+TOLERANCE = 0.01  # of the number of vertices
+
+
+class PeerError(RuntimeError):
+    """A method gave no mesh; the message says why."""
+
+
+def reconstruct_poisson(meshes, _count):
+    """Compute Normals and Screened Poisson of depth 8, all else MeshLab's defaults."""
+    meshes.compute_normal_for_point_clouds()
+    meshes.generate_surface_reconstruction_screened_poisson(depth=8)
+
+
+def reconstruct_poisson_smooth(meshes, _count):
+    """The same as somebody would tune it for noise: normals over 30 neighbours, 10 samples a node, specks removed."""
+    meshes.compute_normal_for_point_clouds(k=30)
+    meshes.generate_surface_reconstruction_screened_poisson(depth=8, samplespernode=10)
+    meshes.meshing_remove_connected_component_by_diameter(mincomponentdiag=pymeshlab.PercentageValue(5))
+
+
+def reconstruct_ball_pivoting(meshes, count):
+    """Poisson-disk thinning to four times the vertices, normals, Ball Pivoting, small holes closed.
+
+    Straight on a random cloud Ball Pivoting takes minutes and leaves thousands of holes; thinning first is what
+    MeshLab's users are told to do.
+    """
+    meshes.generate_sampling_poisson_disk(samplenum=4 * count, subsample=True)
+    meshes.compute_normal_for_point_clouds()
+    meshes.generate_surface_reconstruction_ball_pivoting()
+    meshes.meshing_repair_non_manifold_edges()
+    meshes.meshing_close_holes(maxholesize=100)
+
+
+# name: (reconstruction, whether it depends on the number of vertices)
+PEERS = {
+    "poisson": (reconstruct_poisson, False),
+    "poisson-smooth": (reconstruct_poisson_smooth, False),
+    "ball-pivoting": (reconstruct_ball_pivoting, True),
+}
+
+
+class Clock:
+    """Wall and processor time of a stretch of work, in seconds."""
+
+    def __init__(self):
+        self.wall, self.cpu = time.perf_counter(), time.process_time()
+
+    def read(self):
+        return time.perf_counter() - self.wall, time.process_time() - self.cpu
+
+
+def decimated(meshes, count):
+    """Quadric Edge Collapse of the current mesh, in a new layer, to count vertices within 1 %.
+
+    The filter counts faces, so the faces to ask for follow from the Euler characteristic; where the collapse itself
+    changes that, the number is corrected and the work done anew. Only the last attempt is timed.
+    """
+    source = meshes.current_mesh_id()
+    mesh = meshes.current_mesh()
+    wanted = 2 * (count - (mesh.vertex_number() - mesh.face_number() // 2))
+    for attempts_left in reversed(range(5)):
+        meshes.set_current_mesh(source)
+        meshes.generate_copy_of_current_mesh()
+        clock = Clock()
+        meshes.meshing_decimation_quadric_edge_collapse(targetfacenum=max(4, wanted))
+        seconds = clock.read()
+        got = meshes.current_mesh().vertex_number()
+        if abs(got - count) <= TOLERANCE * count or attempts_left == 0:
+            return seconds
+        wanted += 2 * (count - got)
+        meshes.delete_current_mesh()
+
+
+def _peak_mb():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def run_peer(name, cloud, folder, counts):
+    reconstruct, by_count = PEERS[name]
+    meshes = pymeshlab.MeshSet(verbose=False)
+    before = _peak_mb()
+    meshes.load_new_mesh(str(cloud))
+    full, results = None, {}
+    for count in sorted(counts):
+        if full is None or by_count:
+            meshes.set_current_mesh(0)
+            clock = Clock()
+            reconstruct(meshes, count)
+            base, full = clock.read(), meshes.current_mesh_id()
+            if meshes.current_mesh().face_number() == 0:
+                raise PeerError(f"The method {name} gave no faces for {cloud}.")
+        meshes.set_current_mesh(full)
+        extra = decimated(meshes, count)
+        meshes.save_current_mesh(str(folder / f"{count}.ply"), save_vertex_normal=False, save_vertex_color=False)
+        meshes.delete_current_mesh()
+        results[count] = {"seconds": base[0] + extra[0], "cpu_seconds": base[1] + extra[1],
+                          "peak_mb": _peak_mb() - before}
+    return results
+
+
+def run_plugin(cloud, folder, counts, plugin, settings):
+    """The neural mesh, through the filter. settings: parameter ids and values as text."""
+    pymeshlab.load_plugin(plugin)
+    results = {}
+    for count in counts:
+        meshes = pymeshlab.MeshSet(verbose=False)
+        before = _peak_mb()
+        meshes.load_new_mesh(str(cloud))
+        clock = Clock()
+        report = meshes.apply_filter("generate_surface_reconstruction_neural_mesh", target_vertices=count,
+                                     **{key: _typed(value) for key, value in settings.items()})
+        seconds, cpu = clock.read()
+        # The quality is the feature counter, which compare_curvature.py reads.
+        meshes.save_current_mesh(str(folder / f"{count}.ply"), save_vertex_quality=True, save_vertex_color=False)
+        results[count] = {"seconds": seconds, "cpu_seconds": cpu, "peak_mb": _peak_mb() - before, "report": report}
+    return results
+
+
+def _typed(text):
+    if text.lower() in ("true", "false"):
+        return text.lower() == "true"
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text
+
+
+def run(method, cloud, folder, counts, plugin=None, command=None, settings=None, timeout=900):
+    """Runs one method on the file cloud for all counts, in other processes. Returns {count: times and memory}.
+
+    method: a name of PEERS, or "neural" with a plugin or a command (started as COMMAND CLOUD OUT
+    target_vertices=N key=value...). Raises PeerError if a process fails or takes longer than timeout seconds.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    extra = [f"{key}={value}" for key, value in (settings or {}).items()]
+    if command:
+        return {n: _run_command([*shlex.split(command), str(cloud), str(folder / f"{n}.ply"), f"target_vertices={n}",
+                                 *extra], timeout) for n in counts}
+    words = [sys.executable, __file__, method, str(cloud), str(folder)]
+    # One process each for ours, whose runs share nothing; a peer's share the reconstruction.
+    jobs = [[n] for n in counts] if plugin else [counts]
+    results = {}
+    for job in jobs:
+        more = [f"plugin={plugin}", *extra] if plugin else []
+        output, _, _ = _started([*words, "vertices=" + ",".join(map(str, job)), *more], timeout)
+        results.update((int(n), figures) for n, figures in json.loads(output.strip().splitlines()[-1]).items())
+    return results
+
+
+def _run_command(words, timeout):
+    """Times a command as a whole, files included, unless it prints its own seconds as JSON or as 'seconds: X'."""
+    output, wall, usage = _started(words, timeout)
+    own = re.search(r'"?\bseconds"?\s*[:=]\s*([0-9.eE+-]+)', output)
+    return {"seconds": float(own.group(1)) if own else wall, "cpu_seconds": usage.ru_utime + usage.ru_stime,
+            "peak_mb": usage.ru_maxrss / 1024, "output": output.strip()}
+
+
+def _started(words, timeout):
+    """Runs a process to its end. Returns its standard output, wall seconds and resource usage."""
+    with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryFile("w+") as errors:
+        clock = Clock()
+        try:
+            process = subprocess.Popen(words, stdout=output, stderr=errors)
+        except OSError as error:
+            raise PeerError(f"{words[0]} could not be started: {error}") from error
+        alarm = threading.Timer(timeout, process.kill)
+        alarm.start()
+        # wait4 tells the usage of this one process, where getrusage would give the maximum of all so far.
+        _, status, usage = os.wait4(process.pid, 0)
+        alarm.cancel()
+        wall, code = clock.read()[0], os.waitstatus_to_exitcode(status)
+        process.returncode = code
+        output.seek(0)
+        errors.seek(0)
+        if code == -signal.SIGKILL and wall >= timeout:
+            raise PeerError(f"{' '.join(words[:3])} took longer than {timeout} seconds.")
+        if code != 0:
+            said = (errors.read().strip() or output.read().strip())[-500:]
+            raise PeerError(f"{' '.join(words[:3])} ended with code {code}: {said}")
+        return output.read(), wall, usage
+
+
+def main(arguments):
+    method, cloud, folder, *rest = arguments
+    settings = dict(word.split("=", 1) for word in rest)
+    counts = [int(n) for n in settings.pop("vertices").split(",")]
+    plugin = settings.pop("plugin", None)
+    if method == "neural":
+        results = run_plugin(cloud, Path(folder), counts, plugin, settings)
+    else:
+        results = run_peer(method, cloud, Path(folder), counts)
+    print(json.dumps(results))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
