@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Names, help, figures and sentences of the filter.
+#include "actions.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <iomanip>
+#include <locale>
+#include <new>
+#include <sstream>
+
+#include "vcg_core/error.h"
+
+namespace neuralmesh {
+
+namespace {
+
+constexpr const char* kReconstructInfo =
+    "Reconstructs the surface of a point cloud as a triangle mesh with exactly the wanted number of vertices, "
+    "dense where the surface bends and sparse where it is flat. The points need no normals and may be noisy "
+    "and uneven. A growing neural network of mesh vertices learns the cloud: a random point attracts the "
+    "nearest vertex, vertices whose normal varies much are split, vertices that never win are collapsed."
+    "<br/>The current layer stays as it is; the result is a new layer in world coordinates. Its vertex quality is the "
+    "feature counter: how much the normal of the vertex still varied while it learned, near zero on smooth "
+    "parts, large on edges and corners.<br/>"
+    "See:<br/>"
+    "<i>Won-Ki Jeong, Ioannis Ivrissimtzis, Hans-Peter Seidel</i><br/>"
+    "<b>\"Neural Meshes: Statistical Learning based on Normals\"</b><br/>"
+    "Pacific Graphics 2003<br/>";
+
+const char* words_for(StopReason reason) {
+    switch (reason) {
+        case StopReason::target_reached: return "the target was reached";
+        case StopReason::converged: return "the mean counter fell below stop_below_mean_counter";
+        case StopReason::cancelled: return "it was cancelled";
+        case StopReason::cut_short: return "the bound on signals was reached before the target";
+    }
+    return "";
+}
+
+/// A stream that writes decimal points wherever the host has set its locale.
+std::ostringstream plain_stream() {
+    std::ostringstream stream;
+    stream.imbue(std::locale::classic());
+    return stream;
+}
+
+/// The words of a progress text before its numbers.
+std::string stage_of(const std::string& text) { return text.substr(0, text.find_first_of("0123456789")); }
+
+}  // namespace
+
+const std::vector<Action>& all_actions() {
+    static const std::vector<Action> all = {{kReconstruct, "Surface Reconstruction: Neural Mesh",
+                                             "generate_surface_reconstruction_neural_mesh", kReconstructInfo}};
+    return all;
+}
+
+const Action& action_of(int id) { return all_actions().at(static_cast<std::size_t>(id)); }
+
+std::vector<Figure> figures(const Report& report) {
+    const auto count = [](const char* key, long long n) { return Figure{key, static_cast<double>(n), true}; };
+    return {count("vertices", report.vertices),
+            count("faces", report.faces),
+            count("signals", report.signals),
+            count("splits", report.splits),
+            count("collapses", report.collapses),
+            count("genus", report.genus),
+            count("boundary_loops", report.boundary_loops),
+            count("components", report.components),
+            count("feature_vertices", report.feature_vertices),
+            {"rms_error", report.rms_error, false},
+            {"mean_counter", report.mean_counter, false},
+            {"seconds", report.seconds, false},
+            count("stop_reason", static_cast<int>(report.stop_reason))};
+}
+
+std::vector<std::string> log_lines(const Report& report) {
+    std::ostringstream told = plain_stream();
+    told << "Neural Mesh: " << report.vertices << " vertices and " << report.faces << " faces after "
+         << report.signals << " signals in " << std::fixed << std::setprecision(2) << report.seconds
+         << " seconds, RMS error " << std::setprecision(4) << report.rms_error
+         << " % of the diagonal; learning ended because " << words_for(report.stop_reason) << '.';
+
+    std::ostringstream dictionary = plain_stream();
+    dictionary << std::setprecision(9);
+    for (const Figure& figure : figures(report)) {
+        dictionary << figure.key << '=';
+        if (figure.is_count) {
+            dictionary << static_cast<long long>(figure.value) << ' ';
+        } else {
+            dictionary << figure.value << ' ';
+        }
+    }
+
+    std::vector<std::string> lines = {told.str(), dictionary.str()};
+    lines.insert(lines.end(), report.warnings.begin(), report.warnings.end());
+    return lines;
+}
+
+double from_host(double value) {
+    std::array<char, 64> digits{};
+    const auto end = std::to_chars(digits.begin(), digits.end(), static_cast<float>(value)).ptr;
+    double meant = value;
+    std::from_chars(digits.begin(), end, meant);
+    return meant;
+}
+
+std::string sentence_of_current_exception() {
+    try {
+        throw;
+    } catch (const Error& error) {
+        return error.what();
+    } catch (const std::bad_alloc&) {
+        return "There is not enough memory for this mesh: lower target_vertices, or learn a smaller cloud.";
+    } catch (const std::exception& error) {
+        return std::string("The filter met an unexpected error and has changed nothing (") + error.what() +
+               "). Please report it with the layer and the parameters.";
+    } catch (...) {
+        return "The filter met an unknown error and has changed nothing. Please report it with the layer and the "
+               "parameters.";
+    }
+}
+
+bool HostProgress::operator()(double fraction, const char* text) {
+    if (call_back_ == nullptr) return true;
+    const auto now = std::chrono::steady_clock::now();
+    std::string stage = stage_of(text);
+    if (stage == stage_ && now - last_call_ < std::chrono::milliseconds(100)) return true;
+    stage_ = std::move(stage);
+    last_call_ = now;
+    return call_back_(static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0)), text);
+}
+
+}  // namespace neuralmesh

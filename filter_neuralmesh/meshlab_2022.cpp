@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Forwards the calls of MeshLab 2022.02 to 2025.07 and of pymeshlab to actions.h. These hosts compare the
+// plugin's release and scalar type with their own before they use it.
+// Before any of Qt's headers, which make a keyword of "signals".
+#include "actions.h"
+
+#include "meshlab_2022.h"
+
+#include <common/mlexception.h>
+
+#include "host_parameters.h"
+
+using namespace neuralmesh;
+
+FilterNeuralMeshPlugin::FilterNeuralMeshPlugin() {
+    for (const Action& action : all_actions()) {
+        typeList.push_back(action.id);
+        actionList.push_back(new QAction(QString::fromUtf8(action.name), this));
+    }
+}
+
+QString FilterNeuralMeshPlugin::pluginName() const { return kPluginName; }
+
+QString FilterNeuralMeshPlugin::vendor() const { return kVendor; }
+
+QString FilterNeuralMeshPlugin::filterName(ActionIDType id) const {
+    return QString::fromUtf8(action_of(id).name);
+}
+
+QString FilterNeuralMeshPlugin::pythonFilterName(ActionIDType id) const {
+    return QString::fromUtf8(action_of(id).python_name);
+}
+
+QString FilterNeuralMeshPlugin::filterInfo(ActionIDType id) const {
+    return QString::fromUtf8(action_of(id).info);
+}
+
+FilterPlugin::FilterClass FilterNeuralMeshPlugin::getClass(const QAction* /*action*/) const { return Remeshing; }
+
+FilterPlugin::FilterArity FilterNeuralMeshPlugin::filterArity(const QAction* /*action*/) const { return SINGLE_MESH; }
+
+int FilterNeuralMeshPlugin::postCondition(const QAction* /*action*/) const {
+    return MeshModel::MM_VERTNUMBER | MeshModel::MM_FACENUMBER;
+}
+
+RichParameterList FilterNeuralMeshPlugin::initParameterList(const QAction* /*action*/,
+                                                            const MeshDocument& /*document*/) {
+    RichParameterList list;
+    for (const SettingInfo& info : setting_table()) add_parameter(list, info, info.advanced);
+    return list;
+}
+
+std::map<std::string, QVariant> FilterNeuralMeshPlugin::applyFilter(const QAction* /*action*/,
+                                                                    const RichParameterList& list,
+                                                                    MeshDocument& document,
+                                                                    unsigned int& /*post_condition_mask*/,
+                                                                    vcg::CallBackPos* call_back) {
+    std::string sentence;
+    try {
+        return learn_current_layer(document, list, call_back);
+    } catch (...) {
+        sentence = sentence_of_current_exception();
+    }
+    log(GLLogStream::WARNING, sentence);
+    throw MLException(QString::fromStdString(sentence));
+}
+
+std::map<std::string, QVariant> FilterNeuralMeshPlugin::learn_current_layer(MeshDocument& document,
+                                                                            const RichParameterList& list,
+                                                                            vcg::CallBackPos* call_back) const {
+    MeshModel* const layer = document.mm();
+    if (layer == nullptr) throw InputError(kNoLayer);
+    const Settings settings = settings_from(list);
+    const NeuralMesh result = run(layer->cm, layer->cm.Tr, settings, call_back);
+
+    const auto current = layer->id();
+    MeshModel* const added = document.addNewMesh("", kLayerLabel, true);
+    try {
+        added->updateDataMask(result_mask(settings));
+        write_mesh(result, settings, added->cm);
+        added->cm.svn = settings.select_features ? result.report.feature_vertices : 0;
+        added->updateBoxAndNormals();
+    } catch (...) {
+        document.delMesh(added->id());
+        document.setCurrentMesh(static_cast<int>(current));
+        throw;
+    }
+
+    for (const std::string& line : log_lines(result.report)) log(line.c_str());
+    std::map<std::string, QVariant> results;
+    for (const Figure& figure : figures(result.report))
+        results[figure.key] = figure.is_count ? QVariant(static_cast<int>(figure.value)) : QVariant(figure.value);
+    return results;
+}
+
+MESHLAB_PLUGIN_NAME_EXPORTER(FilterNeuralMeshPlugin)
