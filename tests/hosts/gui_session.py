@@ -173,12 +173,15 @@ class GuiSession(contextlib.AbstractContextManager):
         from PIL import ImageGrab
         return ImageGrab.grab(xdisplay=self.display)
 
-    def steady_screenshot(self, seconds=20.0, still_for=0.5):
-        """The screen once it has not changed for `still_for` seconds: drawing has come to rest."""
+    def steady_screenshot(self, seconds=20.0, still_for=0.35):
+        """The screen once it has not changed for `still_for` seconds: drawing has come to rest.
+
+        Shorter than half the blinking of a text cursor, which must not count as a change.
+        """
         deadline = time.monotonic() + seconds
         picture, since = self.screenshot(), time.monotonic()
         while time.monotonic() < deadline:
-            time.sleep(0.15)
+            time.sleep(0.1)
             self.check_alive()
             following = self.screenshot()
             if following.tobytes() != picture.tobytes():

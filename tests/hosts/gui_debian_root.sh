@@ -1,0 +1,52 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+# Makes a root directory of another Debian release with its MeshLab in it, for GUI tests:
+#
+#   gui_debian_root.sh SUITE FOLDER      SUITE: trixie (MeshLab 2022.02) or sid (2025.07)
+#
+# About 800 MB and two minutes; a folder that is complete already is left as it is. Needs root and
+# the package debootstrap. Packages come from the mirror this system uses, or from $DEBIAN_MIRROR.
+set -eu
+
+suite=$1
+folder=$2
+complete="$folder/.neural_mesh_complete"
+if [ -e "$complete" ]; then exit 0; fi
+if [ "$(id -u)" != 0 ]; then
+    echo "gui_debian_root: needs root, as debootstrap and chroot do." >&2
+    exit 1
+fi
+if ! command -v debootstrap >/dev/null; then
+    echo "gui_debian_root: install the Debian package debootstrap first." >&2
+    exit 1
+fi
+
+mirror=${DEBIAN_MIRROR:-$(apt-get indextargets --format '$(ORIGIN) $(LABEL) $(REPO_URI)' 'Created-By: Packages' |
+    sed -n 's/^Debian Debian //p' | sed 1q)}
+if [ -z "$mirror" ]; then
+    echo "gui_debian_root: no Debian mirror in apt's sources; name one in DEBIAN_MIRROR." >&2
+    exit 1
+fi
+
+mkdir -p "$folder"
+if [ ! -x "$folder/usr/bin/apt-get" ]; then
+    debootstrap --variant=minbase "$suite" "$folder" "$mirror"
+fi
+# What MeshLab's plugins are linked to beyond the package's own dependencies; without them MeshLab greets
+# with a list of plugins it could not load. Names differ between releases, so missing ones are skipped.
+cat >"$folder/tmp/install_meshlab.sh" <<'INSTALL'
+set -eu
+export DEBIAN_FRONTEND=noninteractive
+# A mirror that lags behind serves a release file past its date.
+apt-get -o Acquire::Check-Valid-Until=false update
+packages=meshlab
+for package in libgomp1 libmuparser2v5 libqhull-r8.0 lib3ds-1-3 libopenctm1 libmpfr6 libxerces-c3.2; do
+    if apt-cache show "$package" >/dev/null 2>&1; then packages="$packages $package"; fi
+done
+apt-get install -y --no-install-recommends $packages
+apt-get clean
+INSTALL
+chroot "$folder" sh /tmp/install_meshlab.sh
+touch "$complete"
