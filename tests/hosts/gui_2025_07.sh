@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-# The filter in the window of MeshLab 2025.07, as Debian sid packages it: gui_2025_07.sh [PLUGIN [CLOUD [OUT]]]
+# The filter in the window of MeshLab 2025.07, as Debian sid packages it:
+# gui_2025_07.sh [PLUGIN [CLOUD [OUT]]]
 # Runs in a root directory made on first use, in $NEURAL_MESH_ROOTS or the user's cache folder; needs root.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)

@@ -23,8 +23,9 @@ if ! command -v debootstrap >/dev/null; then
     exit 1
 fi
 
-mirror=${DEBIAN_MIRROR:-$(apt-get indextargets --format '$(ORIGIN) $(LABEL) $(REPO_URI)' 'Created-By: Packages' |
-    sed -n 's/^Debian Debian //p' | sed 1q)}
+# shellcheck disable=SC2016  # the dollars are apt's
+mirror=${DEBIAN_MIRROR:-$(apt-get indextargets --format '$(ORIGIN) $(LABEL) $(REPO_URI)' \
+    'Created-By: Packages' | sed -n 's/^Debian Debian //p' | sed 1q)}
 if [ -z "$mirror" ]; then
     echo "gui_debian_root: no Debian mirror in apt's sources; name one in DEBIAN_MIRROR." >&2
     exit 1

@@ -145,7 +145,7 @@ def apply_filter(session, dialog, seconds):
 
 
 def count_colorful(picture, size):
-    """Pixels of the drawing area whose colour is strong and is not the background's or frame's blue or red."""
+    """Pixels of the drawing area with a strong colour that is not the blue and red of MeshLab itself."""
     width, height = size
     area = np.asarray(picture.crop((2, 160, width - 2, 160 + height - 260)).convert("RGB")).astype(int)
     red, green, blue = area[..., 0], area[..., 1], area[..., 2]
