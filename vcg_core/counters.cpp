@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Lazy decay with an unbounded exponent, and the tournament that finds the highest counter.
+#include "counters.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace neuralmesh {
+
+namespace {
+
+/// A positive number as exponent + (mantissa - 1), mantissa in [1, 2): strictly increasing in the number.
+double key_of(double value, double exponent) {
+    int shift = 0;
+    const double half = std::frexp(value, &shift);  // in [0.5, 1)
+    return exponent + (shift - 1) + (2 * half - 1);
+}
+
+}  // namespace
+
+void WindowMean::add(double value) {
+    sum_ += value - values_[next_];
+    values_[next_] = value;
+    count_ = std::min(count_ + 1, values_.size());
+    if (++next_ == values_.size()) {
+        next_ = 0;
+        // Summed afresh once a round: rounding cannot creep, and a sum of zeros is zero.
+        sum_ = 0;
+        for (const double v : values_) sum_ += v;
+    }
+}
+
+void UtilityCounters::resize(int slots) {
+    const auto size = static_cast<std::size_t>(slots);
+    keys_.resize(size, kNone);
+    wins_.resize(size, 0);
+    std::size_t level = 0;
+    for (std::size_t n = size;; n = (n + kWidth - 1) / kWidth) {
+        // Whole lines on every level, so that a node never reads past the end.
+        const std::size_t padded = (n + kWidth - 1) / kWidth * kWidth;
+        if (level == tournament_.size()) {
+            tournament_.emplace_back(padded, kNone);
+            // A level that comes into being late must know what the one below already holds.
+            if (level > 0)
+                for (std::size_t i = 0; i * kWidth < tournament_[level - 1].size(); ++i)
+                    tournament_[level][i] = *std::max_element(&tournament_[level - 1][i * kWidth],
+                                                              &tournament_[level - 1][i * kWidth] + kWidth);
+        } else {
+            tournament_[level].resize(padded, kNone);
+        }
+        ++level;
+        if (n <= kWidth) break;
+    }
+}
+
+void UtilityCounters::enter(VertexId v, double key) {
+    auto i = static_cast<std::size_t>(v);
+    for (std::size_t level = 0;; ++level) {
+        if (tournament_[level][i] == key) return;
+        tournament_[level][i] = key;
+        if (level + 1 == tournament_.size()) return;
+        const double* line = &tournament_[level][i / kWidth * kWidth];
+        key = *std::max_element(line, line + kWidth);
+        i /= kWidth;
+    }
+}
+
+double UtilityCounters::scaled(double key) const {
+    if (key == kNone) return 0;
+    const double exponent = std::floor(key);
+    const double shift = std::max(exponent - unit_exponent_, -2000.0);
+    return std::ldexp(1 + (key - exponent), static_cast<int>(shift));
+}
+
+double UtilityCounters::value(VertexId v) const { return scaled(keys_[static_cast<std::size_t>(v)]) / unit_mantissa_; }
+
+void UtilityCounters::win(VertexId v, double amount) {
+    const auto i = static_cast<std::size_t>(v);
+    const double now = scaled(keys_[i]) + amount * unit_mantissa_;
+    keys_[i] = now > 0 ? key_of(now, unit_exponent_) : kNone;
+    if (++wins_[i] >= maturity_) enter(v, keys_[i]);
+    unit_mantissa_ /= decay_;
+    while (unit_mantissa_ >= 2) {
+        unit_mantissa_ /= 2;
+        unit_exponent_ += 1;
+    }
+}
+
+void UtilityCounters::share(VertexId v, VertexId u, double of_v, double of_u) {
+    const double whole = scaled(keys_[static_cast<std::size_t>(v)]);
+    const double sum = of_v + of_u;
+    const double part = sum > 0 ? of_v / sum : 0.5;
+    const auto store = [&](VertexId w, double value) {
+        keys_[static_cast<std::size_t>(w)] = value > 0 ? key_of(value, unit_exponent_) : kNone;
+        wins_[static_cast<std::size_t>(w)] = 0;
+        enter(w, maturity_ == 0 ? keys_[static_cast<std::size_t>(w)] : kNone);
+    };
+    store(v, whole * part);
+    store(u, whole * (1 - part));
+}
+
+void UtilityCounters::remove(VertexId v) {
+    keys_[static_cast<std::size_t>(v)] = kNone;
+    wins_[static_cast<std::size_t>(v)] = 0;
+    enter(v, kNone);
+}
+
+VertexId UtilityCounters::highest() const {
+    std::size_t i = 0;
+    for (std::size_t level = tournament_.size(); level-- > 0;) {
+        const double* line = &tournament_[level][i * kWidth];
+        const double* top = std::max_element(line, line + kWidth);
+        if (*top == kNone) return -1;
+        i = i * kWidth + static_cast<std::size_t>(top - line);
+    }
+    return static_cast<VertexId>(i);
+}
+
+}  // namespace neuralmesh

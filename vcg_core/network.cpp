@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Vertex split, half-edge collapse and edge flip on ordered one-rings.
+#include "network.h"
+
+#include <algorithm>
+
+namespace neuralmesh {
+
+namespace {
+
+constexpr int kMax = Ring::kMaxValence;
+
+auto at(Ring& ring, int i) { return ring.neighbours.begin() + i; }
+
+void insert(Ring& ring, int i, VertexId v) {
+    std::copy_backward(at(ring, i), at(ring, ring.valence), at(ring, ring.valence + 1));
+    *at(ring, i) = v;
+    ++ring.valence;
+}
+
+void insert_before(Ring& ring, VertexId where, VertexId v) { insert(ring, ring.find(where), v); }
+void insert_after(Ring& ring, VertexId where, VertexId v) { insert(ring, ring.find(where) + 1, v); }
+
+void erase(Ring& ring, VertexId v) {
+    const int i = ring.find(v);
+    std::copy(at(ring, i + 1), at(ring, ring.valence), at(ring, i));
+    --ring.valence;
+}
+
+void replace(Ring& ring, VertexId old, VertexId now) { *at(ring, ring.find(old)) = now; }
+
+void replace(Ring& ring, VertexId old, const VertexId* now, int count) {
+    const int i = ring.find(old);
+    const int grown = ring.valence + count - 1;
+    std::array<VertexId, kMax> tail;
+    const auto end = std::copy(at(ring, i + 1), at(ring, ring.valence), tail.begin());
+    std::copy(tail.begin(), end, std::copy(now, now + count, at(ring, i)));
+    ring.valence = static_cast<std::uint8_t>(grown);
+}
+
+/// Starts the cycle of a closed ring at position i.
+void rotate(Ring& ring, int i) { std::rotate(at(ring, 0), at(ring, i), at(ring, ring.valence)); }
+
+int least_valence(const Ring& ring) { return ring.open != 0 ? 2 : 3; }
+
+int common_neighbours(const Ring& a, const Ring& b) {
+    int count = 0;
+    for (int i = 0; i < a.valence; ++i) count += b.find(a[i]) >= 0 ? 1 : 0;
+    return count;
+}
+
+/// Position i of an open ring lies on one of the two boundary edges.
+bool at_end(const Ring& ring, int i) { return ring.open != 0 && (i == 0 || i + 1 == ring.valence); }
+
+}  // namespace
+
+void Network::reserve(int vertices) {
+    rings_.reserve(static_cast<std::size_t>(vertices));
+    slots_.reserve(static_cast<std::size_t>(vertices));
+}
+
+void Network::set_position(VertexId v, const vcg::Point3f& p) {
+    Slot& slot = slots_[static_cast<std::size_t>(v)];
+    slot.x = p[0];
+    slot.y = p[1];
+    slot.z = p[2];
+}
+
+VertexId Network::new_vertex(const vcg::Point3f& where) {
+    VertexId v = 0;
+    if (free_.empty()) {
+        v = slot_count();
+        rings_.push_back(Ring{});
+        slots_.push_back(Slot{0, 0, 0, -1});
+    } else {
+        v = free_.back();
+        free_.pop_back();
+    }
+    set_position(v, where);
+    ++vertex_count_;
+    return v;
+}
+
+bool Network::can_split(VertexId v, int first, int count) const {
+    const Ring& r = ring(v);
+    const int k = r.valence;
+    if (first < 0 || first >= k || count < 1 || count > k) return false;
+    if (r.open != 0) {
+        if (first + count > k) return false;
+        if (first == 0 || first + count == k) {
+            const VertexId shared = first == 0 ? r[count - 1] : r[first];
+            return count + 1 <= kMax && ring(shared).valence < kMax;
+        }
+    }
+    const VertexId e2 = r[first];
+    const VertexId e1 = r[(first + count - 1) % k];
+    return count >= 2 && k - count + 3 <= kMax && count + 1 <= kMax && ring(e1).valence < kMax &&
+           ring(e2).valence < kMax;
+}
+
+VertexId Network::split(VertexId v, int first, int count, const vcg::Point3f& where) {
+    if (!alive(v) || !can_split(v, first, count))
+        throw TopologyError("This vertex split would break the network; ask can_split() first.");
+    const VertexId u = new_vertex(where);
+    Ring& rv = ring_of(v);
+    Ring& ru = ring_of(u);
+    const bool takes_start = rv.open != 0 && first == 0;
+    const bool takes_end = rv.open != 0 && !takes_start && first + count == rv.valence;
+    if (rv.open == 0) {
+        rotate(rv, first);
+        first = 0;
+    }
+
+    ru = Ring{};
+    std::copy(at(rv, first), at(rv, first + count), at(ru, 0));
+    ru.valence = static_cast<std::uint8_t>(count);
+    ru.open = (takes_start || takes_end) ? 1 : 0;
+    const VertexId e2 = ru[0];
+    const VertexId e1 = ru[count - 1];
+    insert(ru, takes_end ? 0 : count, v);
+
+    // What v keeps: all outside the fan, and the shared ends of the fan with u between them.
+    const int keep_from = takes_start ? first : first + 1;
+    const int keep_to = takes_end ? first + count : first + count - 1;
+    std::copy(at(rv, keep_to), at(rv, rv.valence), at(rv, keep_from));
+    rv.valence = static_cast<std::uint8_t>(rv.valence - (keep_to - keep_from));
+    insert(rv, keep_from, u);
+
+    const bool shares_e2 = !takes_start || count == 1;
+    const bool shares_e1 = !takes_end;
+    for (int i = 0; i < ru.valence; ++i) {
+        const VertexId t = ru[i];
+        if (t == v) continue;
+        if (t == e1 && shares_e1) {
+            insert_after(ring_of(t), v, u);
+        } else if (t == e2 && shares_e2) {
+            insert_before(ring_of(t), v, u);
+        } else {
+            replace(ring_of(t), v, u);
+        }
+    }
+    return u;
+}
+
+bool Network::can_collapse(VertexId gone, VertexId kept) const {
+    const Ring& rg = ring(gone);
+    const Ring& rk = ring(kept);
+    const int i = rg.find(kept);
+    if (i < 0) return false;
+    const bool on_boundary = at_end(rg, i);
+    // A boundary vertex may only slide along its boundary, or the boundary would move or be pinched.
+    if (rg.open != 0 && !on_boundary) return false;
+    const int opposite = on_boundary ? 1 : 2;
+    if (common_neighbours(rg, rk) != opposite) return false;
+    const int valence = on_boundary ? rg.valence + rk.valence - 3 : rg.valence + rk.valence - 4;
+    if (valence < least_valence(rk) || valence > kMax) return false;
+    const auto can_lose_one = [&](VertexId w) { return ring(w).valence > least_valence(ring(w)); };
+    if (on_boundary) return can_lose_one(i == 0 ? rg[1] : rg[i - 1]);
+    return can_lose_one(rg.next(i)) && can_lose_one(rg.previous(i));
+}
+
+void Network::collapse(VertexId gone, VertexId kept) {
+    if (!can_collapse(gone, kept))
+        throw TopologyError("This half-edge collapse would break the network; ask can_collapse() first.");
+    Ring rg = ring(gone);
+    const bool on_boundary = rg.open != 0;
+    const int i = rg.find(kept);
+    // [from, to) of gone's ring is what kept takes over; the one or two vertices beside it lose an edge.
+    int from = 2;
+    int to = rg.valence - 1;
+    if (!on_boundary) {
+        rotate(rg, i);
+        erase(ring_of(rg[1]), gone);
+        erase(ring_of(rg[rg.valence - 1]), gone);
+    } else if (i == 0) {
+        to = rg.valence;
+        erase(ring_of(rg[1]), gone);
+    } else {
+        from = 0;
+        to = rg.valence - 2;
+        erase(ring_of(rg[to]), gone);
+    }
+    for (int j = from; j < to; ++j) replace(ring_of(rg[j]), gone, kept);
+    replace(ring_of(kept), gone, rg.neighbours.data() + from, to - from);
+    ring_of(gone) = Ring{};
+    free_.push_back(gone);
+    --vertex_count_;
+}
+
+bool Network::can_flip(VertexId a, VertexId b) const {
+    const Ring& ra = ring(a);
+    const Ring& rb = ring(b);
+    const int i = ra.find(b);
+    if (i < 0 || at_end(ra, i)) return false;
+    const VertexId c = ra.next(i);
+    const VertexId d = ra.previous(i);
+    return ra.valence > least_valence(ra) && rb.valence > least_valence(rb) && ring(c).valence < kMax &&
+           ring(d).valence < kMax && !adjacent(c, d);
+}
+
+void Network::flip(VertexId a, VertexId b) {
+    if (!can_flip(a, b)) throw TopologyError("This edge flip would break the network; ask can_flip() first.");
+    const int i = ring(a).find(b);
+    const VertexId c = ring(a).next(i);
+    const VertexId d = ring(a).previous(i);
+    erase(ring_of(a), b);
+    erase(ring_of(b), a);
+    insert_after(ring_of(c), a, d);
+    insert_after(ring_of(d), b, c);
+}
+
+std::vector<VertexId> Network::compact() {
+    std::vector<VertexId> moved(rings_.size(), -1);
+    VertexId next = 0;
+    for (VertexId v = 0; v < slot_count(); ++v)
+        if (alive(v)) moved[static_cast<std::size_t>(v)] = next++;
+    for (VertexId v = 0; v < slot_count(); ++v) {
+        if (!alive(v)) continue;
+        const auto to = static_cast<std::size_t>(moved[static_cast<std::size_t>(v)]);
+        rings_[to] = rings_[static_cast<std::size_t>(v)];
+        slots_[to] = slots_[static_cast<std::size_t>(v)];
+        Ring& r = rings_[to];
+        for (int i = 0; i < r.valence; ++i) *at(r, i) = moved[static_cast<std::size_t>(r[i])];
+    }
+    rings_.resize(static_cast<std::size_t>(next));
+    slots_.resize(static_cast<std::size_t>(next));
+    free_.clear();
+    return moved;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The neural mesh M itself: positions and connectivity of a growing, oriented 2-manifold, with or
+// without boundary. Knows nothing of learning.
+//
+// Connectivity is kept as one ordered one-ring per vertex, in a cache line of its own; faces and edges
+// are implied. vcglib has no vertex split and its adjacencies move on reallocation, so this is ours.
+#pragma once
+
+#include <vcg/space/point3.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "error.h"
+
+namespace neuralmesh {
+
+using VertexId = std::int32_t;
+using Triangle = std::array<VertexId, 3>;
+
+/// The neighbours of a vertex, counter-clockwise seen from outside. Closed: a cycle, which may start
+/// anywhere. Open (the vertex lies on a boundary): from the first boundary edge to the last.
+struct alignas(64) Ring {
+    static constexpr int kMaxValence = 15;
+
+    std::array<VertexId, kMaxValence> neighbours;
+    std::uint8_t valence;  ///< 0: the slot is free
+    std::uint8_t open;     ///< 1: boundary vertex
+    std::uint16_t unused;
+
+    int find(VertexId v) const {
+        for (int i = 0; i < valence; ++i)
+            if (neighbours[static_cast<std::size_t>(i)] == v) return i;
+        return -1;
+    }
+    VertexId operator[](int i) const { return neighbours[static_cast<std::size_t>(i)]; }
+    /// The neighbour after / before position i, cyclically.
+    VertexId next(int i) const { return (*this)[i + 1 == valence ? 0 : i + 1]; }
+    VertexId previous(int i) const { return (*this)[i == 0 ? valence - 1 : i - 1]; }
+    int face_count() const { return valence - open; }
+};
+static_assert(sizeof(Ring) == 64);
+
+/// 16 bytes, so that a position is one aligned load; the spare word belongs to the winner search.
+struct alignas(16) Slot {
+    float x, y, z;
+    VertexId next_in_cell;
+
+    vcg::Point3f point() const { return {x, y, z}; }
+};
+
+/// A simplicial, oriented 2-manifold with boundary. Vertex ids are stable; ids of removed vertices are
+/// used again. Every operation below keeps the manifold or throws before it has changed anything.
+class Network {
+public:
+    Network() = default;
+
+    /// A network with the given vertices and faces.
+    /// \throws TopologyError: not an oriented manifold, a vertex without faces, or a valence above
+    /// Ring::kMaxValence. O(vertices + faces).
+    Network(const std::vector<vcg::Point3f>& positions, const std::vector<Triangle>& faces);
+
+    int vertex_count() const { return vertex_count_; }
+    /// Ids run from 0 to slot_count() - 1; alive() tells the used ones.
+    int slot_count() const { return static_cast<int>(rings_.size()); }
+    bool alive(VertexId v) const { return ring(v).valence != 0; }
+    const Ring& ring(VertexId v) const { return rings_[static_cast<std::size_t>(v)]; }
+    vcg::Point3f position(VertexId v) const { return slots_[static_cast<std::size_t>(v)].point(); }
+    void set_position(VertexId v, const vcg::Point3f& p);
+    /// Raw slots for the hot loops.
+    Slot* slots() { return slots_.data(); }
+    const Slot* slots() const { return slots_.data(); }
+    void reserve(int vertices);
+
+    bool adjacent(VertexId a, VertexId b) const { return ring(a).find(b) >= 0; }
+
+    /// Vertex split: the new vertex takes over the neighbours of \p v from ring position \p first on,
+    /// \p count of them (cyclically where the ring is closed), as a fan; v keeps the rest and shares the two
+    /// ends. Inverse of a half-edge collapse into v. The new vertex gets the position \p where.
+    /// \pre can_split(v, first, count)
+    /// \return the new vertex. Amortised O(1).
+    VertexId split(VertexId v, int first, int count, const vcg::Point3f& where);
+    /// True if both halves keep a valence of at least 3 (2 on a boundary) and no valence grows beyond
+    /// Ring::kMaxValence.
+    bool can_split(VertexId v, int first, int count) const;
+
+    /// Half-edge collapse: removes \p gone by moving it into its neighbour \p kept, which stays where it is.
+    /// \pre can_collapse(gone, kept). O(valence).
+    void collapse(VertexId gone, VertexId kept);
+    /// The link condition (Dey et al. 1999: the common neighbours are exactly those opposite the edge, and
+    /// two boundary vertices are joined by a boundary edge), no valence below 3 (2 on a boundary) or above
+    /// Ring::kMaxValence afterwards.
+    bool can_collapse(VertexId gone, VertexId kept) const;
+
+    /// Edge flip: replaces the inner edge a-b by the edge between the two vertices opposite to it.
+    /// \pre can_flip(a, b). O(valence).
+    void flip(VertexId a, VertexId b);
+    /// True if a-b is an inner edge, the new edge does not exist yet and all valences stay in range.
+    bool can_flip(VertexId a, VertexId b) const;
+
+    /// Swaps ids so that the used ones are 0 .. vertex_count() - 1, in unchanged order.
+    /// \return for every old slot its new id, or -1.
+    std::vector<VertexId> compact();
+
+    int face_count() const;
+    int edge_count() const;
+    /// All faces, each once, starting from its smallest vertex, in order of that vertex. O(vertices).
+    std::vector<Triangle> faces() const;
+    /// V - E + F.
+    int euler_characteristic() const { return vertex_count() - edge_count() + face_count(); }
+    int component_count() const;
+    int boundary_loop_count() const;
+    /// Sum over the components, from the Euler characteristic: components - (euler + loops) / 2.
+    int genus() const;
+
+    /// Full check of every promise above. Empty if all hold, else a sentence naming the first breach.
+    std::string validate() const;
+
+private:
+    Ring& ring_of(VertexId v) { return rings_[static_cast<std::size_t>(v)]; }
+    VertexId new_vertex(const vcg::Point3f& where);
+
+    std::vector<Ring> rings_;
+    std::vector<Slot> slots_;
+    std::vector<VertexId> free_;
+    int vertex_count_ = 0;
+};
+
+}  // namespace neuralmesh

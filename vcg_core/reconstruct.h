@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The whole job in one call: a target space and settings in, a mesh with counters and figures out.
+#pragma once
+
+#include "neural_mesh.h"
+#include "progress.h"
+#include "settings.h"
+#include "target_space.h"
+
+namespace neuralmesh {
+
+/// Learns \p target with a growing neural mesh (the paper, section 2).
+///
+/// The result is one oriented 2-manifold of exactly settings.target_vertices vertices unless
+/// report.stop_reason says otherwise. The same target, settings and seed give the same bytes, whatever
+/// the machine and settings.threads.
+/// \throws SettingError (a parameter out of range), InputError (nothing to learn), std::bad_alloc
+/// Cost: about signals_per_split x target_vertices signals of O(1) expected time each.
+NeuralMesh reconstruct(const TargetSpace& target, const Settings& settings, Progress& progress);
+
+}  // namespace neuralmesh
