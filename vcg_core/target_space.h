@@ -26,7 +26,7 @@ struct Frame {
     vcg::Point3d outside(const vcg::Point3f& p) const;
 };
 
-/// Points, or triangles weighted by their area, with a uniform random sample() in O(1) expected time.
+/// Points, or triangles weighted by their area, with a uniform random sample(), O(1) for points and O(log n) for triangles.
 /// Memory: 12 bytes per point; 12 bytes per corner and 8 per triangle.
 class TargetSpace {
 public:

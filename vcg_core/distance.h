@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// How far the target is from the learned surface.
+#pragma once
+
+#include "network.h"
+#include "random.h"
+#include "target_space.h"
+
+namespace neuralmesh {
+
+/// Root mean square distance of \p samples random points of \p target from the surface of \p network, in the
+/// core's frame (1 is the bounding box's diagonal). Exact nearest faces, by vcglib's grid. O(samples) expected.
+double rms_distance(const TargetSpace& target, const Network& network, int samples, Random& random);
+
+}  // namespace neuralmesh

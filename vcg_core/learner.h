@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The learning algorithm of the paper's section 2: Basic Step, Vertex Split, Half-Edge Collapse, stop.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "counters.h"
+#include "network.h"
+#include "neural_mesh.h"
+#include "progress.h"
+#include "random.h"
+#include "settings.h"
+#include "target_space.h"
+#include "winner_search.h"
+
+namespace neuralmesh {
+
+/// A network that learns a target space. Every step of the paper is a public member; run() is their order.
+class Learner {
+public:
+    /// Starts from \p start. References to the arguments are kept.
+    /// \throws SettingError if the start mesh has more than settings.target_vertices vertices
+    Learner(const TargetSpace& target, const Settings& settings, Network start);
+
+    Learner(const Learner&) = delete;
+    Learner& operator=(const Learner&) = delete;
+
+    /// Learns until the network has settings.target_vertices vertices and has settled, the mean counter falls
+    /// below its bound (eq 8), \p progress asks to stop, or signal_bound() is reached.
+    StopReason run(Progress& progress);
+
+    /// One signal: the winner moves towards it, its ring is smoothed, its counters learn (eq 1 to 4, 6).
+    /// O(1) expected.
+    void basic_step(const vcg::Point3f& s);
+    /// Splits the mature vertex with the highest utility counter along its longest edge, halving its star;
+    /// the twins share the counter (eq 5). False if no vertex is mature or can be split. O(log n).
+    bool vertex_split();
+    /// Removes the vertices that existed but did not win since the last call, each along the edge whose
+    /// collapse leaves the best valences. \return how many. O(n).
+    int half_edge_collapse();
+    /// \p per_vertex signals a vertex without change of connectivity, so that the counters speak of the final
+    /// mesh. False if \p progress asked to stop.
+    bool settle(int per_vertex, Progress& progress);
+
+    /// Growth to n vertices ends within this many signals. See the proof beside its definition.
+    std::int64_t signal_bound() const;
+
+    const Network& network() const { return network_; }
+    const FeatureCounters& feature_counters() const { return feature_counters_; }
+    const UtilityCounters& utility_counters() const { return utility_counters_; }
+    std::int64_t signals() const { return signals_; }
+    std::int64_t splits() const { return splits_; }
+    std::int64_t collapses() const { return collapses_; }
+    /// Mean(n_c) of the feature counters.
+    double mean_counter() const;
+
+private:
+    struct Halving {
+        int first;
+        int count;
+    };
+
+    bool due_for_collapse() const;
+    Halving halve_star(VertexId v, int longest) const;
+    bool try_split(VertexId v);
+    VertexId best_collapse(VertexId gone) const;
+    void learn_counters(VertexId w, double delta);
+
+    const TargetSpace& target_;
+    const Settings& settings_;
+    Network network_;
+    WinnerSearch search_;
+    UtilityCounters utility_counters_;
+    FeatureCounters feature_counters_;
+    WindowMean mean_delta_;
+    Random random_;
+    /// Per vertex the signal of its last win, or of its birth.
+    std::vector<std::int64_t> last_active_;
+    std::int64_t signals_ = 0;
+    std::int64_t splits_ = 0;
+    std::int64_t collapses_ = 0;
+    std::int64_t last_collapse_ = 0;
+    int vertices_at_collapse_ = 0;
+};
+
+}  // namespace neuralmesh
