@@ -172,7 +172,7 @@ def summary(rows, peer, ours="neural"):
                 "self_intersecting_percent": max(100 * row["self_intersecting_faces"] / row["faces"] for row in own),
                 "exact_count": all(row["vertices"] == n for row in own)}
         medians = {key: np.median([row["sum_rms"] for row in mine[key]]) for key in cases}
-        line["stuck"] = sum(row["sum_rms"] > 2 * medians[key] for key in cases for row in mine[key])
+        line["stuck"] = sum(bool(row["sum_rms"] > 2 * medians[key]) for key in cases for row in mine[key])
         pairs = [(row, theirs[key][0]) for key in cases if key in theirs for row in mine[key]]
         if pairs:
             ratios = {measure: [a[measure] / max(b[measure], 1e-12) for a, b in pairs]

@@ -81,23 +81,35 @@ class Clock:
 def decimated(meshes, count):
     """Quadric Edge Collapse of the current mesh, in a new layer, to count vertices within 1 %.
 
-    The filter counts faces, so the faces to ask for follow from the Euler characteristic; where the collapse itself
-    changes that, the number is corrected and the work done anew. Only the last attempt is timed.
+    The filter counts faces, so the faces to ask for follow from the Euler characteristic. Where the collapse itself
+    changes that, it goes on from where it stands, or starts anew with a larger number if it went too far. Only the
+    work that led to the result is timed.
     """
     source = meshes.current_mesh_id()
-    mesh = meshes.current_mesh()
-    wanted = 2 * (count - (mesh.vertex_number() - mesh.face_number() // 2))
-    for attempts_left in reversed(range(5)):
-        meshes.set_current_mesh(source)
-        meshes.generate_copy_of_current_mesh()
+    meshes.generate_copy_of_current_mesh()
+    seconds = (0.0, 0.0)
+    if meshes.current_mesh().vertex_number() <= count:
+        return seconds
+    for _ in range(6):
+        mesh = meshes.current_mesh()
+        wanted = mesh.face_number() + 2 * (count - mesh.vertex_number())
         clock = Clock()
         meshes.meshing_decimation_quadric_edge_collapse(targetfacenum=max(4, wanted))
-        seconds = clock.read()
-        got = meshes.current_mesh().vertex_number()
-        if abs(got - count) <= TOLERANCE * count or attempts_left == 0:
-            return seconds
-        wanted += 2 * (count - got)
-        meshes.delete_current_mesh()
+        seconds = tuple(a + b for a, b in zip(seconds, clock.read()))
+        missing = count - meshes.current_mesh().vertex_number()
+        if abs(missing) <= TOLERANCE * count:
+            break
+        if missing > 0:
+            larger = meshes.current_mesh().face_number() + 3 * missing
+            meshes.delete_current_mesh()
+            meshes.set_current_mesh(source)
+            meshes.generate_copy_of_current_mesh()
+            clock = Clock()
+            meshes.meshing_decimation_quadric_edge_collapse(targetfacenum=larger)
+            seconds = clock.read()
+            if abs(meshes.current_mesh().vertex_number() - count) <= TOLERANCE * count:
+                break
+    return seconds
 
 
 def _peak_mb():
@@ -156,7 +168,7 @@ def _typed(text):
     return text
 
 
-def run(method, cloud, folder, counts, plugin=None, command=None, settings=None, timeout=900):
+def run(method, cloud, folder, counts, plugin=None, command=None, settings=None, timeout=300):
     """Runs one method on the file cloud for all counts, in other processes. Returns {count: times and memory}.
 
     method: a name of PEERS, or "neural" with a plugin or a command (started as COMMAND CLOUD OUT

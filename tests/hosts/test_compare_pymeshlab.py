@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""The neural mesh against Screened Poisson + Quadric Edge Collapse in pymeshlab, on a set small enough for every
+test run, and the measuring tools themselves on surfaces whose error is known. The large tables are made by
+tests/experiments/compare_accuracy.py."""
+
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pymeshlab", reason="pymeshlab is not installed; './run.sh test' installs it.")
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "experiments"))
+
+import evaluate  # noqa: E402
+import models  # noqa: E402
+import peers  # noqa: E402
+import shapes  # noqa: E402
+
+SAMPLES = 30_000
+VERTICES = 2000
+
+
+# --- the tools ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", models.CODE_MODELS)
+def test_models_made_in_code_have_the_topology_they_claim(name):
+    vertices, faces = models.load_model(name)
+    found = evaluate.evaluate(vertices, faces, evaluate.Truth(vertices, faces, 1000))
+    model = models.MODELS[name]
+    assert found["manifold"] and found["boundary_edges"] == 0
+    assert (found["genus"], found["components"]) == (model.genus, model.components)
+    corners = vertices[faces]
+    volume = np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
+    assert volume > 0, "the faces look inwards"
+
+
+def test_measures_on_concentric_spheres():
+    truth = evaluate.Truth(*shapes.sphere(1.0), 20_000)
+    found = evaluate.evaluate(*shapes.sphere(1.01), truth)
+    expected = 100 * 0.01 / (2 * np.sqrt(3))  # % of the diagonal
+    for measure in ("forward_rms", "forward_max", "backward_rms", "backward_max"):
+        assert found[measure] == pytest.approx(expected, rel=0.02), measure
+    assert found["normal_error"] < 1 and not found["inside_out"]
+    assert found["self_intersecting_faces"] == 0
+    assert found == evaluate.evaluate(*shapes.sphere(1.01), truth), "the same mesh, other figures"
+
+
+def test_measures_see_a_web_a_hole_and_a_wrong_side():
+    vertices, faces = shapes.torus()
+    truth = evaluate.Truth(vertices, faces, 20_000)
+    disc = np.array([[0.0, 0, 0], [0.6, 0, 0], [0, 0.6, 0], [-0.6, 0, 0], [0, -0.6, 0]])
+    web = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]]) + len(vertices)
+    webbed = evaluate.evaluate(np.vstack([vertices, disc]), np.vstack([faces, web]), truth)
+    assert webbed["forward_max"] < 0.01
+    assert webbed["backward_max"] == pytest.approx(100 * 0.65 / truth.diagonal, rel=0.05)
+    holed = evaluate.evaluate(vertices, faces[len(faces) // 8:], truth)
+    assert holed["boundary_edges"] > 0 and holed["forward_max"] > 100 * holed["backward_max"]
+    assert evaluate.evaluate(vertices, faces[:, ::-1], truth)["inside_out"]
+
+
+def test_clouds_are_uniform_noisy_as_asked_and_repeatable():
+    vertices, faces = shapes.sphere(1.0)
+    cloud = models.make_cloud(vertices, faces, SAMPLES, noise=0.5, seed=3)
+    assert (cloud == models.make_cloud(vertices, faces, SAMPLES, noise=0.5, seed=3)).all()
+    assert not (cloud == models.make_cloud(vertices, faces, SAMPLES, noise=0.5, seed=4)).any()
+    off = np.linalg.norm(cloud, axis=1) - 1
+    assert off.std() == pytest.approx(0.005 * 2 * np.sqrt(3), rel=0.03)
+    # A sphere's area above height z is proportional to 1 - z (Archimedes).
+    clean = models.make_cloud(vertices, faces, SAMPLES, seed=5)
+    assert np.mean(clean[:, 2] > 0.5) == pytest.approx(0.25, abs=0.01)
+
+
+def test_a_peer_that_crashes_is_reported_with_a_sentence(tmp_path):
+    with pytest.raises(peers.PeerError, match="ended with code"):
+        peers.run("poisson", tmp_path / "there_is_none.ply", tmp_path, [500])
+
+
+# --- ours against the peer ---------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def plugin():
+    path = Path(os.environ.get("NEURAL_MESH_PLUGIN")
+                or ROOT / "build" / "plugins" / "pymeshlab-2025.7" / "libfilter_neuralmesh.so")
+    assert path.exists(), f"There is no plugin at {path}; './run.sh build' makes it."
+    return path
+
+
+@pytest.fixture(scope="module")
+def compared(plugin, tmp_path_factory):
+    """Measures of both methods on a model's cloud: compared(model, noise, seed) -> (ours, peer's), each made once."""
+    made = {}
+
+    def one(name, noise, method, seed):
+        key = (name, noise, method, seed)
+        if key not in made:
+            truth = evaluate.Truth(*models.load_model(name))
+            folder = tmp_path_factory.mktemp("compared")
+            models.save_ply(folder / "cloud.ply", models.make_cloud(truth.vertices, truth.faces, SAMPLES, noise))
+            ours = {"plugin": plugin, "settings": {"random_seed": seed}} if method == "neural" else {}
+            figures = peers.run(method, folder / "cloud.ply", folder, [VERTICES], **ours)
+            mesh = models.load_mesh(folder / f"{VERTICES}.ply")
+            made[key] = {**evaluate.evaluate(*mesh, truth), **figures[VERTICES]}
+        return made[key]
+
+    return lambda name, noise=0.0, seed=1: (one(name, noise, "neural", seed), one(name, noise, "poisson", None))
+
+
+def test_the_peer_has_the_vertices_asked_for(compared):
+    assert compared("bunny")[1]["vertices"] == pytest.approx(VERTICES, rel=peers.TOLERANCE)
+
+
+@pytest.mark.parametrize("name", ["bunny", "torus", "linked-tori", "two-spheres", "cup"])
+def test_exact_closed_and_of_the_right_topology(compared, name):
+    ours, _ = compared(name)
+    model = models.MODELS[name]
+    assert ours["vertices"] == VERTICES
+    assert ours["manifold"] and ours["boundary_edges"] == 0 and not ours["inside_out"]
+    assert (ours["genus"], ours["components"]) == (model.genus, model.components)
+    assert ours["self_intersecting_faces"] <= 0.001 * ours["faces"]
+    assert ours["backward_max"] <= 3 * ours["forward_max"], "a web or a spike"
+
+
+@pytest.mark.parametrize("name, noise, bound", [("bunny", 0, 1.2), ("torus", 0, 1.2), ("filleted-cube", 0, 1.2),
+                                                ("bunny", 0.6, 0.6), ("torus", 0.6, 0.6)])
+def test_closer_to_the_truth_than_the_peer(compared, name, noise, bound):
+    ours, peer = compared(name, noise)
+    assert ours["sum_rms"] <= bound * peer["sum_rms"]
+
+
+def test_the_filter_tells_the_truth_about_its_mesh(compared):
+    ours, _ = compared("linked-tori")
+    told = ours["report"]
+    for key in ("vertices", "faces", "genus", "components"):
+        assert told[key] == ours[key], key
+    assert told["boundary_loops"] == 0
+    # The cloud lies on the true surface, so its distance is the forward one.
+    assert told["rms_error"] == pytest.approx(ours["forward_rms"], rel=0.15)
+
+
+def test_seeds_change_the_mesh_and_not_its_quality(compared):
+    first, second = compared("bunny", 0, 1)[0], compared("bunny", 0, 2)[0]
+    assert first["forward_rms"] != second["forward_rms"]
+    assert first["sum_rms"] == pytest.approx(second["sum_rms"], rel=0.25)
