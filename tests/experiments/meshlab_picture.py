@@ -8,10 +8,12 @@ A project file gives MeshLab every mesh as a layer with its own rendering option
 transformation that brings it in front of one fixed orthographic camera; MeshLab's own
 "Snap All Layers" then draws them all, free of its decorations, in one start of a second or two.
 
-    meshlab_picture.py MESH.ply OUT.png [--style wireframe] [--color] [--view 0.3,0.2,1]
-    meshlab_picture.py A.ply B.ply C.ply OUT.png --style wireframe --captions "500,2000,10000"
+    meshlab_picture.py MESH.ply OUT.png [--style smooth+color] [--view 0.3,0.2,1]
+    meshlab_picture.py MESH.ply OUT.png --cloud CLOUD.ply --style flat-lines,smooth+color
+    meshlab_picture.py A.ply B.ply C.ply OUT.png --style wireframe,smooth+color --captions "500,2000,10000"
 
-Several meshes make one contact sheet, all seen by the camera that fits the largest.
+Several meshes make one contact sheet, a row for each style, all seen by the camera that fits the
+largest; one mesh in several styles makes one row, after its cloud if that is given.
 Needs the Debian packages meshlab, xvfb, xdotool, libgl1-mesa-dri, and numpy and Pillow.
 """
 
@@ -53,7 +55,8 @@ class Picture:
     color: the file's vertex colours (on the surface, or on the points), else `surface_color`.
     view, up: direction from the mesh to the viewer and what points upwards, in the mesh's frame.
     line_width: pixels of the picture.
-    fit_to: PLY files that must fit the picture as well, so that a row shares its scale.
+    fit_to: PLY files that must fit the picture as well, so that a row shares its scale. The mesh itself
+    may be of any type MeshLab opens if these are given.
     """
     mesh: str
     style: str = "smooth"
@@ -61,7 +64,7 @@ class Picture:
     view: tuple = (0.0, 0.0, 1.0)
     up: tuple = (0.0, 1.0, 0.0)
     line_width: float = 0.8
-    point_size: float = 1.5
+    point_size: float = 1.0
     line_color: tuple = (30, 30, 40)
     surface_color: tuple = (205, 208, 214)
     fit_to: list = field(default_factory=list)
@@ -78,11 +81,15 @@ def camera_axes(view, up):
     return np.array([right, np.cross(towards, right), towards])
 
 
+def is_ply(path):
+    return str(path).lower().endswith(".ply")
+
+
 def layer_transformation(picture, aspect, margin):
     """The 4 x 4 matrix that puts the picture's mesh centred and filling in front of the camera."""
     axes = camera_axes(picture.view, picture.up)
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for path in [picture.mesh, *picture.fit_to]:
+    for path in [picture.mesh, *picture.fit_to] if is_ply(picture.mesh) else picture.fit_to:
         seen = positions(read_vertices(path)) @ axes.T
         seen = seen[np.isfinite(seen).all(axis=1)]
         if len(seen):
@@ -189,7 +196,7 @@ def render(pictures, size=(600, 600), background=(255, 255, 255), margin=0.03):
     for picture in pictures:
         if picture.style not in STYLES:
             raise ValueError(f"There is no style '{picture.style}': it is one of {', '.join(STYLES)}.")
-        if picture.color and "red" not in read_vertices(picture.mesh).dtype.names:
+        if picture.color and is_ply(picture.mesh) and "red" not in read_vertices(picture.mesh).dtype.names:
             raise ValueError(f"{picture.mesh} has no vertex colours to show.")
     matrices = [layer_transformation(picture, size[0] / size[1], margin) for picture in pictures]
     return [cut_to_size(drawing, size) for drawing in snapshots(pictures, matrices, size, background)]
@@ -219,36 +226,64 @@ def parse_color(text):
     return values
 
 
+def parse_styles(text):
+    """Styles separated by commas, each with or without "+color", as pairs (style, color)."""
+    pairs = [(word.replace("+color", ""), word.endswith("+color")) for word in text.split(",")]
+    for style, _ in pairs:
+        if style not in STYLES:
+            raise argparse.ArgumentTypeError(f"there is no style '{style}': it is one of {', '.join(STYLES)}")
+    return pairs
+
+
 def parse_arguments(arguments):
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("meshes", nargs="+", metavar="MESH.ply")
     parser.add_argument("out", metavar="OUT.png")
-    parser.add_argument("--style", choices=STYLES, default="smooth")
-    parser.add_argument("--color", action="store_true", help="show the vertex colours")
+    parser.add_argument("--style", type=parse_styles, default=[("smooth", False)],
+                        help=f"{', '.join(STYLES)}; +color shows vertex colours; several with commas")
+    parser.add_argument("--cloud", help="a point cloud to be shown before the mesh")
     parser.add_argument("--view", type=parse_direction, default=(0.0, 0.0, 1.0),
-                        help="from the mesh to the viewer: %s or x,y,z" % ", ".join(VIEWS))
+                        help=f"from the mesh to the viewer: {', '.join(VIEWS)} or x,y,z")
     parser.add_argument("--up", type=parse_direction, default=(0.0, 1.0, 0.0))
     parser.add_argument("--size", type=parse_size, default=(600, 600), help="of one picture, WIDTHxHEIGHT")
     parser.add_argument("--background", type=parse_color, default=(255, 255, 255), help="white or r,g,b")
     parser.add_argument("--line-width", type=float, default=0.8, help="pixels")
-    parser.add_argument("--point-size", type=float, default=1.5, help="pixels")
-    parser.add_argument("--captions", default=None, help="one per mesh, separated by commas")
-    parser.add_argument("--legend", default=None, help="title: adds the colours of the last mesh's quality")
+    parser.add_argument("--point-size", type=float, default=1.0, help="pixels")
+    parser.add_argument("--captions", default=None, help="one per column, separated by commas")
+    parser.add_argument("--legend", default=None, metavar="TITLE",
+                        help="adds the colour scale, read off the last mesh's quality and colours")
     return parser.parse_args(arguments)
+
+
+def sheet_of(options):
+    """Rows of Pictures: one row per style and one column per mesh, or all of one mesh in one row."""
+    rows = [[Picture(mesh, style, color, options.view, options.up, options.line_width, options.point_size,
+                     fit_to=[other for other in options.meshes if other != mesh])
+             for mesh in options.meshes] for style, color in options.style]
+    if len(options.meshes) == 1:
+        rows = [[row[0] for row in rows]]
+        if options.cloud:
+            rows[0].insert(0, Picture(options.cloud, "points", False, options.view, options.up,
+                                      point_size=options.point_size, fit_to=options.meshes))
+    return rows
 
 
 def main(arguments=None):
     options = parse_arguments(arguments)
-    pictures = [Picture(mesh, options.style, options.color, options.view, options.up, options.line_width,
-                        options.point_size, fit_to=[other for other in options.meshes if other != mesh])
-                for mesh in options.meshes]
-    images = render(pictures, options.size, options.background)
-    if len(images) == 1 and not options.captions and not options.legend:
-        images[0].save(options.out)
-        return
-    captions = options.captions.split(",") if options.captions else [""] * len(images)
+    rows = sheet_of(options)
+    drawn = iter(render([picture for row in rows for picture in row], options.size, options.background))
+    images = [[next(drawn) for _ in row] for row in rows]
+    columns = len(rows[0])
+    texts = options.captions.split(",") if options.captions else [""] * columns
+    if len(texts) != columns:
+        raise ValueError(f"There are {columns} columns of pictures, but {len(texts)} captions.")
+    captions = [[""] * columns for _ in rows[1:]] + [texts]
     legend = legend_of_mesh(options.meshes[-1], options.legend) if options.legend else None
-    contact_sheet([images], [captions], options.out, legend=legend, background=options.background)
+    if len(rows) == columns == 1 and not options.captions and not legend:
+        images[0][0].save(options.out)
+    else:
+        contact_sheet(images, captions, options.out, legend=legend, background=options.background)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ set -eu
 
 suite=$1
 folder=$2
-complete="$folder/.neural_mesh_complete"
+complete="$folder.complete"
 if [ -e "$complete" ]; then exit 0; fi
 if [ "$(id -u)" != 0 ]; then
     echo "gui_debian_root: needs root, as debootstrap and chroot do." >&2
@@ -31,9 +31,18 @@ if [ -z "$mirror" ]; then
     exit 1
 fi
 
-mkdir -p "$folder"
-if [ ! -x "$folder/usr/bin/apt-get" ]; then
+if [ ! -e "$folder.debootstrapped" ]; then
+    # An interrupted attempt leaves a half-made folder beside its mark; anything else there is not ours.
+    if [ -e "$folder.started" ]; then
+        rm -rf "$folder"
+    elif [ -e "$folder" ]; then
+        echo "gui_debian_root: $folder exists and was not made by this script; choose another folder." >&2
+        exit 1
+    fi
+    mkdir -p "$(dirname "$folder")"
+    touch "$folder.started"
     debootstrap --variant=minbase "$suite" "$folder" "$mirror"
+    touch "$folder.debootstrapped"
 fi
 # What MeshLab's plugins are linked to beyond the package's own dependencies; without them MeshLab greets
 # with a list of plugins it could not load. Names differ between releases, so missing ones are skipped.

@@ -27,7 +27,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "experiments"))
 from meshlab_picture import LIBRARIES, PLUGINS, program_copy  # noqa: E402
 
 FILTER = "Surface Reconstruction: Neural Mesh"
-SCREEN = (1440, 900)
+SCREEN = (1440, 1080)
 # A picture of a mesh painted by a colour ramp has thousands of pixels of strong colour; MeshLab's own
 # background and log area are cut away or blue, see count_colorful().
 COLORFUL_PIXELS = 3000
@@ -117,8 +117,8 @@ def open_filter(session, main_window, name):
 
 
 def lay_out(session, dialog):
-    """Puts the dialog over the lower right of the screen: cloud and layer list stay in view."""
-    width, top = 470, 130
+    """Puts the dialog over the layer list, tall enough for all parameters; the cloud stays in view."""
+    width, top = 440, 66
     place = (session.width - width - 6, top, width, session.height - top - 6)
 
     def placed():
@@ -179,7 +179,8 @@ def run(session, options):
     size = drawing_area(session, window)
     # The cloud's points lie in the new surface: the eye beside the first layer hides them.
     session.click(size[0] + 36, 111)
-    session.keys(window, "shift+h")  # the trackball's circle
+    session.click(size[0] + 130, 143)  # the new layer is the current one
+    session.keys(window, "shift+h")  # hides the trackball's circle
     session.xdotool("mousemove", size[0] + 60, 330)
     picture = session.steady_screenshot()
     picture.save(out / f"meshlab_{version}_result.png")
