@@ -242,6 +242,7 @@ def parse_arguments(arguments):
     parser.add_argument("out", metavar="OUT.png")
     parser.add_argument("--style", type=parse_styles, default=[("smooth", False)],
                         help=f"{', '.join(STYLES)}; +color shows vertex colours; several with commas")
+    parser.add_argument("--color", action="store_true", help="+color for every style")
     parser.add_argument("--cloud", help="a point cloud to be shown before the mesh")
     parser.add_argument("--view", type=parse_direction, default=(0.0, 0.0, 1.0),
                         help=f"from the mesh to the viewer: {', '.join(VIEWS)} or x,y,z")
@@ -258,7 +259,7 @@ def parse_arguments(arguments):
 
 def sheet_of(options):
     """Rows of Pictures: one row per style and one column per mesh, or all of one mesh in one row."""
-    rows = [[Picture(mesh, style, color, options.view, options.up, options.line_width, options.point_size,
+    rows = [[Picture(mesh, style, color or options.color, options.view, options.up, options.line_width, options.point_size,
                      fit_to=[other for other in options.meshes if other != mesh])
              for mesh in options.meshes] for style, color in options.style]
     if len(options.meshes) == 1:
