@@ -46,5 +46,8 @@ elseif(NOT EXISTS "${core_meshlab}/ML_VERSION")
 endif()
 
 vcglib_of("${core_meshlab}" core_vcglib)
+# In a plugin the core meets the host's vcglib, another release with the same names for functions that differ (Point3
+# is passed in registers by 2025.07, in memory by its elders): so the core's goes by another name.
 add_library(neuralmesh_vcglib INTERFACE)
+target_compile_definitions(neuralmesh_vcglib INTERFACE vcg=neuralmesh_vcg)
 target_include_directories(neuralmesh_vcglib SYSTEM INTERFACE "${core_vcglib}")

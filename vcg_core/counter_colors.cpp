@@ -14,10 +14,10 @@ namespace {
 
 // Every 32nd colour of viridis; between them, straight lines are hard to tell from it.
 // vcglib has the ramp from 2025.07 on only.
-const std::array<vcg::Color4b, 9> kRamp = {
-    vcg::Color4b(68, 1, 84, 255),    vcg::Color4b(71, 45, 123, 255),  vcg::Color4b(59, 82, 139, 255),
-    vcg::Color4b(44, 114, 142, 255), vcg::Color4b(33, 145, 140, 255), vcg::Color4b(40, 174, 128, 255),
-    vcg::Color4b(94, 201, 98, 255),  vcg::Color4b(173, 220, 48, 255), vcg::Color4b(253, 231, 37, 255)};
+const std::array<Color, 9> kRamp = {
+    Color{68, 1, 84},    Color{71, 45, 123},  Color{59, 82, 139},
+    Color{44, 114, 142}, Color{33, 145, 140}, Color{40, 174, 128},
+    Color{94, 201, 98},  Color{173, 220, 48}, Color{253, 231, 37}};
 
 float percentile(std::vector<float> values, double fraction) {
     const auto rank = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
@@ -25,22 +25,23 @@ float percentile(std::vector<float> values, double fraction) {
     return values[static_cast<std::size_t>(rank)];
 }
 
-vcg::Color4b on_ramp(float t) {
+Color on_ramp(float t) {
     const float place = t * static_cast<float>(kRamp.size() - 1);
     const auto i = std::min(static_cast<std::size_t>(place), kRamp.size() - 2);
-    vcg::Color4b color;
-    color.lerp(kRamp[i], kRamp[i + 1], place - static_cast<float>(i));
-    color[3] = 255;
+    const float x = place - static_cast<float>(i);
+    Color color{};
+    for (std::size_t k = 0; k < color.size(); ++k)
+        color[k] = static_cast<unsigned char>((1 - x) * kRamp[i][k] + x * kRamp[i + 1][k] + 0.5F);
     return color;
 }
 
 }  // namespace
 
-std::vector<vcg::Color4b> counter_colors(const std::vector<float>& counters) {
+std::vector<Color> counter_colors(const std::vector<float>& counters) {
     if (counters.empty()) return {};
     const float low = percentile(counters, 0.02);
     const float high = percentile(counters, 0.98);
-    std::vector<vcg::Color4b> colors;
+    std::vector<Color> colors;
     colors.reserve(counters.size());
     for (const float counter : counters) {
         const float t = high > low ? (counter - low) / (high - low) : 0.F;

@@ -9,7 +9,9 @@
 #include <vcg/space/color4.h>
 #include <vcg/space/point3.h>
 
+#include <array>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,6 +37,13 @@ void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& ou
 
 namespace detail {
 
+using Coordinates = std::array<double, 3>;
+
+// The caller may be compiled against another vcglib than the core, and the two pass Point3 in different
+// ways. So only standard types cross here.
+TargetSpace target_of_points(std::size_t count, const std::function<Coordinates(std::size_t)>& point_at);
+TargetSpace target_of_triangles(std::size_t count, const std::function<Coordinates(std::size_t, int)>& corner_at);
+
 /// The elements of a vcg container that are to be learned, \p kind being their name for the user.
 template <class Container>
 std::vector<const typename Container::value_type*> elements_of(const Container& all, bool selected_only,
@@ -55,27 +64,29 @@ template <class MeshType, class Matrix>
 TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const Settings& settings) {
     vcg::Matrix44d to_world;
     to_world.Import(transform);
-    const auto in_world = [&to_world](const auto& p) { return to_world * vcg::Point3d::Construct(p); };
-
+    const auto in_world = [&to_world](const auto& p) {
+        const vcg::Point3d q = to_world * vcg::Point3d::Construct(p);
+        return detail::Coordinates{q[0], q[1], q[2]};
+    };
     if (settings.draw_from_faces && mesh.fn > 0) {
         const auto faces = detail::elements_of(mesh.face, settings.selected_only, "faces");
-        return TargetSpace::triangles(faces.size(),
-                                      [&](std::size_t i, int k) { return in_world(faces[i]->cP(k)); });
+        return detail::target_of_triangles(faces.size(),
+                                           [&](std::size_t i, int k) { return in_world(faces[i]->cP(k)); });
     }
     const auto vertices = detail::elements_of(mesh.vert, settings.selected_only && mesh.vn > 0, "vertices");
-    return TargetSpace::points(vertices.size(), [&](std::size_t i) { return in_world(vertices[i]->cP()); });
+    return detail::target_of_points(vertices.size(), [&](std::size_t i) { return in_world(vertices[i]->cP()); });
 }
 
 template <class MeshType>
 void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& out) {
     using Coord = typename MeshType::CoordType;
     auto vertex = vcg::tri::Allocator<MeshType>::AddVertices(out, result.positions.size());
-    const std::vector<vcg::Color4b> colors =
-        settings.color_by_counter ? counter_colors(result.counters) : std::vector<vcg::Color4b>();
+    const std::vector<Color> colors = settings.color_by_counter ? counter_colors(result.counters) : std::vector<Color>();
     for (std::size_t i = 0; i < result.positions.size(); ++i, ++vertex) {
         vertex->P() = Coord::Construct(result.positions[i]);
         if (vcg::tri::HasPerVertexQuality(out)) vertex->Q() = result.counters[i];
-        if (settings.color_by_counter && vcg::tri::HasPerVertexColor(out)) vertex->C() = colors[i];
+        if (settings.color_by_counter && vcg::tri::HasPerVertexColor(out)) 
+            vertex->C() = vcg::Color4b(colors[i][0], colors[i][1], colors[i][2], 255);
         if (settings.select_features && result.features[i] != 0) vertex->SetS();
     }
     auto face = vcg::tri::Allocator<MeshType>::AddFaces(out, result.faces.size());

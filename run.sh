@@ -1,0 +1,154 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+# Everything from a bare Debian 12 in one command:
+#   ./run.sh build                         the plugins for all MeshLabs, in build/plugins/
+#   ./run.sh demo [CLOUD [VERTICES [OUT]]] a neural mesh of a cloud, with a picture; default: the Stanford bunny
+#   ./run.sh test                          all tests
+#   ./run.sh bench                         the performance tables
+#   ./run.sh figures                       the tables, figures and screenshots of the documentation
+# Missing packages are installed with apt (asking sudo when not root); what is there is left alone.
+set -euo pipefail
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
+called_from="$PWD"
+cd "$here"
+
+build=build
+venv="$build/venv"
+compile_packages="ca-certificates cmake g++ libeigen3-dev libglew-dev libqt5opengl5-dev meshlab ninja-build python3
+    qtbase5-dev xz-utils"
+venv_packages="python3-venv"
+demo_packages="glmark2-data libgl1-mesa-dri openbox python3-numpy python3-pil xauth xdotool xvfb"
+test_packages="binutils libbenchmark-dev libgtest-dev parallel"
+python=/usr/bin/python3
+
+say() { printf '== %s\n' "$*"; }
+
+fail() {
+    printf '%s\n' "$*" >&2
+    exit 1
+}
+
+as_root() {
+    if [ "$(id -u)" = 0 ]; then
+        "$@"
+    elif command -v sudo > /dev/null; then
+        sudo "$@"
+    else
+        fail "Packages are missing and there is no sudo. As root: apt-get install ${missing[*]}"
+    fi
+}
+
+missing_of() {
+    local package
+    for package in "$@"; do
+        dpkg-query --show --showformat='${db:Status-Status}' "$package" 2> /dev/null | grep -q '^installed$' ||
+            echo "$package"
+    done
+}
+
+need() {
+    command -v dpkg-query > /dev/null || fail "This script is for Debian 12; elsewhere build with" \
+        "cmake -S . -B build -DMESHLAB_SOURCE_DIR=DIR, the sources of your MeshLab being in DIR."
+    mapfile -t missing < <(missing_of "$@")
+    [ "${#missing[@]}" -gt 0 ] || return 0
+    say "Installing ${missing[*]}"
+    export DEBIAN_FRONTEND=noninteractive
+    as_root dpkg --configure -a
+    as_root apt-get -q -q update
+    as_root apt-get -q -q install --yes --no-install-recommends "${missing[@]}"
+}
+
+need_sources() {
+    if [ -z "$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Origin: Debian')" ] &&
+        ! [ -e "${XDG_CACHE_HOME:-$HOME/.cache}/neural-mesh/meshlab-2025.07/ML_VERSION" ]; then
+        as_root apt-get -q -q update
+    fi
+    filter_neuralmesh/fetch_meshlab.sh
+}
+
+need_venv() {
+    need $venv_packages
+    local wanted
+    wanted="$(sha256sum < tests/requirements.txt)"
+    [ "$(cat "$venv/complete" 2> /dev/null)" = "$wanted" ] && return 0
+    say "Installing pymeshlab and the tools of the tests into $venv"
+    rm -rf "$venv"
+    "$python" -m venv "$venv"
+    "$venv/bin/pip" install --quiet --disable-pip-version-check --requirement tests/requirements.txt
+    echo "$wanted" > "$venv/complete"
+}
+
+# compile TARGET...: configures where needed, and compiles.
+compile() {
+    need_sources
+    say "Compiling"
+    cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release > "$build/configure.log" 2>&1 ||
+        { cat "$build/configure.log" >&2; fail "The configuration failed."; }
+    cmake --build "$build" --target "$@" -- --quiet
+}
+
+# A path as the caller meant it, whatever folder this script works in.
+path_of() { case "$1" in /*) echo "$1" ;; *) echo "$called_from/$1" ;; esac; }
+
+build() {
+    need $compile_packages
+    need_venv
+    compile plugins
+    say "Built:"
+    ls -1 "$build"/plugins/*/libfilter_neuralmesh.so
+}
+
+demo() {
+    need $compile_packages $demo_packages
+    compile filter_neuralmesh_meshlab-2020.09 write_mlx check_mesh
+    local arguments=()
+    [ $# -ge 1 ] && arguments+=(--cloud "$(path_of "$1")")
+    [ $# -ge 2 ] && arguments+=(--vertices "$2")
+    [ $# -ge 3 ] && arguments+=(--out "$(path_of "$3")")
+    "$python" tests/hosts/demo.py --build "$build" "${arguments[@]}"
+}
+
+run_tests() {
+    need $compile_packages $demo_packages $test_packages
+    need_venv
+    compile all
+    say "Unit tests"
+    ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel "$(nproc)"
+    say "Tests in the hosts"
+    NEURALMESH_BUILD="$here/$build" "$venv/bin/python" -m pytest tests/hosts -q
+}
+
+bench() {
+    need $compile_packages $test_packages
+    compile all
+    local program
+    for program in "$build"/tests/bench_*; do
+        [ -x "$program" ] && [ -f "$program" ] || continue
+        say "${program##*/}"
+        "$program"
+    done
+}
+
+figures() {
+    need $compile_packages $demo_packages $test_packages
+    need_venv
+    compile all
+    NEURALMESH_BUILD="$here/$build" PYTHON="$here/$venv/bin/python" tests/experiments/figures.sh
+}
+
+mkdir -p "$build"
+word="${1:-}"
+[ $# -gt 0 ] && shift
+case "$word" in
+    build) build ;;
+    demo) demo "$@" ;;
+    test) run_tests ;;
+    bench) bench ;;
+    figures) figures ;;
+    *)
+        sed -n '6,12s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+        exit 2
+        ;;
+esac

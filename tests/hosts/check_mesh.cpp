@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// check_mesh MESH [REFERENCE]: what vcglib itself says of a mesh file, as one JSON object. With a reference
+// (a surface or a cloud) also the RMS and largest distances both ways, in % of the reference's diagonal.
+#include <vcg/complex/algorithms/clean.h>
+#include <vcg/complex/algorithms/point_sampling.h>
+#include <vcg/complex/complex.h>
+#include <wrap/io_trimesh/import.h>
+
+#include <cstdio>
+#include <iostream>
+#include <stdexcept>
+#include <string>
+
+namespace {
+
+class Vertex;
+class Face;
+struct Types : vcg::UsedTypes<vcg::Use<Vertex>::AsVertexType, vcg::Use<Face>::AsFaceType> {};
+class Vertex : public vcg::Vertex<Types, vcg::vertex::Coord3d, vcg::vertex::Normal3d, vcg::vertex::Qualityd,
+                                  vcg::vertex::Color4b, vcg::vertex::VFAdj, vcg::vertex::Mark, vcg::vertex::BitFlags> {};
+class Face : public vcg::Face<Types, vcg::face::VertexRef, vcg::face::Normal3d, vcg::face::FFAdj, vcg::face::VFAdj,
+                              vcg::face::Mark, vcg::face::BitFlags> {};
+class Mesh : public vcg::tri::TriMesh<std::vector<Vertex>, std::vector<Face>> {};
+
+using Clean = vcg::tri::Clean<Mesh>;
+using Mask = vcg::tri::io::Mask;
+
+int load(Mesh& mesh, const std::string& path) {
+    int mask = 0;
+    const int error = vcg::tri::io::Importer<Mesh>::Open(mesh, path.c_str(), mask);
+    if (error != 0 && vcg::tri::io::Importer<Mesh>::ErrorCritical(error))
+        throw std::runtime_error(path + ": " + vcg::tri::io::Importer<Mesh>::ErrorMsg(error));
+    vcg::tri::UpdateBounding<Mesh>::Box(mesh);
+    return mask;
+}
+
+template <class Value>
+void tell(const char* key, const Value& value) {
+    std::cout << ", \"" << key << "\": " << value;
+}
+
+void tell(const char* key, bool value) { std::cout << ", \"" << key << "\": " << (value ? "true" : "false"); }
+
+/// The share of the vertices with 5, 6 or 7 neighbours, in %.
+double regular_valences(Mesh& mesh) {
+    Mesh::PerVertexAttributeHandle<int> valence = vcg::tri::Allocator<Mesh>::AddPerVertexAttribute<int>(mesh);
+    for (Vertex& v : mesh.vert) valence[v] = 0;
+    for (Face& f : mesh.face)
+        for (int k = 0; k < 3; ++k) ++valence[f.V(k)];
+    int regular = 0;
+    for (Vertex& v : mesh.vert) regular += valence[v] >= 5 && valence[v] <= 7 ? 1 : 0;
+    return 100.0 * regular / mesh.vn;
+}
+
+void tell_topology(Mesh& mesh) {
+    vcg::tri::UpdateTopology<Mesh>::FaceFace(mesh);
+    tell("watertight", Clean::IsWaterTight(mesh));
+    tell("non_manifold_edges", Clean::CountNonManifoldEdgeFF(mesh));
+    tell("non_manifold_vertices", Clean::CountNonManifoldVertexFF(mesh));
+    tell("oriented", Clean::IsCoherentlyOrientedMesh(mesh));
+    tell("genus", Clean::MeshGenus(mesh));
+    tell("components", Clean::CountConnectedComponents(mesh));
+    tell("boundary_loops", Clean::CountHoles(mesh));
+    tell("unreferenced_vertices", Clean::CountUnreferencedVertex(mesh));
+    tell("volume", vcg::tri::Stat<Mesh>::ComputeMeshVolume(mesh));
+    tell("regular_valences", regular_valences(mesh));
+}
+
+/// Distances from \p from (its surface, or its points if it has no faces) to \p to.
+void tell_distance(const std::string& name, Mesh& from, Mesh& to, double unit) {
+    vcg::tri::UpdateNormal<Mesh>::PerVertexNormalizedPerFaceNormalized(from);
+    vcg::tri::HausdorffSampler<Mesh> sampler(&to);
+    sampler.dist_upper_bound = to.bbox.Diag() + from.bbox.Diag();
+    if (from.fn == 0) {
+        vcg::tri::SurfaceSampling<Mesh, vcg::tri::HausdorffSampler<Mesh>>::AllVertex(from, sampler);
+    } else {
+        constexpr int kSamples = 200000;
+        vcg::tri::SurfaceSampling<Mesh, vcg::tri::HausdorffSampler<Mesh>>::Montecarlo(from, sampler, kSamples);
+    }
+    tell(("rms_" + name).c_str(), 100.0 * static_cast<double>(sampler.getRMSDist()) / unit);
+    tell(("max_" + name).c_str(), 100.0 * static_cast<double>(sampler.getMaxDist()) / unit);
+}
+
+void check(const std::string& path, const std::string& reference_path) {
+    Mesh mesh;
+    const int mask = load(mesh, path);
+    std::cout.precision(9);
+    std::cout << "{\"vertices\": " << mesh.vn;
+    tell("faces", mesh.fn);
+    tell("quality", (mask & Mask::IOM_VERTQUALITY) != 0);
+    tell("color", (mask & Mask::IOM_VERTCOLOR) != 0);
+    tell("selected", vcg::tri::UpdateSelection<Mesh>::VertexCount(mesh));
+    if (mesh.fn > 0) tell_topology(mesh);
+    if (!reference_path.empty()) {
+        Mesh reference;
+        load(reference, reference_path);
+        const double unit = reference.bbox.Diag();
+        tell_distance("to_mesh", reference, mesh, unit);
+        tell_distance("to_reference", mesh, reference, unit);
+    }
+    std::cout << "}\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 2 || argc > 3) {
+        std::cerr << "Usage: check_mesh MESH [REFERENCE]\n";
+        return 2;
+    }
+    try {
+        check(argv[1], argc == 3 ? argv[2] : "");
+        return 0;
+    } catch (const std::exception& error) {
+        std::cerr << error.what() << '\n';
+        return 1;
+    }
+}

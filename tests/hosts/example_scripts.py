@@ -1,0 +1,38 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""Writes the scripts in filter_neuralmesh/scripts/ anew from the table of parameters.
+
+    tests/hosts/example_scripts.py BUILD_FOLDER
+
+meshlabserver 2020.09 aborts unless a script lists every parameter, so each of them does. Run this after a
+parameter has been added or a default has changed; test_scripts.py compares."""
+
+import sys
+from pathlib import Path
+
+import meshlabserver
+
+FOLDER = Path(__file__).resolve().parents[2] / "filter_neuralmesh" / "scripts"
+
+# File name -> what differs from the defaults.
+EXAMPLES = {
+    "reconstruct": {},
+    "preview": {"target_vertices": 2000},
+    "features": {"target_vertices": 5000, "select_features": True},
+    "evenly_spaced": {"target_vertices": 5000, "utility_counter": 1},
+    "selected_points": {"target_vertices": 2000, "selected_only": True, "draw_from_faces": False},
+}
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    FOLDER.mkdir(exist_ok=True)
+    for name, values in EXAMPLES.items():
+        print(meshlabserver.write_script(sys.argv[1], FOLDER / f"{name}.mlx", **values))
+
+
+if __name__ == "__main__":
+    main()

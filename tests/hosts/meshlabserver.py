@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""Running the filter in meshlabserver 2020.09 without touching the installed MeshLab.
+
+meshlabserver looks for plugins beside its own binary, so a copy of it gets a folder of its own with
+the format plugins and ours. Standard library only: run.sh's demo uses this, too."""
+
+import json
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+INSTALLED = Path("/usr/bin/meshlabserver")
+LIBRARIES = Path("/usr/lib/x86_64-linux-gnu/meshlab")
+NEIGHBOURS = ("libio_base.so", "libio_3ds.so", "libfilter_layer.so", "libfilter_select.so")
+HOST = "meshlab-2020.09"
+
+
+class ServerError(RuntimeError):
+    """meshlabserver did not do what it was asked; the message holds what it said."""
+
+
+def plugin_path(build, host=HOST):
+    return Path(build) / "plugins" / host / "libfilter_neuralmesh.so"
+
+
+def make_folder(folder, plugin):
+    """A folder with a meshlabserver that finds `plugin`; made anew at each call."""
+    folder = Path(folder)
+    shutil.rmtree(folder, ignore_errors=True)
+    (folder / "plugins").mkdir(parents=True)
+    folder.chmod(0o700)
+    shutil.copy(INSTALLED, folder / "meshlabserver")
+    for name in NEIGHBOURS:
+        (folder / "plugins" / name).symlink_to(LIBRARIES / "plugins" / name)
+    (folder / "plugins" / "libfilter_neuralmesh.so").symlink_to(Path(plugin).resolve())
+    return folder
+
+
+def environment(folder):
+    """Variables under which the word `meshlabserver` means the one in `folder`."""
+    return dict(os.environ, PATH=f"{folder}:{os.environ['PATH']}", LD_LIBRARY_PATH=str(LIBRARIES),
+                XDG_RUNTIME_DIR=str(folder), LC_ALL="C.UTF-8")
+
+
+def run(folder, *arguments, timeout=600):
+    """Runs meshlabserver under Xvfb. Returns (exit code, all it printed)."""
+    done = subprocess.run(["xvfb-run", "-a", "meshlabserver", *map(str, arguments)], env=environment(folder),
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
+                          timeout=timeout, check=False)
+    return done.returncode, done.stdout
+
+
+def reconstruct(folder, cloud, script, out):
+    """Runs `script` on `cloud` and saves the result with quality, colour and selection flags.
+    Returns the figures in the log. meshlabserver's exit code tells nothing of a failed save, so the file is looked at."""
+    out = Path(out)
+    out.unlink(missing_ok=True)
+    code, text = run(folder, "-i", cloud, "-o", out, "-m", "vq", "vc", "vf", "-s", script)
+    if code != 0 or not out.exists():
+        raise ServerError(text)
+    return figures(text)
+
+
+def figures(text):
+    """The figures of a run that the filter has written into the log, as a dictionary."""
+    lines = [line for line in text.splitlines() if "vertices=" in line and "stop_reason=" in line]
+    if not lines:
+        raise ServerError(text)
+    pairs = (word.split("=") for word in lines[-1].split() if "=" in word)
+    return {key: float(value) if key in ("rms_error", "mean_counter", "seconds") else int(value)
+            for key, value in pairs}
+
+
+def write_script(build, path, **values):
+    """A complete script with the filter's defaults and the given values."""
+    words = [f"{key}={str(value).lower() if isinstance(value, bool) else value}" for key, value in values.items()]
+    done = subprocess.run([str(Path(build) / "tests" / "write_mlx"), *words], check=True, stdout=subprocess.PIPE)
+    Path(path).write_bytes(done.stdout)
+    return Path(path)
+
+
+def check_mesh(build, mesh, reference=None):
+    """What vcglib says of a mesh file (tests/hosts/check_mesh.cpp), as a dictionary."""
+    files = [str(mesh)] + ([str(reference)] if reference else [])
+    done = subprocess.run([str(Path(build) / "tests" / "check_mesh"), *files], check=True, stdout=subprocess.PIPE)
+    return json.loads(done.stdout)

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// write_mlx [ID=VALUE ...]: a complete script for meshlabserver on the standard output, all parameters of
+// the filter with their defaults or the values given. (meshlabserver aborts on incomplete scripts.)
+// write_mlx --table: the parameters, one per line: id, type, low, high, default, advanced; for tests.
+#include <cstdlib>
+#include <iostream>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "filter_neuralmesh/actions.h"
+
+namespace {
+
+using namespace neuralmesh;
+using Kind = SettingInfo::Kind;
+
+const char* type_of(const SettingInfo& info) {
+    switch (info.kind) {
+        case Kind::boolean: return "RichBool";
+        case Kind::integer: return "RichInt";
+        case Kind::real: return "RichFloat";
+        case Kind::choice: return "RichEnum";
+    }
+    return "";
+}
+
+/// A default as MeshLab writes it into a script.
+std::string default_of(const SettingInfo& info) {
+    const double value = info.value(Settings());
+    if (info.kind == Kind::boolean) return value != 0 ? "true" : "false";
+    std::ostringstream text;
+    text << value;
+    return text.str();
+}
+
+void write_parameter(const SettingInfo& info, const std::string& value) {
+    std::cout << "  <Param type=\"" << type_of(info) << "\" name=\"" << info.id << "\" value=\"" << value << '"';
+    if (info.kind == Kind::choice) {
+        std::cout << " enum_cardinality=\"" << info.choices.size() << '"';
+        for (std::size_t i = 0; i < info.choices.size(); ++i)
+            std::cout << " enum_val" << i << "=\"" << info.choices[i] << '"';
+    }
+    std::cout << "/>\n";
+}
+
+void write_script(std::map<std::string, std::string> values) {
+    std::cout << "<!DOCTYPE FilterScript>\n<FilterScript>\n <filter name=\"" << action_of(kReconstruct).name << "\">\n";
+    for (const SettingInfo& info : setting_table()) {
+        const auto given = values.find(info.id);
+        write_parameter(info, given == values.end() ? default_of(info) : given->second);
+    }
+    std::cout << " </filter>\n</FilterScript>\n";
+}
+
+void write_table() {
+    std::cout.precision(17);
+    for (const SettingInfo& info : setting_table())
+        std::cout << info.id << ' ' << type_of(info) << ' ' << info.low << ' ' << info.high << ' ' << default_of(info)
+                  << ' ' << info.advanced << '\n';
+}
+
+bool is_id(const std::string& word) {
+    for (const SettingInfo& info : setting_table())
+        if (word == info.id) return true;
+    return false;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::map<std::string, std::string> values;
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (word == "--table") {
+            write_table();
+            return EXIT_SUCCESS;
+        }
+        const std::size_t equals = word.find('=');
+        if (equals == std::string::npos || !is_id(word.substr(0, equals))) {
+            std::cerr << word << " is not ID=VALUE with the id of a parameter; write_mlx --table lists them.\n";
+            return EXIT_FAILURE;
+        }
+        values[word.substr(0, equals)] = word.substr(equals + 1);
+    }
+    write_script(values);
+    return EXIT_SUCCESS;
+}
