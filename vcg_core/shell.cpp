@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "shell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "network.h"
+#include "shell_mesh.h"
+#include "shell_region.h"
+#include "shell_vote.h"
+
+namespace neuralmesh {
+namespace {
+
+using vcg::Box3f;
+using vcg::Point3f;
+
+constexpr std::size_t kLeastResolutions = 2,
+                      kResolutions = 5;  // lattices that vote; more if they cannot decide
+constexpr float kCoarser = 1.4F;
+constexpr double kLowConfidence = 0.5;   // of the votes
+constexpr double kWideOpeningSteps = 4;  // in lattice steps; gaps between points are narrower
+
+float longest_side(const Box3f& box) { return std::max({box.DimX(), box.DimY(), box.DimZ()}); }
+
+/// The box of the cloud without far outliers: while the groups that hold at least a hundredth of the points
+/// each, and nine tenths together, fit into a box half as long, that box is taken.
+Box3f main_box(const std::vector<Point3f>& points) {
+    constexpr int kCells = 32, kRounds = 8;
+    Box3f box;
+    for (const Point3f& p : points) box.Add(p);
+    for (int round = 0; round < kRounds; ++round) {
+        const float side = longest_side(box);
+        double cells = kCells;
+        std::vector<std::uint32_t> counts;
+        Lattice lattice(box, side / static_cast<float>(cells), 1);
+        for (counts = count_points(lattice, points); points_per_occupied_node(counts) < 4 && cells > 4;) {
+            cells *= 0.75;  // connected groups need cells wider than the gaps between points
+            lattice = Lattice(box, side / static_cast<float>(cells), 1);
+            counts = count_points(lattice, points);
+        }
+        const Box3f kept = box_of_large_groups(lattice, counts, 0.01, 0.9);
+        if (kept.IsNull() || longest_side(kept) > 0.5F * side) break;
+        box = kept;
+    }
+    return box;
+}
+
+/// The step of the finest lattice the options allow on which the cloud still looks like a surface.
+float step_for(const std::vector<Point3f>& points, const Box3f& box, const ShellOptions& options) {
+    const float side = longest_side(box);
+    float step = side / static_cast<float>(options.max_nodes_per_side - 2 * Region::kMargin);
+    while (static_cast<double>(Lattice(box, step, Region::kMargin).size()) > options.max_nodes) step *= 1.05F;
+    for (; step < side / 8; step *= 1.12F) {
+        const Lattice lattice(box, step, Region::kMargin);
+        if (points_per_occupied_node(count_points(lattice, points)) >= options.points_per_node) break;
+    }
+    return step;
+}
+
+/// The values marching tetrahedra want: negative in the solid at \p level.
+std::vector<float> signed_values(const Region& region, int level, const std::vector<std::uint8_t>& solid) {
+    const float radius = std::sqrt(static_cast<float>(level) + 0.5F);
+    std::vector<float> values(solid.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const float d = std::sqrt(static_cast<float>(region.distances[i])) - radius;
+        values[i] = solid[i] != 0 ? std::min(d, -0.2F) : std::max(d, 0.2F);
+    }
+    return values;
+}
+
+/// Every stride-th node of \p lattice, with an empty one more on each side.
+IndexedMesh mesh_with_stride(const Lattice& lattice, const std::vector<float>& values, int stride) {
+    const int pad = 1;
+    Lattice coarse = lattice;
+    coarse.nx = (lattice.nx + 2 * pad + stride - 1) / stride + 1;
+    coarse.ny = (lattice.ny + 2 * pad + stride - 1) / stride + 1;
+    coarse.nz = (lattice.nz + 2 * pad + stride - 1) / stride + 1;
+    coarse.step = lattice.step * static_cast<float>(stride);
+    coarse.origin = lattice.position(-pad, -pad, -pad);
+    std::vector<float> picked(coarse.size(), 1.0F);
+    for (int z = 0; z < coarse.nz; ++z)
+        for (int y = 0; y < coarse.ny; ++y)
+            for (int x = 0; x < coarse.nx; ++x) {
+                const int fx = x * stride - pad, fy = y * stride - pad, fz = z * stride - pad;
+                if (fx < 0 || fy < 0 || fz < 0 || fx >= lattice.nx || fy >= lattice.ny || fz >= lattice.nz)
+                    continue;
+                picked[coarse.index(x, y, z)] = values[lattice.index(fx, fy, fz)];
+            }
+    return marching_tetrahedra(coarse, picked);
+}
+
+/// A closed mesh of the cloud and where it comes from.
+struct Closed {
+    Network network;
+    int level = 0;
+    long long held = 0;  ///< points in it
+};
+
+Closed close_at(const Region& region, int level, int stride) {
+    Closed closed;
+    closed.level = level;
+    const std::vector<std::uint8_t> solid =
+        solid_of(region.lattice, region.clearance, region.counts, level, region.enough, closed.held);
+    const IndexedMesh mesh = mesh_with_stride(region.lattice, signed_values(region, level, solid), stride);
+    if (!mesh.faces.empty()) closed.network = Network(mesh.positions, mesh.faces);
+    return closed;
+}
+
+/// A mesh of the verdict's topology at one of the radii of its run, the smallest if possible, because the
+/// mesh lies that far outside the cloud; on every third or second node if that has the topology, because it
+/// is faster, else on every node, where the solid has it by count.
+Closed close(const Region& region, const Verdict& verdict) {
+    const std::vector<int>& levels = verdict.levels;
+    // Smallest radius, about the geometric mean, largest radius.
+    const std::vector<int> tried = {levels.front(), levels[levels.size() / 3], levels.back()};
+    for (const int level : tried)
+        for (const int stride : {3, 2}) {
+            Closed closed = close_at(region, level, stride);
+            if (closed.network.component_count() == verdict.components &&
+                closed.network.genus() == verdict.genus)
+                return closed;
+        }
+    return close_at(region, levels.front(), 1);
+}
+
+std::string percent(double value) {
+    const long long tenths = std::llround(value * 1000);
+    return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " %";
+}
+
+void add_warnings(const Verdict& verdict, long long total, StartMesh& result) {
+    if (verdict.lattice > 0)
+        result.warnings.push_back(
+            "The cloud is too sparse or too noisy for its finest shell: a coarser one was taken, which may "
+            "miss thin "
+            "gaps and small handles.");
+    if (!verdict.found || verdict.confidence < kLowConfidence)
+        result.warnings.push_back(
+            "The number of components and handles of the start mesh is uncertain, because it changes with "
+            "the "
+            "resolution: " +
+            std::to_string(result.components) + " component(s) of genus " + std::to_string(result.genus) +
+            " in total is the best guess. Parts of the surface may lie closer together than the points on "
+            "them.");
+    if (!result.encloses_space)
+        result.warnings.push_back(
+            "The points enclose no space wider than the gaps between them, as in a single scan, a sheet or a "
+            "thin "
+            "wall: the surface was closed around both of their sides.");
+    if (result.widest_opening > kWideOpeningSteps * result.resolution)
+        result.warnings.push_back("The cloud is open: holes up to " + percent(2 * result.widest_opening) +
+                                  " of the bounding-box diagonal wide were closed.");
+    if (result.ignored_points > 0)
+        result.warnings.push_back(
+            std::to_string(result.ignored_points) + " of " + std::to_string(total) +
+            " points were ignored by the start mesh as outliers: they lie in isolated groups "
+            "that hold less than 1 % of the points or fewer than " +
+            std::to_string(ShellOptions::kSpeckPoints) + ".");
+}
+
+void check(const ShellOptions& o) {
+    if (o.max_vertices < 4 || o.target_vertices < 4 || !(o.max_nodes >= 1000) || o.max_nodes_per_side < 16 ||
+        !(o.points_per_node >= 1) || !(o.component_share >= 0 && o.component_share < 1) || o.samples < 4)
+        throw SettingError(
+            "The options of the start mesh are out of range: at least 4 vertices, 1000 lattice nodes, 16 "
+            "nodes per "
+            "side, 1 point per node and 4 samples are needed, and a component share in [0, 1).");
+}
+
+std::vector<Point3f> drawn_points(const TargetSpace& target, int count, Random& random) {
+    std::vector<Point3f> points;
+    points.reserve(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) points.push_back(target.sample(random));
+    return points;
+}
+
+}  // namespace
+
+StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Random& random,
+                   Progress& progress) {
+    check(options);
+    progress(0.0, "Start mesh: measuring the density of the cloud");
+    std::vector<Point3f> drawn;
+    if (target.has_faces()) drawn = drawn_points(target, options.samples, random);
+    const std::vector<Point3f>& points = target.has_faces() ? drawn : target.positions();
+    const Box3f box = main_box(points);
+
+    progress(0.2, "Start mesh: counting components and handles");
+    std::vector<Region> regions;
+    Verdict verdict;
+    for (float step = step_for(points, box, options); regions.size() < kResolutions; step *= kCoarser) {
+        regions.push_back(examine(points, box, step, options.component_share, ShellOptions::kSpeckPoints));
+        std::vector<const std::vector<LevelTopology>*> topologies;
+        std::vector<double> steps;
+        for (const Region& region : regions) {
+            topologies.push_back(&region.topologies);
+            steps.push_back(static_cast<double>(region.lattice.step));
+        }
+        verdict = persistent_topology(topologies, steps);
+        if (verdict.found && regions.size() >= kLeastResolutions) break;
+    }
+    if (!verdict.found) {  // whatever the largest ball closes
+        verdict.lattice = static_cast<int>(regions.size()) - 1;
+        verdict.levels = {Region::kReach * Region::kReach};
+    }
+
+    progress(0.7, "Start mesh: building the mesh");
+    const Region& region = regions[static_cast<std::size_t>(verdict.lattice)];
+    Closed closed = close(region, verdict);
+    Network& network = closed.network;
+    if (network.vertex_count() == 0)
+        throw InputError(
+            "No part of the cloud holds enough points for a start mesh around it: start from a tetrahedron, "
+            "or remove "
+            "the scattered points first.");
+    StartMesh result;
+    result.components = network.component_count();
+    result.genus = network.genus();
+    simplify(network, std::max(std::min(options.max_vertices, options.target_vertices / 4),
+                               8 * (result.components + result.genus)));
+    network.compact();
+    for (VertexId v = 0; v < network.vertex_count(); ++v) result.positions.push_back(network.position(v));
+    result.faces = network.faces();
+
+    result.confidence = verdict.confidence;
+    result.persistence = verdict.persistence;
+    result.resolution = static_cast<double>(region.lattice.step);
+    result.radius = result.resolution * std::sqrt(static_cast<double>(closed.level));
+    result.widest_opening = region.widest_opening;
+    result.encloses_space = region.encloses_space;
+    result.ignored_points = static_cast<long long>(points.size()) - closed.held;
+    add_warnings(verdict, static_cast<long long>(points.size()), result);
+    progress(1.0, "Start mesh: done");
+    return result;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Which topology to believe: the one that persists over radii.
+#pragma once
+
+#include <vcg/space/box3.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "shell_field.h"
+
+namespace neuralmesh {
+
+/// The chosen topology and where it was found.
+struct Verdict {
+    bool found = false;  ///< false: no topology holds for two different radii
+    int components = 0;
+    int genus = 0;
+    double confidence = 0;    ///< share of the votes, in [0, 1]
+    double persistence = 1;   ///< largest through smallest radius of the run with most votes
+    int lattice = 0;          ///< which of the lattices has that run
+    std::vector<int> levels;  ///< the levels of that run, smallest radius first, up to twice that radius
+};
+
+/// Votes among the topologies found on several lattices, finest first; lattice i has steps of steps[i].
+/// A run is a range of radii a to b on one lattice with one and the same topology; it has 1/a - 1/b votes, if
+/// it covers at least two different distances. So persistence counts, and the finer of two equally persistent
+/// (in proportion) topologies wins: large radii only close handles and gaps. O(levels).
+Verdict persistent_topology(const std::vector<const std::vector<LevelTopology>*>& topologies,
+                            const std::vector<double>& steps);
+
+/// The nodes of the solid at \p level, without the components of fewer than \p enough points.
+/// \p held: the number of points in it.
+std::vector<std::uint8_t> solid_of(const Lattice& lattice, const std::vector<Level>& clearance,
+                                   const std::vector<std::uint32_t>& counts, int level, long long enough,
+                                   long long& held);
+
+/// The box of all groups of adjacent occupied nodes that hold at least \p share of the points each; null if
+/// they do not hold \p together of the points. O(nodes).
+vcg::Box3f box_of_large_groups(const Lattice& lattice, const std::vector<std::uint32_t>& counts, double share,
+                               double together);
+
+}  // namespace neuralmesh
