@@ -34,7 +34,7 @@ void WindowMean::add(double value) {
 
 void UtilityCounters::resize(int slots) {
     const auto size = static_cast<std::size_t>(slots);
-    keys_.resize(size, kNone);
+    keys_.resize(size, kZero);
     wins_.resize(size, 0);
     std::size_t level = 0;
     for (std::size_t n = size;; n = (n + kWidth - 1) / kWidth) {
@@ -68,7 +68,7 @@ void UtilityCounters::enter(VertexId v, double key) {
 }
 
 double UtilityCounters::scaled(double key) const {
-    if (key == kNone) return 0;
+    if (key == kZero) return 0;
     const double exponent = std::floor(key);
     const double shift = std::max(exponent - unit_exponent_, -2000.0);
     return std::ldexp(1 + (key - exponent), static_cast<int>(shift));
@@ -79,7 +79,7 @@ double UtilityCounters::value(VertexId v) const { return scaled(keys_[static_cas
 void UtilityCounters::win(VertexId v, double amount) {
     const auto i = static_cast<std::size_t>(v);
     const double now = scaled(keys_[i]) + amount * unit_mantissa_;
-    keys_[i] = now > 0 ? key_of(now, unit_exponent_) : kNone;
+    keys_[i] = now > 0 ? key_of(now, unit_exponent_) : kZero;
     if (++wins_[i] >= maturity_) enter(v, keys_[i]);
     unit_mantissa_ /= decay_;
     while (unit_mantissa_ >= 2) {
@@ -93,7 +93,7 @@ void UtilityCounters::share(VertexId v, VertexId u, double of_v, double of_u) {
     const double sum = of_v + of_u;
     const double part = sum > 0 ? of_v / sum : 0.5;
     const auto store = [&](VertexId w, double value) {
-        keys_[static_cast<std::size_t>(w)] = value > 0 ? key_of(value, unit_exponent_) : kNone;
+        keys_[static_cast<std::size_t>(w)] = value > 0 ? key_of(value, unit_exponent_) : kZero;
         wins_[static_cast<std::size_t>(w)] = 0;
         enter(w, maturity_ == 0 ? keys_[static_cast<std::size_t>(w)] : kNone);
     };
@@ -102,9 +102,15 @@ void UtilityCounters::share(VertexId v, VertexId u, double of_v, double of_u) {
 }
 
 void UtilityCounters::remove(VertexId v) {
-    keys_[static_cast<std::size_t>(v)] = kNone;
+    keys_[static_cast<std::size_t>(v)] = kZero;
     wins_[static_cast<std::size_t>(v)] = 0;
     enter(v, kNone);
+}
+
+void UtilityCounters::waive_maturity() {
+    maturity_ = 0;
+    for (std::size_t v = 0; v < keys_.size(); ++v)
+        if (keys_[v] != kZero) enter(static_cast<VertexId>(v), keys_[v]);
 }
 
 VertexId UtilityCounters::highest() const {

@@ -55,12 +55,15 @@ public:
     void remove(VertexId v);
     /// v has been tried in vain: it counts as immature until its next win. O(log n).
     void pass_over(VertexId v) { enter(v, kNone); }
+    /// From now on highest() passes nobody over. O(n).
+    void waive_maturity();
     /// The mature vertex with the highest counter, the smaller id among equals; -1 if none is mature.
     /// O(log n).
     VertexId highest() const;
 
 private:
-    static constexpr double kNone = -1e300;
+    static constexpr double kNone = -1e300;  ///< no entry in the tournament
+    static constexpr double kZero = -1e299;  ///< the counter is 0: last, but in
     static constexpr std::size_t kWidth = 8;  ///< children per node: one cache line of doubles
 
     double scaled(double key) const;

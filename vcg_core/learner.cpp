@@ -31,7 +31,11 @@ double voronoi_area(const Network& network, VertexId v) {
     return l * l;
 }
 
+/// Cosine between the faces before and after a flip: above it the flip is one in the surface, not of it.
+constexpr float kFlatEnough = 0.95F;
 constexpr int kSplitCandidates = 32;  ///< tried before a split is put off
+constexpr int kReportEvery = 1000;    ///< signals between two looks at the progress and at the stop criteria
+constexpr double kDegreesPerRadian = 57.29577951308232;
 
 }  // namespace
 
@@ -55,25 +59,26 @@ Learner::Learner(const TargetSpace& target, const Settings& settings, Network st
 }
 
 StopReason Learner::run(Progress& progress) {
-    const int target_vertices = settings_.target_vertices;
-    const std::int64_t report_every = 1000;
-    while (network_.vertex_count() < target_vertices) {
+    while (network_.vertex_count() < settings_.target_vertices) {
         basic_step(target_.sample(random_));
         if (signals_ % settings_.signals_per_split == 0) vertex_split();
         if (due_for_collapse()) half_edge_collapse();
 
-        if (signals_ % report_every != 0) continue;
-        char text[80];
-        std::snprintf(text, sizeof text, "Learning: %d of %d vertices, %lld signals", network_.vertex_count(),
-                      target_vertices, static_cast<long long>(signals_));
-        if (!progress(static_cast<double>(network_.vertex_count()) / target_vertices, text))
-            return StopReason::cancelled;
-        if (settings_.stop_below_mean_counter > 0 && mean_counter() < settings_.stop_below_mean_counter)
-            return StopReason::converged;
+        if (signals_ % kReportEvery != 0) continue;
+        if (!report("Learning", progress)) return StopReason::cancelled;
+        if (mean_turn() < settings_.stop_below_mean_counter) return StopReason::converged;  // eq 8
+        if (signals_ >= growth_budget()) force_growth();
         if (signals_ >= signal_bound()) return StopReason::cut_short;
     }
     return settle(settings_.settling_signals_per_vertex, progress) ? StopReason::target_reached
                                                                    : StopReason::cancelled;
+}
+
+bool Learner::report(const char* doing, Progress& progress) const {
+    char text[96];
+    std::snprintf(text, sizeof text, "%s: %d of %d vertices, %lld signals", doing, network_.vertex_count(),
+                  settings_.target_vertices, static_cast<long long>(signals_));
+    return progress(static_cast<double>(network_.vertex_count()) / settings_.target_vertices, text);
 }
 
 void Learner::basic_step(const vcg::Point3f& s) {
@@ -122,50 +127,63 @@ bool Learner::try_split(VertexId v) {
     const Halving half = halve_star(v, longest);
     if (half.count == 0) return false;
 
+    const VertexId e2 = ring[half.first];
+    const VertexId e1 = ring[(half.first + half.count - 1) % ring.valence];
     const vcg::Point3f midpoint = (p + network_.position(ring[longest])) / 2;
     const VertexId u = network_.split(v, half.first, half.count, midpoint);
+    adopt(u, v);
+    search_.keep_up();
+    if (!to_the_letter())
+        for (const VertexId w : {v, u, e1, e2}) regularise(w);
+    ++splits_;
+    return true;
+}
+
+/// Enters the new vertex u, split off v, everywhere a vertex is known.
+void Learner::adopt(VertexId u, VertexId v) {
     search_.add(u);
     utility_counters_.resize(network_.slot_count());
     feature_counters_.resize(network_.slot_count());
     last_active_.resize(static_cast<std::size_t>(network_.slot_count()));
     utility_counters_.share(v, u, voronoi_area(network_, v), voronoi_area(network_, u));
     feature_counters_.inherit(v, u);
-    last_active_[static_cast<std::size_t>(u)] = signals_;
-    search_.keep_up();
-    ++splits_;
-    return true;
+    // A vertex that was not there at the last call of Half-Edge Collapse has not been inactive since.
+    last_active_[static_cast<std::size_t>(u)] = to_the_letter() ? 0 : signals_;
 }
 
-/// From the longest edge e equally far both ways to e1 and e2. Where the star has an odd number of edges to
-/// give, the side whose end has the smaller valence gets one more.
+/// From the longest edge e both ways to e1 and e2, so that the star is halved. "Equally" leaves a choice of one
+/// edge more or less on either side: the one that leaves the most regular valences.
 Learner::Halving Learner::halve_star(VertexId v, int longest) const {
     const Ring& ring = network_.ring(v);
     const int k = ring.valence;
-    const int steps = k / 2;  // on both sides together
-    const auto option = [&](int back, int ahead) -> Halving {
-        int first = longest - back;
-        int count = back + ahead + 1;
-        if (ring.open != 0) {
-            const int end = std::min(first + count, k);
-            first = std::max(first, 0);
-            count = end - first;
-        } else if (first < 0) {
-            first += k;
+    Halving best{0, 0};
+    int least = std::numeric_limits<int>::max();
+    const auto irregularity = [](int valence) { return (valence - 6) * (valence - 6); };
+    for (int back = 1; back <= k / 2; ++back) {
+        for (int ahead = 1; ahead <= k / 2; ++ahead) {
+            if (std::abs(back - ahead) > 1 || std::abs(2 * (back + ahead) - k) > 1) continue;
+            const int count = back + ahead + 1;
+            const int first = (longest - back + k) % k;
+            if (!network_.can_split(v, first, count)) continue;
+            const int cost = irregularity(count + 1) + irregularity(k - count + 3) +
+                             irregularity(network_.ring(ring[first]).valence + 1) +
+                             irregularity(network_.ring(ring[(first + count - 1) % k]).valence + 1);
+            if (cost >= least) continue;
+            least = cost;
+            best = {first, count};
         }
-        return network_.can_split(v, first, count) ? Halving{first, count} : Halving{0, 0};
-    };
-    const auto ends = [&](const Halving& h) {
-        return h.count == 0 ? std::numeric_limits<int>::max()
-                            : network_.ring(ring[h.first]).valence +
-                                  network_.ring(ring[(h.first + h.count - 1) % k]).valence;
-    };
-    const Halving a = option(steps / 2, steps - steps / 2);
-    const Halving b = option(steps - steps / 2, steps / 2);
-    return ends(b) < ends(a) ? b : a;
+    }
+    return best;
+}
+
+void Learner::force_growth() {
+    if (forced_) return;
+    forced_ = true;
+    utility_counters_.waive_maturity();
 }
 
 bool Learner::due_for_collapse() const {
-    return signals_ - last_collapse_ >= std::int64_t{vertices_at_collapse_} * settings_.signals_per_collapse;
+    return !forced_ && signals_ - last_collapse_ >= std::int64_t{vertices_at_collapse_} * settings_.signals_per_collapse;
 }
 
 int Learner::half_edge_collapse() {
@@ -177,6 +195,7 @@ int Learner::half_edge_collapse() {
         search_.remove(v);
         utility_counters_.remove(v);
         network_.collapse(v, kept);
+        if (!to_the_letter()) regularise(kept);
         ++removed;
     }
     search_.keep_up();
@@ -205,22 +224,54 @@ VertexId Learner::best_collapse(VertexId gone) const {
     return best;
 }
 
+/// Flips the edges of v whose flip brings the valences closer to 6 and leaves the shape as it is.
+void Learner::regularise(VertexId v) {
+    for (int i = 0; i < network_.ring(v).valence; ++i) {
+        const VertexId w = network_.ring(v)[i];
+        if (network_.can_flip(v, w) && flip_regularises(v, w)) network_.flip(v, w);
+    }
+}
+
+bool Learner::flip_regularises(VertexId a, VertexId b) const {
+    const Ring& ring = network_.ring(a);
+    const int i = ring.find(b);
+    const VertexId c = ring.next(i);
+    const VertexId d = ring.previous(i);
+    const auto excess = [&](VertexId v) { return network_.ring(v).valence - 6; };
+    // Sum of squared excesses before minus after: a and b lose an edge, c and d gain one.
+    if (excess(a) + excess(b) - excess(c) - excess(d) <= 2) return false;
+    const vcg::Point3f pa = network_.position(a);
+    const vcg::Point3f pb = network_.position(b);
+    const vcg::Point3f pc = network_.position(c);
+    const vcg::Point3f pd = network_.position(d);
+    const auto normal = [](const vcg::Point3f& p, const vcg::Point3f& q, const vcg::Point3f& r) {
+        vcg::Point3f n = (q - p) ^ (r - p);
+        return n.Normalize();
+    };
+    const vcg::Point3f before[] = {normal(pa, pb, pc), normal(pb, pa, pd)};
+    const vcg::Point3f after[] = {normal(pa, pd, pc), normal(pb, pc, pd)};
+    for (const auto& n : before)
+        for (const auto& m : after)
+            if (n * m < kFlatEnough) return false;
+    return true;
+}
+
 bool Learner::settle(int per_vertex, Progress& progress) {
     const std::int64_t end = signals_ + std::int64_t{per_vertex} * network_.vertex_count();
     while (signals_ < end) {
         basic_step(target_.sample(random_));
-        if (signals_ % 1000 != 0) continue;
-        char text[80];
-        std::snprintf(text, sizeof text, "Settling: %d vertices, %lld signals", network_.vertex_count(),
-                      static_cast<long long>(signals_));
-        if (!progress(1, text)) return false;
+        if (signals_ % kReportEvery == 0 && !report("Settling", progress)) return false;
     }
     return true;
 }
 
-std::int64_t Learner::signal_bound() const {
+std::int64_t Learner::growth_budget() const {
     const std::int64_t per_vertex = 4 * std::int64_t{settings_.signals_per_split} + 2 * settings_.min_wins_per_split;
     return per_vertex * settings_.target_vertices + 100000;
+}
+
+std::int64_t Learner::signal_bound() const {
+    return growth_budget() + 2 * std::int64_t{settings_.signals_per_split} * settings_.target_vertices;
 }
 
 double Learner::mean_counter() const {
@@ -228,6 +279,11 @@ double Learner::mean_counter() const {
     for (VertexId v = 0; v < network_.slot_count(); ++v)
         if (network_.alive(v)) sum += static_cast<double>(feature_counters_.value(v));
     return sum / network_.vertex_count();
+}
+
+double Learner::mean_turn() const {
+    // delta = 1 - cos(angle), which is angle^2 / 2 for the small angles in question.
+    return kDegreesPerRadian * std::sqrt(2 * mean_delta_.mean());
 }
 
 }  // namespace neuralmesh

@@ -45,8 +45,14 @@ public:
     /// mesh. False if \p progress asked to stop.
     bool settle(int per_vertex, Progress& progress);
 
-    /// Growth to n vertices ends within this many signals. See the proof beside its definition.
+    /// Learning is cut short after this many signals before settling. Growth that has not come to its target
+    /// after growth_budget() signals is forced: no more collapses, no more maturity, so that every C_vs signals
+    /// add a vertex. (It stalls where more vertices are asked for than the target space has places to win:
+    /// a handful of points, say.) So growth ends; the bound leaves twice what forcing needs.
+    std::int64_t growth_budget() const;
     std::int64_t signal_bound() const;
+    /// True once growth had to be forced.
+    bool forced() const { return forced_; }
 
     const Network& network() const { return network_; }
     const FeatureCounters& feature_counters() const { return feature_counters_; }
@@ -54,8 +60,11 @@ public:
     std::int64_t signals() const { return signals_; }
     std::int64_t splits() const { return splits_; }
     std::int64_t collapses() const { return collapses_; }
-    /// Mean(n_c) of the feature counters.
+    /// Mean(n_c) of the feature counters. Close to 1 whatever the mesh, because of the normalisation of eq 3.
     double mean_counter() const;
+    /// Mean(n_c) without that normalisation, as an angle in degrees: by how much the winner's normal turns in
+    /// one Basic Step, root of the mean square over the last C_delta signals. This is what eq 8 stops at.
+    double mean_turn() const;
 
 private:
     struct Halving {
@@ -63,10 +72,16 @@ private:
         int count;
     };
 
+    bool to_the_letter() const { return settings_.min_wins_per_split == 0; }
+    bool report(const char* doing, Progress& progress) const;
     bool due_for_collapse() const;
+    void force_growth();
     Halving halve_star(VertexId v, int longest) const;
     bool try_split(VertexId v);
     VertexId best_collapse(VertexId gone) const;
+    void regularise(VertexId v);
+    bool flip_regularises(VertexId a, VertexId b) const;
+    void adopt(VertexId u, VertexId v);
     void learn_counters(VertexId w, double delta);
 
     const TargetSpace& target_;
@@ -84,6 +99,7 @@ private:
     std::int64_t collapses_ = 0;
     std::int64_t last_collapse_ = 0;
     int vertices_at_collapse_ = 0;
+    bool forced_ = false;
 };
 
 }  // namespace neuralmesh
