@@ -202,26 +202,28 @@ def render(pictures, size=(600, 600), background=(255, 255, 255), margin=0.03):
     return [cut_to_size(drawing, size) for drawing in snapshots(pictures, matrices, size, background)]
 
 
-def parse_direction(text):
-    """A named view or three numbers "x,y,z"."""
-    if text in VIEWS:
-        return VIEWS[text]
-    values = tuple(float(word) for word in text.split(","))
-    if len(values) != 3:
-        raise argparse.ArgumentTypeError("a direction is a name (front, back, ...) or three numbers x,y,z")
+def parse_numbers(text, count, separator, kind, meaning):
+    """`count` numbers; throws argparse's error, which says what the option means."""
+    try:
+        values = tuple(kind(word) for word in text.split(separator))
+    except ValueError:
+        values = ()
+    if len(values) != count:
+        raise argparse.ArgumentTypeError(f"'{text}' is not {meaning}")
     return values
 
 
+def parse_direction(text):
+    return VIEWS.get(text) or parse_numbers(text, 3, ",", float, f"one of {', '.join(VIEWS)} or x,y,z")
+
+
 def parse_size(text):
-    width, height = text.lower().split("x")
-    return int(width), int(height)
+    return parse_numbers(text.lower(), 2, "x", int, "a size such as 600x400")
 
 
 def parse_color(text):
-    if text == "white":
-        return 255, 255, 255
-    values = tuple(int(word) for word in text.split(","))
-    if len(values) != 3 or not all(0 <= value <= 255 for value in values):
+    values = (255, 255, 255) if text == "white" else parse_numbers(text, 3, ",", int, "white or r,g,b")
+    if not all(0 <= value <= 255 for value in values):
         raise argparse.ArgumentTypeError("a colour is three numbers r,g,b from 0 to 255")
     return values
 
@@ -259,8 +261,8 @@ def parse_arguments(arguments):
 
 def sheet_of(options):
     """Rows of Pictures: one row per style and one column per mesh, or all of one mesh in one row."""
-    rows = [[Picture(mesh, style, color or options.color, options.view, options.up, options.line_width, options.point_size,
-                     fit_to=[other for other in options.meshes if other != mesh])
+    rows = [[Picture(mesh, style, color or options.color, options.view, options.up, options.line_width,
+                     options.point_size, fit_to=[other for other in options.meshes if other != mesh])
              for mesh in options.meshes] for style, color in options.style]
     if len(options.meshes) == 1:
         rows = [[row[0] for row in rows]]

@@ -10,5 +10,5 @@ here=$(cd "$(dirname "$0")" && pwd)
 project=$(cd "$here/../.." && pwd)
 plugin=${1:-$project/build/plugins/meshlab-2020.09/libfilter_neuralmesh.so}
 cloud=${2:-$project/out/cloud/bunny_points.ply}
-exec "${PYTHON:-python3}" "$here/gui_filter.py" --plugin "$plugin" --cloud "$cloud" \
+exec "${PYTHON:-/usr/bin/python3}" "$here/gui_filter.py" --plugin "$plugin" --cloud "$cloud" \
     --out "${3:-$project/out/gui}"
