@@ -15,13 +15,11 @@ files is not timed.
 import json
 import os
 import re
-import resource
 import shlex
 import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 from pathlib import Path
 
@@ -113,7 +111,8 @@ def decimated(meshes, count):
 
 
 def _peak_mb():
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    """The most memory this process ever held. Not getrusage's, which counts the parent's before exec, too."""
+    return int(re.search(r"VmHWM:\s*(\d+)", Path("/proc/self/status").read_text()).group(1)) / 1024
 
 
 def run_peer(name, cloud, folder, counts):
@@ -180,48 +179,60 @@ def run(method, cloud, folder, counts, plugin=None, command=None, settings=None,
     if command:
         return {n: _run_command([*shlex.split(command), str(cloud), str(folder / f"{n}.ply"), f"target_vertices={n}",
                                  *extra], timeout) for n in counts}
-    words = [sys.executable, __file__, method, str(cloud), str(folder)]
+    words = [sys.executable, str(Path(__file__).resolve()), method, str(cloud), str(folder)]
     # One process each for ours, whose runs share nothing; a peer's share the reconstruction.
     jobs = [[n] for n in counts] if plugin else [counts]
     results = {}
     for job in jobs:
         more = [f"plugin={plugin}", *extra] if plugin else []
-        output, _, _ = _started([*words, "vertices=" + ",".join(map(str, job)), *more], timeout)
+        output, _ = _started([*words, "vertices=" + ",".join(map(str, job)), *more], timeout)
         results.update((int(n), figures) for n, figures in json.loads(output.strip().splitlines()[-1]).items())
     return results
 
 
 def _run_command(words, timeout):
     """Times a command as a whole, files included, unless it prints its own seconds as JSON or as 'seconds: X'."""
-    output, wall, usage = _started(words, timeout)
+    output, used = _started(words, timeout)
     own = re.search(r'"?\bseconds"?\s*[:=]\s*([0-9.eE+-]+)', output)
-    return {"seconds": float(own.group(1)) if own else wall, "cpu_seconds": usage.ru_utime + usage.ru_stime,
-            "peak_mb": usage.ru_maxrss / 1024, "output": output.strip()}
+    return {"seconds": float(own.group(1)) if own else used["wall"], "cpu_seconds": used["cpu"],
+            "peak_mb": used["peak_mb"], "output": output.strip()}
+
+
+# Stands between us and the process measured: a child's peak memory includes what its parent held when it was started,
+# and that is little here.
+_LAUNCHER = """
+import json, os, sys
+pid = os.posix_spawnp(sys.argv[2], sys.argv[2:], os.environ)
+_, status, usage = os.wait4(pid, 0)
+with open(sys.argv[1], "w") as told:
+    json.dump({"code": os.waitstatus_to_exitcode(status), "cpu": usage.ru_utime + usage.ru_stime,
+               "peak_mb": usage.ru_maxrss / 1024}, told)
+"""
 
 
 def _started(words, timeout):
-    """Runs a process to its end. Returns its standard output, wall seconds and resource usage."""
-    with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryFile("w+") as errors:
+    """Runs a process to its end. Returns its standard output and {wall, cpu, peak_mb}."""
+    with tempfile.TemporaryDirectory() as scratch:
+        told = Path(scratch, "used.json")
         clock = Clock()
+        process = subprocess.Popen([sys.executable, "-I", "-S", "-c", _LAUNCHER, told, *words], text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
         try:
-            process = subprocess.Popen(words, stdout=output, stderr=errors)
-        except OSError as error:
-            raise PeerError(f"{words[0]} could not be started: {error}") from error
-        alarm = threading.Timer(timeout, process.kill)
-        alarm.start()
-        # wait4 tells the usage of this one process, where getrusage would give the maximum of all so far.
-        _, status, usage = os.wait4(process.pid, 0)
-        alarm.cancel()
-        wall, code = clock.read()[0], os.waitstatus_to_exitcode(status)
-        process.returncode = code
-        output.seek(0)
-        errors.seek(0)
-        if code == -signal.SIGKILL and wall >= timeout:
-            raise PeerError(f"{' '.join(words[:3])} took longer than {timeout} seconds.")
-        if code != 0:
-            said = (errors.read().strip() or output.read().strip())[-500:]
-            raise PeerError(f"{' '.join(words[:3])} ended with code {code}: {said}")
-        return output.read(), wall, usage
+            output, errors = process.communicate(timeout=timeout)
+        except BaseException as error:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
+            if isinstance(error, subprocess.TimeoutExpired):
+                raise PeerError(f"{' '.join(words[:3])} took longer than {timeout} seconds.") from None
+            raise
+        used = {"wall": clock.read()[0]}
+        if not told.exists():
+            raise PeerError(f"{words[0]} could not be started: {errors.strip()[-200:]}")
+        used.update(json.loads(told.read_text()))
+        if used["code"] != 0:
+            raise PeerError(f"{' '.join(words[:3])} ended with code {used['code']}: "
+                            f"{(errors.strip() or output.strip())[-500:]}")
+        return output, used
 
 
 def main(arguments):
