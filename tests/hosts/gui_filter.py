@@ -74,8 +74,11 @@ def start_in_root(session, root, plugin, cloud):
     home.chmod(0o700)
     (home / "config" / "VCG" / "MeshLab_64bit_fp.conf").write_text(SETTINGS)
     shutil.copy(cloud, home / "cloud.ply")
+    # Plugins of ours from an earlier run would be loaded as well.
+    for earlier in (root / PLUGINS.relative_to("/")).glob("libfilter_neuralmesh*"):
+        earlier.unlink()
     if plugin.resolve().parent != PLUGINS:
-        shutil.copy(plugin, root / str(PLUGINS).lstrip("/"))
+        shutil.copy(plugin, root / PLUGINS.relative_to("/"))
     inside = "/tmp/neural_mesh_gui"
     session.start(["unshare", "--mount", "sh", "-c", ENTER_ROOT, str(root)], HOME=inside,
                   XDG_CONFIG_HOME=inside + "/config", XDG_RUNTIME_DIR=inside)
