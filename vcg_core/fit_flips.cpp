@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Which edges to flip: judged all at once from the same state, then flipped greedily.
+#include "fit_flips.h"
+
+#include <algorithm>
+
+#include "fit_parallel.h"
+
+namespace neuralmesh {
+
+namespace {
+
+constexpr float kSliver = 0.1F;  ///< triangle_quality() that a new face must have, unless the old ones were worse
+/// Cosine of the largest angle by which the normals of the new faces may differ from the mean of the old.
+constexpr float kLeastTurn = 0.5F;
+constexpr float kSharpestFold = -0.6F;  ///< cosine between the normals of neighbouring faces
+constexpr float kFlat = 0.995F;         ///< cosine between normals from which the shape of the faces may decide
+
+struct Candidate {
+    float gain;
+    VertexId a, b;
+};
+
+/// An inner edge a-b with its faces f = (a, b, c) and g = (b, a, d).
+struct Quad {
+    VertexId a, b, c, d;
+    int f, g;
+};
+
+int face_with(const Surface& surface, VertexId a, VertexId b, VertexId c) {
+    for (int i = surface.first_face[index(a)]; i < surface.first_face[index(a) + 1]; ++i) {
+        const Triangle& face = surface.faces[index(surface.face_of[index(i)])];
+        for (std::size_t k = 0; k < 3; ++k)
+            if (face[k] == a && face[(k + 1) % 3] == b && face[(k + 2) % 3] == c) return surface.face_of[index(i)];
+    }
+    return -1;
+}
+
+Vec normal_of(const Vec& a, const Vec& b, const Vec& c) { return (b - a).cross(c - a).normalized(); }
+
+class Judge {
+public:
+    Judge(const Network& network, const Surface& surface, const FacePoints& points)
+        : network_(network), surface_(surface), points_(points) {}
+
+    /// Drop of the sum of squared distances by the flip of \p q; negative if the flip is out of the question.
+    float gain(const Quad& q, float least_gain) const {
+        const Vec& a = at(q.a);
+        const Vec& b = at(q.b);
+        const Vec& c = at(q.c);
+        const Vec& d = at(q.d);
+        const Vec old_f = normal_of(a, b, c);
+        const Vec old_g = normal_of(b, a, d);
+        const Vec new_f = normal_of(c, d, b);
+        const Vec new_g = normal_of(d, c, a);
+        const Vec mean = (old_f + old_g).normalized();
+        if (!(new_f.dot(mean) > kLeastTurn && new_g.dot(mean) > kLeastTurn)) return -1;
+        const float old_quality = std::min(triangle_quality(a, b, c), triangle_quality(b, a, d));
+        const float new_quality = std::min(triangle_quality(c, d, b), triangle_quality(d, c, a));
+        if (new_quality < std::min(kSliver, old_quality)) return -1;
+        if (folds(q, new_f, new_g)) return -1;
+        const float drop = distance_drop(q);
+        if (drop > least_gain) return drop;
+        const bool indifferent = drop > -0.25F * least_gain && old_f.dot(old_g) > kFlat && new_f.dot(new_g) > kFlat;
+        return indifferent && new_quality > 1.2F * old_quality ? 0.0F : -1.0F;
+    }
+
+private:
+    const Vec& at(VertexId v) const { return surface_.at[index(v)]; }
+
+    float distance_drop(const Quad& q) const {
+        float drop = 0;
+        for (const int face : {q.f, q.g}) {
+            for (int i = points_.first[index(face)]; i < points_.first[index(face) + 1]; ++i) {
+                const FacePoints::Tie& tie = points_.ties[index(i)];
+                const float f = foot_on_triangle(tie.point, at(q.c), at(q.d), at(q.b)).squared_distance;
+                const float g = foot_on_triangle(tie.point, at(q.d), at(q.c), at(q.a)).squared_distance;
+                drop += tie.influence * (tie.foot.squared_distance - std::min(f, g));
+            }
+        }
+        return drop;
+    }
+
+    /// The new faces fold sharply onto each other or onto a face around the quad.
+    bool folds(const Quad& q, const Vec& new_f, const Vec& new_g) const {
+        if (new_f.dot(new_g) < kSharpestFold) return true;
+        return folds_over(q.b, q.c, q.a, new_f) || folds_over(q.d, q.b, q.a, new_f) ||
+               folds_over(q.c, q.a, q.b, new_g) || folds_over(q.a, q.d, q.b, new_g);
+    }
+
+    /// The face beyond the edge x-y, seen from the one with vertex \p inner, against \p normal.
+    bool folds_over(VertexId x, VertexId y, VertexId inner, const Vec& normal) const {
+        const Ring& ring = network_.ring(x);
+        const int i = ring.find(y);
+        if (ring.open != 0 && (i == 0 || i + 1 == ring.valence)) return false;
+        const VertexId outer = ring.next(i) == inner ? ring.previous(i) : ring.next(i);
+        // x, y, inner is counter-clockwise or not; the outer face has x and y the other way round.
+        const Vec n = ring.next(i) == inner ? normal_of(at(y), at(x), at(outer)) : normal_of(at(x), at(y), at(outer));
+        return n.dot(normal) < kSharpestFold;
+    }
+
+    const Network& network_;
+    const Surface& surface_;
+    const FacePoints& points_;
+};
+
+}  // namespace
+
+int flip_edges(Network& network, const Surface& surface, const FacePoints& points, float least_gain, int threads) {
+    constexpr std::size_t kChunk = 256;
+    const Judge judge(network, surface, points);
+    const auto slots = index(network.slot_count());
+    std::vector<std::vector<Candidate>> found((slots + kChunk - 1) / kChunk);
+    for_chunks(slots, kChunk, threads, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+            const auto a = static_cast<VertexId>(s);
+            const Ring& ring = network.ring(a);
+            for (int i = 0; i < ring.valence; ++i) {
+                const VertexId b = ring[i];
+                if (b < a || !network.can_flip(a, b)) continue;
+                Quad q{a, b, ring.next(i), ring.previous(i), 0, 0};
+                q.f = face_with(surface, a, b, q.c);
+                q.g = face_with(surface, b, a, q.d);
+                const float gain = judge.gain(q, least_gain);
+                if (gain >= 0) found[chunk].push_back({gain, a, b});
+            }
+        }
+    });
+    std::vector<Candidate> all;
+    for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+    std::stable_sort(all.begin(), all.end(), [](const Candidate& x, const Candidate& y) { return x.gain > y.gain; });
+    // Quads with a face in common share three vertices.
+    std::vector<char> touched(slots, 0);
+    int flips = 0;
+    for (const Candidate& candidate : all) {
+        const Ring& ring = network.ring(candidate.a);
+        const int i = ring.find(candidate.b);
+        if (i < 0 || !network.can_flip(candidate.a, candidate.b)) continue;
+        const std::array<VertexId, 4> corners{candidate.a, candidate.b, ring.next(i), ring.previous(i)};
+        if (std::count_if(corners.begin(), corners.end(), [&](VertexId v) { return touched[index(v)] != 0; }) > 2)
+            continue;
+        network.flip(candidate.a, candidate.b);
+        for (const VertexId v : corners) touched[index(v)] = 1;
+        ++flips;
+    }
+    return flips;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// What keeps a solution of the least squares from breaking the surface.
+#include <algorithm>
+#include <cmath>
+
+#include "fit_solve.h"
+
+namespace neuralmesh {
+
+namespace {
+
+constexpr float kLongestMove = 0.5F;    ///< in mean lengths of the vertex's edges
+constexpr float kLeastTurn = 0.3F;      ///< cosine between a face's normals before and after
+constexpr float kSharpestFold = -0.6F;  ///< cosine between the normals of neighbouring faces
+constexpr float kSliver = 0.06F;        ///< triangle_quality() below which a face may not fall
+constexpr int kHalvings = 5;            ///< before the vertices of an offending face stay where they are
+
+class Mover {
+public:
+    Mover(const Network& network, const Surface& surface, const std::vector<Vec>& u)
+        : network_(network), surface_(surface), move_(u), moved_(surface.at) {
+        for (VertexId v = 0; v < network.slot_count(); ++v) {
+            const Ring& ring = network.ring(v);
+            if (ring.valence == 0) continue;
+            float length = 0;
+            for (int i = 0; i < ring.valence; ++i) length += (surface.at[index(ring[i])] - surface.at[index(v)]).norm();
+            const float bound = kLongestMove * length / static_cast<float>(ring.valence);
+            const float norm = move_[index(v)].norm();
+            if (norm > bound) move_[index(v)] *= bound / norm;
+            if (!(norm >= 0)) move_[index(v)].setZero();
+        }
+        normals_ = normals(surface.at);
+    }
+
+    std::vector<Vec> run() {
+        // Every pass sets at least one more vertex to rest once the halvings are used up, and no move at all is
+        // always allowed; so this ends.
+        for (int pass = 0;; ++pass) {
+            for (std::size_t v = 0; v < moved_.size(); ++v) moved_[v] = surface_.at[v] + move_[v];
+            const std::vector<char> offending = find_offending();
+            bool any = false;
+            for (std::size_t v = 0; v < moved_.size(); ++v) {
+                if (offending[v] == 0 || move_[v] == Vec(0, 0, 0)) continue;
+                any = true;
+                if (pass < kHalvings) {
+                    move_[v] *= 0.5F;
+                } else {
+                    move_[v].setZero();
+                }
+            }
+            if (!any) return std::move(moved_);
+        }
+    }
+
+private:
+    std::vector<Vec> normals(const std::vector<Vec>& at) const {
+        std::vector<Vec> result(surface_.faces.size());
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            const Triangle& f = surface_.faces[i];
+            const Vec& a = at[index(f[0])];
+            result[i] = (at[index(f[1])] - a).cross(at[index(f[2])] - a).normalized();
+        }
+        return result;
+    }
+
+    bool spoiled(std::size_t i, const std::vector<Vec>& now) const {
+        if (normals_[i].dot(now[i]) < kLeastTurn) return true;
+        const Triangle& f = surface_.faces[i];
+        const auto quality = [&](const std::vector<Vec>& at) {
+            return triangle_quality(at[index(f[0])], at[index(f[1])], at[index(f[2])]);
+        };
+        const float after = quality(moved_);
+        return after < kSliver && after < 0.9F * quality(surface_.at);
+    }
+
+    /// Vertices of faces that turn over, become slivers, or fold onto a neighbour.
+    std::vector<char> find_offending() const {
+        const std::vector<Vec> now = normals(moved_);
+        std::vector<char> offending(moved_.size(), 0);
+        const auto mark = [&](std::size_t face) {
+            for (const VertexId v : surface_.faces[face]) offending[index(v)] = 1;
+        };
+        for (std::size_t i = 0; i < now.size(); ++i)
+            if (spoiled(i, now)) mark(i);
+        for (VertexId v = 0; v < network_.slot_count(); ++v) {
+            // The faces of a vertex that share an edge with it share that edge's other end.
+            for (int i = surface_.first_face[index(v)]; i < surface_.first_face[index(v) + 1]; ++i) {
+                const auto f = index(surface_.face_of[index(i)]);
+                for (int j = i + 1; j < surface_.first_face[index(v) + 1]; ++j) {
+                    const auto g = index(surface_.face_of[index(j)]);
+                    const float fold = now[f].dot(now[g]);
+                    if (fold >= kSharpestFold || fold >= normals_[f].dot(normals_[g]) || !share_edge(f, g)) continue;
+                    mark(f);
+                    mark(g);
+                }
+            }
+        }
+        return offending;
+    }
+
+    bool share_edge(std::size_t f, std::size_t g) const {
+        int shared = 0;
+        for (const VertexId a : surface_.faces[f])
+            for (const VertexId b : surface_.faces[g]) shared += a == b ? 1 : 0;
+        return shared == 2;
+    }
+
+    const Network& network_;
+    const Surface& surface_;
+    std::vector<Vec> move_;
+    std::vector<Vec> moved_;
+    std::vector<Vec> normals_;
+};
+
+}  // namespace
+
+std::vector<Vec> bounded_move(const Network& network, const Surface& surface, const std::vector<Vec>& u) {
+    return Mover(network, surface, u).run();
+}
+
+}  // namespace neuralmesh

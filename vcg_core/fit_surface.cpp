@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Feet of points on triangles, and a tree of bounding boxes over the faces.
+#include "fit_surface.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace neuralmesh {
+
+namespace {
+
+float ratio(float part, float rest) { return part + rest > 0 ? part / (part + rest) : 0.0F; }
+
+Foot foot_with(const Vec& ab, const Vec& ac, const Vec& ap, float b, float c) {
+    const Vec d = ap - b * ab - c * ac;
+    return {d.squaredNorm(), {1 - b - c, b, c}};
+}
+
+}  // namespace
+
+Foot foot_on_triangle(const Vec& ab, const Vec& ac, const Vec& ap) {
+    const float d1 = ab.dot(ap);
+    const float d2 = ac.dot(ap);
+    if (d1 <= 0 && d2 <= 0) return {ap.squaredNorm(), {1, 0, 0}};
+    const float bb = ab.squaredNorm();
+    const float bc = ab.dot(ac);
+    const float cc = ac.squaredNorm();
+    const float d3 = d1 - bb;
+    const float d4 = d2 - bc;
+    if (d3 >= 0 && d4 <= d3) return {(ap - ab).squaredNorm(), {0, 1, 0}};
+    const float vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+        Foot foot = foot_with(ab, ac, ap, ratio(d1, -d3), 0);
+        return foot;
+    }
+    const float d5 = d1 - bc;
+    const float d6 = d2 - cc;
+    if (d6 >= 0 && d5 <= d6) return {(ap - ac).squaredNorm(), {0, 0, 1}};
+    const float vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return foot_with(ab, ac, ap, 0, ratio(d2, -d6));
+    const float va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        const float c = ratio(d4 - d3, d5 - d6);
+        Foot foot = foot_with(ab, ac, ap, 1 - c, c);
+        foot.weights[0] = 0;
+        return foot;
+    }
+    const float sum = va + vb + vc;
+    return foot_with(ab, ac, ap, vb / sum, vc / sum);
+}
+
+float triangle_quality(const Vec& a, const Vec& b, const Vec& c) {
+    constexpr float kTwoSqrtThree = 3.4641016F;
+    const float edges = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
+    return edges > 0 ? kTwoSqrtThree * (b - a).cross(c - a).norm() / edges : 0.0F;
+}
+
+Surface::Surface(const Network& network) : faces(network.faces()) {
+    const auto slots = index(network.slot_count());
+    at.resize(slots, Vec(0, 0, 0));
+    for (VertexId v = 0; v < network.slot_count(); ++v) at[index(v)] = vec(network.position(v));
+    first_face.assign(slots + 1, 0);
+    for (const Triangle& f : faces)
+        for (const VertexId v : f) ++first_face[index(v) + 1];
+    std::partial_sum(first_face.begin(), first_face.end(), first_face.begin());
+    face_of.resize(3 * faces.size());
+    std::vector<int> next(first_face.begin(), first_face.end() - 1);
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        for (const VertexId v : faces[f]) face_of[index(next[index(v)]++)] = static_cast<int>(f);
+}
+
+FaceTree::FaceTree(const Surface& surface) : faces_(surface.faces), order_(faces_.size()), corners_(faces_.size()) {
+    std::vector<Vec> centres(faces_.size());
+    for (std::size_t f = 0; f < faces_.size(); ++f)
+        centres[f] = surface.corner(static_cast<int>(f), 0) + surface.corner(static_cast<int>(f), 1) +
+                     surface.corner(static_cast<int>(f), 2);
+    std::iota(order_.begin(), order_.end(), 0);
+    nodes_.reserve(faces_.size());
+    if (!faces_.empty()) build(centres, 0, static_cast<int>(faces_.size()));
+    refit(surface.at);
+}
+
+int FaceTree::build(const std::vector<Vec>& centres, int begin, int end) {
+    const int node = static_cast<int>(nodes_.size());
+    nodes_.push_back({Vec::Zero(), Vec::Zero(), begin, end, -1});
+    if (end - begin <= kLeaf) return node;
+    Vec low = centres[index(order_[index(begin)])];
+    Vec high = low;
+    for (int i = begin; i < end; ++i) {
+        low = low.cwiseMin(centres[index(order_[index(i)])]);
+        high = high.cwiseMax(centres[index(order_[index(i)])]);
+    }
+    Eigen::Index axis = 0;
+    (high - low).maxCoeff(&axis);
+    const int middle = begin + (end - begin) / 2;
+    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int f, int g) {
+        const float x = centres[index(f)][axis];
+        const float y = centres[index(g)][axis];
+        return x < y || (x == y && f < g);
+    });
+    build(centres, begin, middle);
+    const int right = build(centres, middle, end);
+    nodes_[index(node)].right = right;
+    return node;
+}
+
+void FaceTree::refit(const std::vector<Vec>& at) {
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+        const Triangle& f = faces_[index(order_[i])];
+        const Vec& a = at[index(f[0])];
+        corners_[i] = {a, at[index(f[1])] - a, at[index(f[2])] - a};
+    }
+    for (std::size_t n = nodes_.size(); n-- > 0;) {
+        Node& node = nodes_[n];
+        if (node.right >= 0) {
+            node.low = nodes_[n + 1].low.cwiseMin(nodes_[index(node.right)].low);
+            node.high = nodes_[n + 1].high.cwiseMax(nodes_[index(node.right)].high);
+            continue;
+        }
+        node.low = node.high = corners_[index(node.begin)].a;
+        for (int i = node.begin; i < node.end; ++i) {
+            for (const VertexId v : faces_[index(order_[index(i)])]) {
+                node.low = node.low.cwiseMin(at[index(v)]);
+                node.high = node.high.cwiseMax(at[index(v)]);
+            }
+        }
+    }
+}
+
+FaceTree::Hit FaceTree::nearest(const Vec& p) const {
+    struct Entry {
+        float squared_distance;
+        int node;
+    };
+    const auto box_distance = [&](int n) {
+        const Node& node = nodes_[index(n)];
+        return (node.low - p).cwiseMax(p - node.high).cwiseMax(0).squaredNorm();
+    };
+    Hit best{-1, {std::numeric_limits<float>::max(), {1, 0, 0}}};
+    std::array<Entry, 64> stack;
+    int height = 0;
+    if (!nodes_.empty()) stack[index(height++)] = {box_distance(0), 0};
+    while (height > 0) {
+        const Entry entry = stack[index(--height)];
+        if (entry.squared_distance > best.foot.squared_distance) continue;
+        int n = entry.node;
+        while (nodes_[index(n)].right >= 0) {
+            Entry left{box_distance(n + 1), n + 1};
+            Entry right{box_distance(nodes_[index(n)].right), nodes_[index(n)].right};
+            if (right.squared_distance < left.squared_distance) std::swap(left, right);
+            if (right.squared_distance <= best.foot.squared_distance) stack[index(height++)] = right;
+            n = left.node;
+            if (left.squared_distance > best.foot.squared_distance) break;
+        }
+        if (nodes_[index(n)].right >= 0) continue;
+        for (int i = nodes_[index(n)].begin; i < nodes_[index(n)].end; ++i) {
+            const Corners& t = corners_[index(i)];
+            const Foot foot = foot_on_triangle(t.ab, t.ac, p - t.a);
+            const int face = order_[index(i)];
+            if (foot.squared_distance < best.foot.squared_distance ||
+                (foot.squared_distance == best.foot.squared_distance && face < best.face))
+                best = {face, foot};
+        }
+    }
+    return best;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The network's surface as the fit works on it, and the nearest face of a point.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "network.h"
+
+namespace neuralmesh {
+
+using Vec = Eigen::Vector3f;
+
+inline Vec vec(const vcg::Point3f& p) { return {p[0], p[1], p[2]}; }
+inline vcg::Point3f point(const Vec& p) { return {p[0], p[1], p[2]}; }
+inline std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+/// The point of a triangle that is nearest to some other point.
+struct Foot {
+    float squared_distance;
+    std::array<float, 3> weights;  ///< barycentric; 0 for the corners that have no part in it
+};
+
+/// \p ab and \p ac are the triangle's edges from its corner a, \p ap leads from a to the point. Degenerate
+/// triangles are allowed. Source: Ericson, "Real-Time Collision Detection" (2005), 5.1.5.
+Foot foot_on_triangle(const Vec& ab, const Vec& ac, const Vec& ap);
+inline Foot foot_on_triangle(const Vec& p, const Vec& a, const Vec& b, const Vec& c) {
+    return foot_on_triangle(b - a, c - a, p - a);
+}
+
+/// 4 sqrt(3) area / (sum of the squared edges): 1 for an equilateral triangle, 0 for a degenerate one.
+float triangle_quality(const Vec& a, const Vec& b, const Vec& c);
+
+/// A copy of the network's geometry in arrays: positions by slot, faces, and the faces around each slot.
+struct Surface {
+    std::vector<Vec> at;
+    std::vector<Triangle> faces;
+    std::vector<int> first_face;  ///< of slot v: face_of[first_face[v]] up to face_of[first_face[v + 1] - 1]
+    std::vector<int> face_of;
+
+    explicit Surface(const Network& network);
+    const Vec& corner(int face, std::size_t k) const { return at[index(faces[index(face)][k])]; }
+};
+
+/// Nearest face by a tree of bounding boxes. vcglib's grids lose against it where the faces' sizes vary by
+/// hundreds, as here; it can also follow moving vertices without being built anew.
+class FaceTree {
+public:
+    struct Hit {
+        int face;
+        Foot foot;
+    };
+
+    /// O(faces log faces).
+    explicit FaceTree(const Surface& surface);
+    /// Takes over new positions of the same faces. O(faces).
+    void refit(const std::vector<Vec>& at);
+    /// The nearest face of \p p, the one of smallest index among equals. Exact in float.
+    /// O(log faces) expected near the surface.
+    Hit nearest(const Vec& p) const;
+
+private:
+    static constexpr int kLeaf = 4;
+
+    struct Node {
+        Vec low, high;
+        int begin, end;  ///< into order_
+        int right;       ///< the left child follows its parent; -1: a leaf
+    };
+    struct Corners {
+        Vec a, ab, ac;
+    };
+
+    int build(const std::vector<Vec>& centres, int begin, int end);
+
+    std::vector<Triangle> faces_;
+    std::vector<int> order_;
+    std::vector<Corners> corners_;  ///< in order_
+    std::vector<Node> nodes_;
+};
+
+}  // namespace neuralmesh
