@@ -91,7 +91,7 @@ bool Network::can_split(VertexId v, int first, int count) const {
         if (first + count > k) return false;
         if (first == 0 || first + count == k) {
             const VertexId shared = first == 0 ? r[count - 1] : r[first];
-            return count + 1 <= kMax && ring(shared).valence < kMax;
+            return k - count + 2 <= kMax && count + 1 <= kMax && ring(shared).valence < kMax;
         }
     }
     const VertexId e2 = r[first];
