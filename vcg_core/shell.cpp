@@ -234,7 +234,7 @@ StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Rando
     result.radius = result.resolution * std::sqrt(static_cast<double>(closed.level));
     result.widest_opening = region.widest_opening;
     result.encloses_space = region.encloses_space;
-    result.ignored_points = static_cast<long long>(points.size()) - closed.held;
+    result.ignored_points = static_cast<long long>(points.size()) - region.fringe_points - closed.held;
     add_warnings(verdict, static_cast<long long>(points.size()), result);
     progress(1.0, "Start mesh: done");
     return result;

@@ -15,8 +15,50 @@ constexpr double kWeakWidthRatio = 1.2;  // the same for a cloud that encloses n
 constexpr int kWeakDepth = 4 * 4;        // ... and the least squared depth of such a space, in coarse steps
 constexpr double kCoarseSteps = 40;      // per side
 constexpr int kCoarseReach = 18;
+constexpr double kFringe = 0.2;            // of the density next to it
+constexpr std::uint32_t kManyPoints = 40;  // enough for that ratio to mean something
 
 float longest_side(const vcg::Box3f& box) { return std::max({box.DimX(), box.DimY(), box.DimZ()}); }
+
+/// Applies f to every row along x, then y, then z: index of its first node, stride, length.
+template <class F>
+void for_each_row(const Lattice& l, const F& f) {
+    for (int z = 0; z < l.nz; ++z)
+        for (int y = 0; y < l.ny; ++y) f(l.index(0, y, z), std::size_t{1}, l.nx);
+    for (int z = 0; z < l.nz; ++z)
+        for (int x = 0; x < l.nx; ++x) f(l.index(x, 0, z), l.index(0, 1, 0), l.ny);
+    for (int y = 0; y < l.ny; ++y)
+        for (int x = 0; x < l.nx; ++x) f(l.index(x, y, 0), l.index(0, 0, 1), l.nz);
+}
+
+/// The counts without the fringe of a noisy cloud: nodes whose surroundings (3 x 3 x 3 nodes) hold less than
+/// kFringe of what some surroundings up to two nodes away hold, where that is many enough to be no accident.
+std::vector<std::uint32_t> without_fringe(const Lattice& lattice, const std::vector<std::uint32_t>& counts) {
+    std::vector<std::uint32_t> sums = counts, row;
+    for_each_row(lattice, [&](std::size_t first, std::size_t stride, int length) {
+        std::uint32_t before = 0, here = sums[first];
+        for (int i = 0; i < length; ++i) {
+            std::uint32_t& at = sums[first + static_cast<std::size_t>(i) * stride];
+            const std::uint32_t after =
+                i + 1 < length ? sums[first + static_cast<std::size_t>(i + 1) * stride] : 0;
+            at = before + here + after;
+            before = here;
+            here = after;
+        }
+    });
+    std::vector<std::uint32_t> most = sums;
+    for_each_row(lattice, [&](std::size_t first, std::size_t stride, int length) {
+        const std::size_t n = static_cast<std::size_t>(length);
+        row.assign(n + 4, 0U);
+        for (std::size_t i = 0; i < n; ++i) row[i + 2] = most[first + i * stride];
+        for (std::size_t i = 0; i < n; ++i)
+            most[first + i * stride] = *std::max_element(row.data() + i, row.data() + i + 5);
+    });
+    std::vector<std::uint32_t> kept = counts;
+    for (std::size_t i = 0; i < kept.size(); ++i)
+        if (most[i] >= kManyPoints && sums[i] < kFringe * most[i]) kept[i] = 0;
+    return kept;
+}
 
 /// Marks in \p inside the nodes whose nearest node of \p coarse is marked in \p coarse_inside.
 void refine(const Lattice& coarse, const std::vector<std::uint8_t>& coarse_inside, const Lattice& lattice,
@@ -71,8 +113,10 @@ double points_per_occupied_node(const std::vector<std::uint32_t>& counts) {
 
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step, double share,
                long long least) {
-    Region region{Lattice(box, step, Region::kMargin), {}, {}, {}, false, 0, 0, {}};
-    region.counts = count_points(region.lattice, points);
+    Region region{Lattice(box, step, Region::kMargin), {}, 0, {}, {}, false, 0, 0, {}};
+    const std::vector<std::uint32_t> counts = count_points(region.lattice, points);
+    region.counts = without_fringe(region.lattice, counts);
+    for (std::size_t i = 0; i < counts.size(); ++i) region.fringe_points += counts[i] - region.counts[i];
     region.distances = squared_distances(region.lattice, region.counts, Region::kReach);
     region.clearance = clearances(region.lattice, region.distances, Region::kReach, {});
     Sealing sealing = enclosed_spaces(region.lattice, region.distances, region.clearance, kWidthRatio, 0);

@@ -20,7 +20,8 @@ struct Region {
     static constexpr int kMargin = 2;  ///< empty nodes around the cloud
 
     Lattice lattice;
-    std::vector<std::uint32_t> counts;  ///< points per node
+    std::vector<std::uint32_t> counts;  ///< points per node, without the fringe of a noisy cloud
+    long long fringe_points = 0;        ///< points left out as that
     std::vector<Level> distances;
     std::vector<Level> clearance;  ///< with enclosed spaces sealed
     bool encloses_space = false;
@@ -33,7 +34,8 @@ struct Region {
 /// size where the way in is at most 0.6 of its width and within the reach, and on a lattice of about 40 steps
 /// per side those with wide openings. If there is neither, the cloud has a single layer, and large
 /// hollows that narrow towards their opening are sealed, too (a head scanned down to the neck).
-/// A component needs \p share of the points and at least \p least. O(nodes + points).
+/// The fringe of a noisy cloud, where it is much thinner than right beside, is left out, because it closes
+/// gaps. A component needs \p share of the points and at least \p least. O(nodes + points).
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step, double share,
                long long least);
 

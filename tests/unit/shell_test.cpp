@@ -11,7 +11,7 @@
 #include <cstring>
 #include <string>
 
-#include "shapes.h"
+#include "shell_shapes.h"
 #include "vcg_core/network.h"
 
 namespace neuralmesh {
@@ -24,9 +24,9 @@ StartMesh shell(const std::vector<vcg::Point3d>& cloud, const ShellOptions& opti
     return shell_of(target, options, random, progress);
 }
 
-StartMesh shell_of_samples(const shapes::Shape& shape, std::size_t count, double noise = 0) {
+StartMesh shell_of_samples(const shell_shapes::Shape& shape, std::size_t count, double noise = 0) {
     Random random(7);
-    return shell(shapes::sample(shape, count, random, noise));
+    return shell(shell_shapes::sample(shape, count, random, noise));
 }
 
 double volume(const StartMesh& mesh) {
@@ -68,7 +68,7 @@ void expect_topology(const StartMesh& mesh, int components, int genus) {
 
 TEST(Shell, Sphere) {
     for (const std::size_t count : {500U, 5000U, 50000U}) {
-        const StartMesh mesh = shell_of_samples(shapes::sphere(1), count);
+        const StartMesh mesh = shell_of_samples(shell_shapes::sphere(1), count);
         expect_topology(mesh, 1, 0);
         EXPECT_GT(mesh.confidence, 0.9);
         EXPECT_TRUE(mesh.warnings.empty());
@@ -76,23 +76,23 @@ TEST(Shell, Sphere) {
 }
 
 TEST(Shell, Torus) {
-    const StartMesh mesh = shell_of_samples(shapes::torus(1, 0.3), 20000);
+    const StartMesh mesh = shell_of_samples(shell_shapes::torus(1, 0.3), 20000);
     expect_topology(mesh, 1, 1);
     EXPECT_GT(mesh.confidence, 0.5);
 }
 
 TEST(Shell, TwoSpheresAreTwoComponents) {
-    shapes::Shape both = shapes::sphere(1);
-    shapes::append(both, shapes::sphere(1), {2.3, 0, 0});
+    shell_shapes::Shape both = shell_shapes::sphere(1);
+    shell_shapes::append(both, shell_shapes::sphere(1), {2.3, 0, 0});
     expect_topology(shell_of_samples(both, 20000), 2, 0);
 }
 
 TEST(Shell, LinkedToriStayLinked) {
-    expect_topology(shell_of_samples(shapes::chain(4, 1, 0.2, 1.3), 20000), 4, 4);
+    expect_topology(shell_of_samples(shell_shapes::chain(4, 1, 0.2, 1.3), 20000), 4, 4);
 }
 
 TEST(Shell, ThinWalledCupStaysOpen) {
-    const StartMesh mesh = shell_of_samples(shapes::cup(1, 2, 0.06), 20000);
+    const StartMesh mesh = shell_of_samples(shell_shapes::cup(1, 2, 0.06), 20000);
     expect_topology(mesh, 1, 0);
     // In a frame of diagonal 1 a filled cup has a volume of 0.151, and more at the shell's distance.
     EXPECT_LT(volume(mesh), 0.15);
@@ -101,12 +101,12 @@ TEST(Shell, ThinWalledCupStaysOpen) {
 TEST(Shell, NoiseDoesNotMakeHandles) {
     const double diagonal = 2 * std::sqrt(1.3 * 1.3 * 2 + 0.3 * 0.3);
     for (const double noise : {0.001, 0.003, 0.006})
-        expect_topology(shell_of_samples(shapes::torus(1, 0.3), 20000, noise * diagonal), 1, 1);
+        expect_topology(shell_of_samples(shell_shapes::torus(1, 0.3), 20000, noise * diagonal), 1, 1);
 }
 
 TEST(Shell, OutliersAreIgnoredAndReported) {
     Random random(3);
-    std::vector<vcg::Point3d> cloud = shapes::sample(shapes::sphere(1), 20000, random);
+    std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
     for (int i = 0; i < 19; ++i)
         cloud.emplace_back(3 + 0.01 * static_cast<double>(random.unit()), 3, 3);  // a small group far away
     cloud.emplace_back(-50, 0, 0);  // so far that the sphere shrinks to a dot in the frame
@@ -118,7 +118,7 @@ TEST(Shell, OutliersAreIgnoredAndReported) {
 
 TEST(Shell, OpenScanIsClosedWithAWarning) {
     Random random(5);
-    std::vector<vcg::Point3d> cloud = shapes::sample(shapes::sphere(1), 40000, random);
+    std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 40000, random);
     cloud.erase(std::remove_if(cloud.begin(), cloud.end(), [](const vcg::Point3d& p) { return p[2] > 0.9; }),
                 cloud.end());
     const StartMesh mesh = shell(cloud);
@@ -142,8 +142,8 @@ TEST(Shell, SheetIsClosedAroundBothSidesWithAWarning) {
 }
 
 TEST(Shell, NestedSpheresComeAsTheOuterOne) {
-    shapes::Shape both = shapes::sphere(1);
-    shapes::append(both, shapes::sphere(0.4), {0, 0, 0});
+    shell_shapes::Shape both = shell_shapes::sphere(1);
+    shell_shapes::append(both, shell_shapes::sphere(0.4), {0, 0, 0});
     expect_topology(shell_of_samples(both, 20000), 1, 0);
 }
 
@@ -161,7 +161,7 @@ TEST(Shell, AFewPointsAreEnough) {
 
 TEST(Shell, VerticesFollowTheBudget) {
     Random random(2);
-    const auto cloud = shapes::sample(shapes::torus(1, 0.4), 20000, random);
+    const auto cloud = shell_shapes::sample(shell_shapes::torus(1, 0.4), 20000, random);
     ShellOptions options;
     for (const int target : {100, 400, 1000}) {
         options.target_vertices = target;
@@ -171,7 +171,7 @@ TEST(Shell, VerticesFollowTheBudget) {
 
 TEST(Shell, SameCloudSameBytes) {
     Random random(2);
-    const auto cloud = shapes::sample(shapes::torus(1, 0.4), 20000, random);
+    const auto cloud = shell_shapes::sample(shell_shapes::torus(1, 0.4), 20000, random);
     const StartMesh a = shell(cloud), b = shell(cloud);
     ASSERT_EQ(a.positions.size(), b.positions.size());
     EXPECT_EQ(std::memcmp(a.positions.data(), b.positions.data(), a.positions.size() * sizeof(vcg::Point3f)),
@@ -180,7 +180,7 @@ TEST(Shell, SameCloudSameBytes) {
 }
 
 TEST(Shell, MeshAsTarget) {
-    const shapes::Shape torus = shapes::torus(1, 0.3);
+    const shell_shapes::Shape torus = shell_shapes::torus(1, 0.3);
     const TargetSpace target = TargetSpace::triangles(torus.faces.size(), [&](std::size_t i, int k) {
         return torus.positions[static_cast<std::size_t>(torus.faces[i][static_cast<std::size_t>(k)])];
     });
@@ -193,7 +193,7 @@ TEST(Shell, MeshAsTarget) {
 
 TEST(Shell, BadOptionsAreRefused) {
     Random random(2);
-    const auto cloud = shapes::sample(shapes::sphere(1), 100, random);
+    const auto cloud = shell_shapes::sample(shell_shapes::sphere(1), 100, random);
     ShellOptions options;
     options.max_vertices = 3;
     EXPECT_THROW(shell(cloud, options), SettingError);
