@@ -5,17 +5,49 @@
 #include "counters.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstring>
+#include <limits>
 
 namespace neuralmesh {
 
 namespace {
 
-/// A positive number as exponent + (mantissa - 1), mantissa in [1, 2): strictly increasing in the number.
+constexpr std::int64_t kExponentBias = 1023;
+constexpr int kMantissaBits = 52;
+
+std::uint64_t bits_of(double x) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+double double_of(std::uint64_t bits) {
+    double x = 0;
+    std::memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/// 2^exponent; 0 below the range of normal numbers.
+double power_of_two(std::int64_t exponent) {
+    return exponent < 1 - kExponentBias
+               ? 0
+               : double_of(static_cast<std::uint64_t>(exponent + kExponentBias) << kMantissaBits);
+}
+
+/// value x 2^exponent as exponent + (mantissa - 1), mantissa in [1, 2): strictly increasing in the number.
+/// \p value must be a normal positive number.
 double key_of(double value, double exponent) {
-    int shift = 0;
-    const double half = std::frexp(value, &shift);  // in [0.5, 1)
-    return exponent + (shift - 1) + (2 * half - 1);
+    const std::uint64_t bits = bits_of(value);
+    const std::int64_t own = static_cast<std::int64_t>(bits >> kMantissaBits) - kExponentBias;
+    const std::uint64_t mantissa = bits & ((std::uint64_t{1} << kMantissaBits) - 1);
+    return exponent + static_cast<double>(own) +
+           (double_of(mantissa | static_cast<std::uint64_t>(kExponentBias) << kMantissaBits) - 1);
+}
+
+/// The largest integer not above x, for |x| < 2^62.
+std::int64_t floor_of(double x) {
+    const auto truncated = static_cast<std::int64_t>(x);
+    return truncated - (static_cast<double>(truncated) > x ? 1 : 0);
 }
 
 }  // namespace
@@ -69,9 +101,9 @@ void UtilityCounters::enter(VertexId v, double key) {
 
 double UtilityCounters::scaled(double key) const {
     if (key == kZero) return 0;
-    const double exponent = std::floor(key);
-    const double shift = std::max(exponent - unit_exponent_, -2000.0);
-    return std::ldexp(1 + (key - exponent), static_cast<int>(shift));
+    const std::int64_t exponent = floor_of(key);
+    const double mantissa = 1 + (key - static_cast<double>(exponent));
+    return mantissa * power_of_two(exponent - static_cast<std::int64_t>(unit_exponent_));
 }
 
 double UtilityCounters::value(VertexId v) const { return scaled(keys_[static_cast<std::size_t>(v)]) / unit_mantissa_; }
@@ -79,7 +111,7 @@ double UtilityCounters::value(VertexId v) const { return scaled(keys_[static_cas
 void UtilityCounters::win(VertexId v, double amount) {
     const auto i = static_cast<std::size_t>(v);
     const double now = scaled(keys_[i]) + amount * unit_mantissa_;
-    keys_[i] = now > 0 ? key_of(now, unit_exponent_) : kZero;
+    keys_[i] = now >= std::numeric_limits<double>::min() ? key_of(now, unit_exponent_) : kZero;
     if (++wins_[i] >= maturity_) enter(v, keys_[i]);
     unit_mantissa_ /= decay_;
     while (unit_mantissa_ >= 2) {
@@ -93,7 +125,7 @@ void UtilityCounters::share(VertexId v, VertexId u, double of_v, double of_u) {
     const double sum = of_v + of_u;
     const double part = sum > 0 ? of_v / sum : 0.5;
     const auto store = [&](VertexId w, double value) {
-        keys_[static_cast<std::size_t>(w)] = value > 0 ? key_of(value, unit_exponent_) : kZero;
+        keys_[static_cast<std::size_t>(w)] = value >= std::numeric_limits<double>::min() ? key_of(value, unit_exponent_) : kZero;
         wins_[static_cast<std::size_t>(w)] = 0;
         enter(w, maturity_ == 0 ? keys_[static_cast<std::size_t>(w)] : kNone);
     };

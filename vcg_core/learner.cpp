@@ -10,8 +10,6 @@
 #include <limits>
 #include <string>
 
-#include "patch.h"
-
 namespace neuralmesh {
 
 namespace {
@@ -34,6 +32,7 @@ double voronoi_area(const Network& network, VertexId v) {
 /// Cosine between the faces before and after a flip: above it the flip is one in the surface, not of it.
 constexpr float kFlatEnough = 0.95F;
 constexpr int kSplitCandidates = 32;  ///< tried before a split is put off
+constexpr std::size_t kDrawnAhead = 256;
 constexpr int kReportEvery = 1000;    ///< signals between two looks at the progress and at the stop criteria
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
@@ -60,7 +59,7 @@ Learner::Learner(const TargetSpace& target, const Settings& settings, Network st
 
 StopReason Learner::run(Progress& progress) {
     while (network_.vertex_count() < settings_.target_vertices) {
-        basic_step(target_.sample(random_));
+        basic_step(next_signal());
         if (signals_ % settings_.signals_per_split == 0) vertex_split();
         if (due_for_collapse()) half_edge_collapse();
 
@@ -83,15 +82,26 @@ bool Learner::report(const char* doing, Progress& progress) const {
 
 void Learner::basic_step(const vcg::Point3f& s) {
     const VertexId w = search_.winner(s);
-    Patch patch(network_, w);
-    const vcg::Point3f n = patch.normal();
-    patch.move_winner(s, static_cast<float>(settings_.learning_rate));
-    patch.smooth(settings_.smoothing_steps, static_cast<float>(settings_.smoothing_rate));
-    learn_counters(w, normal_variation(n, patch.normal()));
+    patch_.gather(network_, w);
+    const vcg::Point3f n = patch_.normal();
+    patch_.move_winner(s, static_cast<float>(settings_.learning_rate));
+    patch_.smooth(settings_.smoothing_steps, static_cast<float>(settings_.smoothing_rate));
+    learn_counters(w, normal_variation(n, patch_.normal()));
 
-    search_.move(w, patch.winner_position());
-    for (int i = 0; i < patch.valence(); ++i) search_.move(patch.neighbour(i), patch.position(i));
+    search_.move(w, patch_.winner_position());
+    for (int i = 0; i < patch_.valence(); ++i) search_.move(patch_.neighbour(i), patch_.position(i));
     last_active_[static_cast<std::size_t>(w)] = ++signals_;
+}
+
+const vcg::Point3f& Learner::next_signal() {
+    if (next_drawn_ == drawn_.size()) {
+        drawn_.resize(kDrawnAhead);
+        for (vcg::Point3f& s : drawn_) s = target_.sample(random_);
+        next_drawn_ = 0;
+    }
+    // Two signals ahead: late enough to stay in the cache, early enough to arrive.
+    if (next_drawn_ + 2 < drawn_.size()) search_.prefetch(drawn_[next_drawn_ + 2]);
+    return drawn_[next_drawn_++];
 }
 
 void Learner::learn_counters(VertexId w, double delta) {
@@ -259,7 +269,7 @@ bool Learner::flip_regularises(VertexId a, VertexId b) const {
 bool Learner::settle(int per_vertex, Progress& progress) {
     const std::int64_t end = signals_ + std::int64_t{per_vertex} * network_.vertex_count();
     while (signals_ < end) {
-        basic_step(target_.sample(random_));
+        basic_step(next_signal());
         if (signals_ % kReportEvery == 0 && !report("Settling", progress)) return false;
     }
     return true;

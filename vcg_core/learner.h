@@ -10,6 +10,7 @@
 #include "counters.h"
 #include "network.h"
 #include "neural_mesh.h"
+#include "patch.h"
 #include "progress.h"
 #include "random.h"
 #include "settings.h"
@@ -73,6 +74,7 @@ private:
     };
 
     bool to_the_letter() const { return settings_.min_wins_per_split == 0; }
+    const vcg::Point3f& next_signal();
     bool report(const char* doing, Progress& progress) const;
     bool due_for_collapse() const;
     void force_growth();
@@ -91,7 +93,10 @@ private:
     UtilityCounters utility_counters_;
     FeatureCounters feature_counters_;
     WindowMean mean_delta_;
+    Patch patch_;
     Random random_;
+    std::vector<vcg::Point3f> drawn_;  ///< signals drawn ahead, so that their places are in the cache in time
+    std::size_t next_drawn_ = 0;
     /// Per vertex the signal of its last win, or of its birth.
     std::vector<std::int64_t> last_active_;
     std::int64_t signals_ = 0;

@@ -4,132 +4,181 @@
 // Gathering and smoothing of a winner's surroundings, in loops that vectorise.
 #include "patch.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace neuralmesh {
 
 namespace {
 
-vcg::Point3f cross(const vcg::Point3f& a, const vcg::Point3f& b) { return a ^ b; }
+using Vectors = Patch::Vectors;
+using Still = Patch::Still;
+
+/// Keeps a face or star without area from dividing zero by zero.
+constexpr float kTiny = 1e-36F;
+
+[[gnu::always_inline]] inline void close_cycle(Vectors& v, int valence) {
+    v.x[0] = v.x[valence];
+    v.y[0] = v.y[valence];
+    v.z[0] = v.z[valence];
+    v.x[valence + 1] = v.x[1];
+    v.y[valence + 1] = v.y[1];
+    v.z[valence + 1] = v.z[1];
+}
+
+/// One sweep for ring vertices 0 .. kWidth - 1, from \p at into \p now.
+template <int kWidth>
+[[gnu::always_inline]] inline void sweep(const Still& still, const Vectors& at, Vectors& now) {
+    for (int i = 0; i < kWidth; ++i) {
+        const float ax = at.x[i], ay = at.y[i], az = at.z[i];              // r_(i-1)
+        const float vx = at.x[i + 1], vy = at.y[i + 1], vz = at.z[i + 1];  // r_i
+        const float bx = at.x[i + 2], by = at.y[i + 2], bz = at.z[i + 2];  // r_(i+1)
+        // N = w x a + a x o_1 + (o_1 x o_2 + ..) + o_m x b + b x w: twice the star's area vector,
+        // which does not depend on r_i itself.
+        const float nx = still.area.x[i] + (ay * still.first.z[i] - az * still.first.y[i]) +
+                         (still.last.y[i] * bz - still.last.z[i] * by);
+        const float ny = still.area.y[i] + (az * still.first.x[i] - ax * still.first.z[i]) +
+                         (still.last.z[i] * bx - still.last.x[i] * bz);
+        const float nz = still.area.z[i] + (ax * still.first.y[i] - ay * still.first.x[i]) +
+                         (still.last.x[i] * by - still.last.y[i] * bx);
+        const float lx = (still.sum.x[i] + (ax + bx)) * still.inverse_valence[i] - vx;
+        const float ly = (still.sum.y[i] + (ay + by)) * still.inverse_valence[i] - vy;
+        const float lz = (still.sum.z[i] + (az + bz)) * still.inverse_valence[i] - vz;
+        const float along = (lx * nx + ly * ny + lz * nz) / (nx * nx + ny * ny + nz * nz + kTiny);
+        now.x[i + 1] = vx + still.rate[i] * (lx - along * nx);
+        now.y[i + 1] = vy + still.rate[i] * (ly - along * ny);
+        now.z[i + 1] = vz + still.rate[i] * (lz - along * nz);
+    }
+}
+
+template <int kWidth>
+[[gnu::always_inline]] inline void sweeps(const Still& still, Vectors& at, int valence, int count) {
+    Vectors other;
+    Vectors* from = &at;
+    Vectors* to = &other;
+    for (int s = 0; s < count; ++s) {
+        sweep<kWidth>(still, *from, *to);
+        close_cycle(*to, valence);
+        std::swap(from, to);
+    }
+    if (from != &at) at = *from;
+}
+
+NEURALMESH_MULTIVERSIONED void sweeps_of_8(const Still& still, Vectors& at, int valence, int count) {
+    sweeps<8>(still, at, valence, count);
+}
+
+NEURALMESH_MULTIVERSIONED void sweeps_of_16(const Still& still, Vectors& at, int valence, int count) {
+    sweeps<16>(still, at, valence, count);
+}
+
+/// Unit normals of the faces (w, r_i, r_(i+1)).
+template <int kWidth>
+[[gnu::always_inline]] inline void face_normals(const Vectors& at, const vcg::Point3f& w, Vectors& normals) {
+    const float wx = w[0], wy = w[1], wz = w[2];
+    for (int i = 0; i < kWidth; ++i) {
+        const float ax = at.x[i + 1] - wx, ay = at.y[i + 1] - wy, az = at.z[i + 1] - wz;
+        const float bx = at.x[i + 2] - wx, by = at.y[i + 2] - wy, bz = at.z[i + 2] - wz;
+        const float nx = ay * bz - az * by;
+        const float ny = az * bx - ax * bz;
+        const float nz = ax * by - ay * bx;
+        const float inverse = 1 / std::sqrt(nx * nx + ny * ny + nz * nz + kTiny);
+        normals.x[i] = nx * inverse;
+        normals.y[i] = ny * inverse;
+        normals.z[i] = nz * inverse;
+    }
+}
+
+NEURALMESH_MULTIVERSIONED void face_normals_of_8(const Vectors& at, const vcg::Point3f& w, Vectors& normals) {
+    face_normals<8>(at, w, normals);
+}
+
+NEURALMESH_MULTIVERSIONED void face_normals_of_16(const Vectors& at, const vcg::Point3f& w, Vectors& normals) {
+    face_normals<16>(at, w, normals);
+}
 
 }  // namespace
 
-Patch::Patch(const Network& network, VertexId winner)
-    : winner_(winner),
-      valence_(network.ring(winner).valence),
-      lanes_((valence_ + 3) & ~3),
-      faces_(network.ring(winner).face_count()),
-      ring_(network.ring(winner).neighbours.data()),
-      origin_(network.position(winner)) {
-    for (int i = 0; i < valence_; ++i) __builtin_prefetch(&network.ring(ring_[i]));
-    for (int i = 0; i < valence_; ++i) {
-        const vcg::Point3f p = network.position(ring_[i]) - origin_;
-        at_.x[i + 1] = p[0];
-        at_.y[i + 1] = p[1];
-        at_.z[i + 1] = p[2];
+void Patch::gather(const Network& network, VertexId winner) {
+    const Ring& ring = network.ring(winner);
+    const Slot* slots = network.slots();
+    winner_ = winner;
+    valence_ = ring.valence;
+    faces_ = ring.face_count();
+    ring_ = ring.neighbours.data();
+    origin_ = slots[winner].point();
+    winner_at_ = {0, 0, 0};
+    const Four origin = load_xyz(&slots[winner]);
+    for (int i = 0; i < valence_; ++i) points_[i] = load_xyz(&slots[ring[i]]) - origin;
+    for (int i = 0; i < valence_; ++i) gather_star(network, i);
+    for (int i = valence_; i < kLanes; ++i) moves_[i] = 0;
+    for (int i = 0; i < valence_; i += 4) {
+        transpose(points_ + i, at_.x + 1 + i, at_.y + 1 + i, at_.z + 1 + i);
+        transpose(sums_ + i, still_.sum.x + i, still_.sum.y + i, still_.sum.z + i);
+        transpose(areas_ + i, still_.area.x + i, still_.area.y + i, still_.area.z + i);
+        transpose(firsts_ + i, still_.first.x + i, still_.first.y + i, still_.first.z + i);
+        transpose(lasts_ + i, still_.last.x + i, still_.last.y + i, still_.last.z + i);
     }
-    close_cycle(at_);
-    for (int i = 0; i < valence_; ++i) gather_surroundings(network, i);
+    close_cycle(at_, valence_);
 }
 
-void Patch::gather_surroundings(const Network& network, int i) {
+void Patch::gather_star(const Network& network, int i) {
     const Ring& ring = network.ring(ring_[i]);
-    if (ring.open != 0) return;  // moves_ stays 0
+    const Slot* slots = network.slots();
     const int k = ring.valence;
+    moves_[i] = ring.open != 0 ? 0.0F : 1.0F;
+    still_.inverse_valence[i] = 1 / static_cast<float>(k);
+    const Four origin = load_xyz(&slots[winner_]);
     int j = ring.find(winner_) + 2;  // past w and r_(i-1)
     if (j >= k) j -= k;
-    vcg::Point3f sum(0, 0, 0);
-    vcg::Point3f area(0, 0, 0);
-    // Without outer vertices r_(i-1) and r_(i+1) follow each other: the latter, as it stood, takes their part.
-    vcg::Point3f first(at_.x[i + 2], at_.y[i + 2], at_.z[i + 2]);
-    vcg::Point3f last = first;
-    for (int m = 0; m < k - 3; ++m) {
-        const vcg::Point3f o = network.position(ring[j]) - origin_;
-        sum += o;
-        if (m == 0) {
-            first = o;
-        } else {
+    Four sum = {0, 0, 0, 0};
+    Four area = {0, 0, 0, 0};
+    // Without outer vertices r_(i-1) and r_(i+1) follow each other: the latter, as it stands, takes their part.
+    Four first = points_[i + 1 == valence_ ? 0 : i + 1];
+    Four last = first;
+    if (k > 3) {
+        first = last = load_xyz(&slots[ring[j]]) - origin;
+        sum = first;
+        for (int m = 1; m < k - 3; ++m) {
+            if (++j == k) j = 0;
+            const Four o = load_xyz(&slots[ring[j]]) - origin;
+            sum += o;
             area += cross(last, o);
+            last = o;
         }
-        last = o;
-        if (++j == k) j = 0;
     }
-    const int lane = i + 1;
-    outer_sum_.x[lane] = sum[0];
-    outer_sum_.y[lane] = sum[1];
-    outer_sum_.z[lane] = sum[2];
-    outer_area_.x[lane] = area[0];
-    outer_area_.y[lane] = area[1];
-    outer_area_.z[lane] = area[2];
-    outer_first_.x[lane] = first[0];
-    outer_first_.y[lane] = first[1];
-    outer_first_.z[lane] = first[2];
-    outer_last_.x[lane] = last[0];
-    outer_last_.y[lane] = last[1];
-    outer_last_.z[lane] = last[2];
-    inverse_valence_[lane] = 1 / static_cast<float>(k);
-    moves_[lane] = 1;
-}
-
-void Patch::close_cycle(Vectors& v) const {
-    v.x[0] = v.x[valence_];
-    v.y[0] = v.y[valence_];
-    v.z[0] = v.z[valence_];
-    v.x[valence_ + 1] = v.x[1];
-    v.y[valence_ + 1] = v.y[1];
-    v.z[valence_ + 1] = v.z[1];
+    sums_[i] = sum;
+    areas_[i] = area;
+    firsts_[i] = first;
+    lasts_[i] = last;
 }
 
 void Patch::move_winner(const vcg::Point3f& s, float alpha_w) { winner_at_ += (s - origin_ - winner_at_) * alpha_w; }
 
-void Patch::smooth(int sweeps, float alpha_l) {
+void Patch::smooth(int count, float alpha_l) {
     const float wx = winner_at_[0];
     const float wy = winner_at_[1];
     const float wz = winner_at_[2];
-    Vectors now;
-    for (int sweep = 0; sweep < sweeps; ++sweep) {
-        for (int i = 1; i <= lanes_; ++i) {
-            const float ax = at_.x[i - 1], ay = at_.y[i - 1], az = at_.z[i - 1];  // r_(i-1)
-            const float bx = at_.x[i + 1], by = at_.y[i + 1], bz = at_.z[i + 1];  // r_(i+1)
-            const float fx = outer_first_.x[i] - wx, fy = outer_first_.y[i] - wy, fz = outer_first_.z[i] - wz;
-            const float lx = outer_last_.x[i] - wx, ly = outer_last_.y[i] - wy, lz = outer_last_.z[i] - wz;
-            // N = w x a + a x o_1 + (o_1 x o_2 + ..) + o_m x b + b x w: twice the star's area vector,
-            // which does not depend on r_i itself.
-            const float nx = outer_area_.x[i] + (ay * fz - az * fy) + (ly * bz - lz * by);
-            const float ny = outer_area_.y[i] + (az * fx - ax * fz) + (lz * bx - lx * bz);
-            const float nz = outer_area_.z[i] + (ax * fy - ay * fx) + (lx * by - ly * bx);
-            const float dx = (outer_sum_.x[i] + wx + ax + bx) * inverse_valence_[i] - at_.x[i];
-            const float dy = (outer_sum_.y[i] + wy + ay + by) * inverse_valence_[i] - at_.y[i];
-            const float dz = (outer_sum_.z[i] + wz + az + bz) * inverse_valence_[i] - at_.z[i];
-            // The tiny term keeps a star without area from dividing zero by zero.
-            const float along = (dx * nx + dy * ny + dz * nz) / (nx * nx + ny * ny + nz * nz + 1e-36F);
-            const float rate = alpha_l * moves_[i];
-            now.x[i] = at_.x[i] + rate * (dx - along * nx);
-            now.y[i] = at_.y[i] + rate * (dy - along * ny);
-            now.z[i] = at_.z[i] + rate * (dz - along * nz);
-        }
-        close_cycle(now);
-        at_ = now;
+    for (int i = 0; i < kLanes; ++i) {
+        still_.rate[i] = alpha_l * moves_[i];
+        still_.sum.x[i] += wx;
+        still_.sum.y[i] += wy;
+        still_.sum.z[i] += wz;
+        still_.first.x[i] -= wx;
+        still_.first.y[i] -= wy;
+        still_.first.z[i] -= wz;
+        still_.last.x[i] -= wx;
+        still_.last.y[i] -= wy;
+        still_.last.z[i] -= wz;
     }
+    (valence_ <= 8 ? sweeps_of_8 : sweeps_of_16)(still_, at_, valence_, count);
 }
 
-vcg::Point3f Patch::normal() const {
-    float sx[kLanes], sy[kLanes], sz[kLanes];
-    for (int i = 0; i < lanes_; ++i) {
-        const float ax = at_.x[i + 1] - winner_at_[0], ay = at_.y[i + 1] - winner_at_[1],
-                    az = at_.z[i + 1] - winner_at_[2];
-        const float bx = at_.x[i + 2] - winner_at_[0], by = at_.y[i + 2] - winner_at_[1],
-                    bz = at_.z[i + 2] - winner_at_[2];
-        const float nx = ay * bz - az * by;
-        const float ny = az * bx - ax * bz;
-        const float nz = ax * by - ay * bx;
-        const float inverse = 1 / std::sqrt(nx * nx + ny * ny + nz * nz + 1e-36F);
-        sx[i] = nx * inverse;
-        sy[i] = ny * inverse;
-        sz[i] = nz * inverse;
-    }
+vcg::Point3f Patch::normal() {
+    (valence_ <= 8 ? face_normals_of_8 : face_normals_of_16)(at_, winner_at_, unit_normals_);
     vcg::Point3f sum(0, 0, 0);
-    for (int i = 0; i < faces_; ++i) sum += vcg::Point3f(sx[i], sy[i], sz[i]);
+    for (int i = 0; i < faces_; ++i)
+        sum += vcg::Point3f(unit_normals_.x[i], unit_normals_.y[i], unit_normals_.z[i]);
     const float length = sum.Norm();
     return length > 0 ? sum / length : vcg::Point3f(0, 0, 0);
 }

@@ -52,8 +52,8 @@ void WinnerSearch::lay_out() {
     edge_ = std::max(kCellEdge * mean_edge_length(network_), 1e-5F);
     inverse_edge_ = 1 / edge_;
     std::size_t capacity = 64;
-    hash_shift_ = 64 - 6;
-    while (capacity < 4 * static_cast<std::size_t>(laid_out_for_)) {
+    hash_shift_ = 64 - 4;  // the last two bits of an index are those of x
+    while (capacity < 2 * static_cast<std::size_t>(laid_out_for_)) {
         capacity *= 2;
         --hash_shift_;
     }
@@ -104,16 +104,24 @@ void WinnerSearch::add(VertexId v) {
 void WinnerSearch::remove(VertexId v) { unlink(v, key_at(network_.slots()[v])); }
 
 void WinnerSearch::move(VertexId v, const vcg::Point3f& where) {
-    const std::uint64_t from = key_at(network_.slots()[v]);
-    const std::uint64_t to = key_of(cell_of(where[0]), cell_of(where[1]), cell_of(where[2]));
-    if (from == to) {
+    Slot& slot = network_.slots()[v];
+    const FourInts from = cell_of(load_xyz(&slot));
+    const FourInts to = cell_of(Four{where[0], where[1], where[2], 0});
+    if (from[0] == to[0] && from[1] == to[1] && from[2] == to[2]) {
         network_.set_position(v, where);
         return;
     }
-    unlink(v, from);
+    unlink(v, key_of(from[0], from[1], from[2]));
     network_.set_position(v, where);
-    link(v, to);
+    link(v, key_of(to[0], to[1], to[2]));
     if (2 * used_cells_ > cells_.size()) lay_out();
+}
+
+void WinnerSearch::prefetch(const vcg::Point3f& s) const {
+    const float half = 0.5F * edge_;
+    for (const float z : {s[2] - half, s[2] + half})
+        for (const float y : {s[1] - half, s[1] + half})
+            __builtin_prefetch(&cells_[home_of(key_of(cell_of(s[0] - half), cell_of(y), cell_of(z)))]);
 }
 
 void WinnerSearch::scan_cell(std::int32_t x, std::int32_t y, std::int32_t z, const vcg::Point3f& s,

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lanes.h"
 #include "network.h"
 
 namespace neuralmesh {
@@ -28,6 +29,9 @@ public:
     /// The vertex nearest to \p s. O(1) expected near the mesh; O(vertices) far from it.
     VertexId winner(const vcg::Point3f& s) const;
 
+    /// Brings into the cache what winner(s) will read first.
+    void prefetch(const vcg::Point3f& s) const;
+
     /// \p v has just been born. Amortised O(1).
     void add(VertexId v);
     /// \p v is about to be removed. O(1) expected.
@@ -36,12 +40,6 @@ public:
     void move(VertexId v, const vcg::Point3f& where);
     /// Lays the grid out anew if the network has outgrown it.
     void keep_up();
-
-    /// Cell coordinate of one position coordinate. Two positions with equal cells on all three axes need no
-    /// move() in the grid.
-    std::int32_t cell_of(float coordinate) const {
-        return static_cast<std::int32_t>((coordinate + kOffset) * inverse_edge_);
-    }
 
 private:
     /// Makes all coordinates positive: the core's frame lies in [-0.5, 0.5], start meshes somewhat beyond.
@@ -62,9 +60,16 @@ private:
                (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 21) |
                (static_cast<std::uint64_t>(static_cast<std::uint32_t>(z)) << 42);
     }
+    std::int32_t cell_of(float coordinate) const {
+        return static_cast<std::int32_t>((coordinate + kOffset) * inverse_edge_);
+    }
+    FourInts cell_of(Four position) const {
+        return __builtin_convertvector((position + kOffset) * inverse_edge_, FourInts);
+    }
     std::uint64_t key_at(const Slot& slot) const { return key_of(cell_of(slot.x), cell_of(slot.y), cell_of(slot.z)); }
+    /// Four cells in a row along x share a cache line.
     std::size_t home_of(std::uint64_t key) const {
-        return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> hash_shift_);
+        return static_cast<std::size_t>(((key >> 2) * 0x9e3779b97f4a7c15u) >> hash_shift_ << 2 | (key & 3));
     }
     Cell& cell_for(std::uint64_t key);
     VertexId head_of(std::uint64_t key) const;
