@@ -255,7 +255,7 @@ def parse_arguments(arguments):
     parser.add_argument("--point-size", type=float, default=1.0, help="pixels")
     parser.add_argument("--captions", default=None, help="one per column, separated by commas")
     parser.add_argument("--legend", default=None, metavar="TITLE",
-                        help="adds the colour scale, read off the last mesh's quality and colours")
+                        help="adds the colour scale, read off the mesh's quality and colours")
     return parser.parse_args(arguments)
 
 
@@ -283,6 +283,8 @@ def main(arguments=None):
         raise ValueError(f"There are {columns} columns of pictures, but {len(texts)} captions.")
     captions = [[""] * columns for _ in rows[1:]] + [texts]
     legend = legend_of_mesh(options.meshes[-1], options.legend) if options.legend else None
+    if legend and len(options.meshes) > 1:
+        legend.low, legend.high = "low", "high"  # each mesh is painted on a scale of its own
     if len(rows) == columns == 1 and not options.captions and not legend:
         images[0][0].save(options.out)
     else:
