@@ -28,7 +28,8 @@ void add_parameter(RichParameterList& list, const SettingInfo& info, Extra... ex
             list.addParam(RichInt(id, static_cast<int>(value), label, help, extra...));
             break;
         case SettingInfo::Kind::real:
-            list.addParam(RichFloat(id, static_cast<MESHLAB_SCALAR>(value), label, help, extra...));
+            // Hosts keep parameters as float, whatever their scalar is; from_host() takes that back.
+            list.addParam(RichFloat(id, static_cast<float>(value), label, help, extra...));
             break;
         case SettingInfo::Kind::choice: {
             QStringList names;

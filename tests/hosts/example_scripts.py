@@ -22,7 +22,7 @@ EXAMPLES = {
     "preview": {"target_vertices": 2000},
     "features": {"target_vertices": 5000, "select_features": True},
     "evenly_spaced": {"target_vertices": 5000, "utility_counter": 1},
-    "selected_points": {"target_vertices": 2000, "selected_only": True, "draw_from_faces": False},
+    "vertices_of_a_mesh": {"target_vertices": 2000, "draw_from_faces": False},
 }
 
 

@@ -6,6 +6,8 @@
 meshlabserver looks for plugins beside its own binary, so a copy of it gets a folder of its own with
 the format plugins and ours. Standard library only: run.sh's demo uses this, too."""
 
+import atexit
+import functools
 import json
 import os
 import shutil
@@ -27,7 +29,8 @@ def plugin_path(build, host=HOST):
 
 
 def make_folder(folder, plugin):
-    """A folder with a meshlabserver that finds `plugin`; made anew at each call."""
+    """A folder with a meshlabserver that finds `plugin`; made anew at each call. It must not be called bin, where
+    Debian's MeshLab looks elsewhere."""
     folder = Path(folder)
     shutil.rmtree(folder, ignore_errors=True)
     (folder / "plugins").mkdir(parents=True)
@@ -45,17 +48,33 @@ def environment(folder):
                 XDG_RUNTIME_DIR=str(folder), LC_ALL="C.UTF-8")
 
 
+@functools.lru_cache(maxsize=1)
+def display():
+    """An X server without a screen, started once and ended with this program: xvfb-run would start one for each
+    call, and now and then fails to clean up behind it."""
+    reading, writing = os.pipe()
+    xvfb = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x1024x24", "-nolisten", "tcp"],
+                            pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    atexit.register(xvfb.terminate)
+    os.close(writing)
+    with os.fdopen(reading) as pipe:
+        number = pipe.readline().strip()
+    if not number:
+        raise ServerError("Xvfb did not start: install the package xvfb.")
+    return f":{number}"
+
+
 def run(folder, *arguments, timeout=600):
-    """Runs meshlabserver under Xvfb. Returns (exit code, all it printed)."""
-    done = subprocess.run(["xvfb-run", "-a", "meshlabserver", *map(str, arguments)], env=environment(folder),
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
-                          timeout=timeout, check=False)
+    """Runs meshlabserver without a screen. Returns (exit code, all it printed)."""
+    variables = dict(environment(folder), DISPLAY=display())
+    done = subprocess.run(["meshlabserver", *map(str, arguments)], env=variables, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, errors="replace", timeout=timeout, check=False)
     return done.returncode, done.stdout
 
 
 def reconstruct(folder, cloud, script, out):
     """Runs `script` on `cloud` and saves the result with quality, colour and selection flags.
-    Returns the figures in the log. meshlabserver's exit code tells nothing of a failed save, so the file is looked at."""
+    Returns the figures in the log. The exit code tells nothing of a failed save, so the file is looked at."""
     out = Path(out)
     out.unlink(missing_ok=True)
     code, text = run(folder, "-i", cloud, "-o", out, "-m", "vq", "vc", "vf", "-s", script)

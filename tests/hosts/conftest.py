@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""What the host tests share: the build folder, the hosts with our plugin in them, clouds and bad inputs."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "hosts"))
+sys.path.insert(0, str(ROOT / "tests" / "experiments"))
+
+import meshlabserver  # noqa: E402
+import models  # noqa: E402
+
+PYTHON_NAME = "generate_surface_reconstruction_neural_mesh"
+# Made in code, or from a Debian package that run.sh installs; all closed and of genus 0.
+MODELS = ("sphere", "cup", "filleted-cube", "crossed-cylinders", "bunny")
+CLOUD_POINTS = 20_000
+
+
+def write_points(path, points, faces=()):
+    """A PLY in single precision, so that float and double hosts read the same numbers."""
+    header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}",
+              *(f"property float {axis}" for axis in "xyz"), f"element face {len(faces)}",
+              "property list uchar int vertex_indices", "end_header", ""]
+    corners = np.empty(len(faces), dtype=[("count", "u1"), ("corners", "<i4", 3)])
+    if len(faces):
+        corners["count"] = 3
+        corners["corners"] = faces
+    Path(path).write_bytes("\n".join(header).encode() + np.asarray(points, dtype="<f4").reshape(-1, 3).tobytes()
+                           + corners.tobytes())
+    return Path(path)
+
+
+@pytest.fixture(scope="session")
+def build():
+    folder = Path(os.environ.get("NEURALMESH_BUILD") or ROOT / "build")
+    assert (folder / "tests" / "write_mlx").exists(), f"{folder} is not built; './run.sh test' builds it."
+    return folder
+
+
+@pytest.fixture(scope="session")
+def server(build, tmp_path_factory):
+    """A folder with a meshlabserver 2020.09 that has our plugin."""
+    return meshlabserver.make_folder(tmp_path_factory.mktemp("server") / "meshlab", meshlabserver.plugin_path(build))
+
+
+@pytest.fixture(scope="session")
+def pymeshlab(build):
+    """The module pymeshlab with our plugin loaded."""
+    import pymeshlab as module
+    module.load_plugin(str(meshlabserver.plugin_path(build, "pymeshlab-2025.7")))
+    return module
+
+
+@pytest.fixture(scope="session")
+def model(tmp_path_factory):
+    """model(name) -> (cloud file, surface file) of a model, both in single precision."""
+    folder = tmp_path_factory.mktemp("models")
+
+    def files(name):
+        cloud, surface = folder / f"{name}_cloud.ply", folder / f"{name}.ply"
+        if not cloud.exists():
+            vertices, faces = models.load_model(name)
+            write_points(surface, vertices, faces)
+            write_points(cloud, models.make_cloud(vertices, faces, CLOUD_POINTS))
+        return cloud, surface
+
+    return files
+
+
+# Clouds that cannot be learned, and words the sentence about each has to hold.
+NAN, INF = float("nan"), float("inf")
+CORNERS = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]]
+BAD_CLOUDS = {
+    "empty": ([], "no points"),
+    "one_point": ([[1, 2, 3]], "4 distinct"),
+    "all_equal": ([[1, 2, 3]] * 100, "4 distinct"),
+    "three_distinct": (CORNERS[:3] * 50, "3 distinct"),
+    "on_a_line": ([[t, 2 * t, -t] for t in range(100)], "line"),
+    "not_a_number": ([*CORNERS, [NAN, 0, 0]], "not finite"),
+    "infinite": ([*CORNERS, [0, -INF, 0]], "not finite"),
+}
+
+
+def parameters(build):
+    """The table of parameters: a list of (id, type, low, high, default, advanced)."""
+    text = subprocess.run([str(build / "tests" / "write_mlx"), "--table"], check=True, stdout=subprocess.PIPE,
+                          text=True).stdout
+    rows = [line.split() for line in text.splitlines()]
+    return [(r[0], r[1], float(r[2]), float(r[3]), r[4], r[5] == "1") for r in rows]
+
+
+def out_of_range(build):
+    """(id, value) with one value below and one above the range of each number, and NaN for the reals."""
+    cases = []
+    for name, kind, low, high, _, _ in parameters(build):
+        if kind == "RichInt":
+            cases.append((name, int(low) - 1))
+            if high < 2**31 - 1:
+                cases.append((name, int(high) + 1))
+        elif kind == "RichFloat":
+            cases += [(name, low - 1), (name, high * 2 + 1), (name, NAN)]
+    return cases

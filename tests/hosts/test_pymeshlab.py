@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""pymeshlab: results as a dictionary, sentences as exceptions, an untouched MeshSet after them, and the same mesh as
+in meshlabserver to the last bit."""
+
+import subprocess
+import sys
+
+import meshlabserver
+import numpy as np
+import pytest
+import shapes
+from conftest import BAD_CLOUDS, CORNERS, MODELS, PYTHON_NAME, out_of_range, parameters, write_points
+
+COUNTS = ("vertices", "faces", "signals", "splits", "collapses", "genus", "boundary_loops", "components",
+          "feature_vertices", "stop_reason")
+MEASURES = ("rms_error", "mean_counter", "seconds")
+
+
+@pytest.fixture
+def meshes(pymeshlab):
+    return pymeshlab.MeshSet(verbose=False)
+
+
+def state(meshes):
+    """All that can be asked of every layer, in comparable form."""
+    layers = []
+    for mesh in meshes:
+        layers.append((mesh.id(), mesh.label(), mesh.vertex_matrix().tobytes(), mesh.face_matrix().tobytes(),
+                       mesh.vertex_normal_matrix().tobytes(), mesh.has_vertex_scalar(), mesh.has_vertex_color(),
+                       mesh.vertex_selection_array().tobytes(), mesh.face_selection_array().tobytes(),
+                       mesh.transform_matrix().tobytes(), mesh.is_visible()))
+    return layers, meshes.current_mesh_id() if len(layers) else None
+
+
+def learn(meshes, **values):
+    return meshes.apply_filter(PYTHON_NAME, **values)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_exact_count_sound_mesh_and_the_full_dictionary(build, meshes, model, tmp_path, name):
+    cloud, _ = model(name)
+    meshes.load_new_mesh(str(cloud))
+    told = learn(meshes, target_vertices=1500, select_features=True)
+    learned = meshes.current_mesh()
+
+    assert set(told) == {*COUNTS, *MEASURES}
+    assert all(type(told[key]) is int for key in COUNTS) and all(type(told[key]) is float for key in MEASURES)
+    assert learned.vertex_number() == told["vertices"] == 1500
+    assert learned.face_number() == told["faces"] == 2996
+    selected = learned.vertex_selection_array().copy()  # the next filter uses the selection for itself
+    topology = meshes.get_topological_measures()
+    assert topology["is_mesh_two_manifold"] and topology["boundary_edges"] == 0
+    assert topology["genus"] == told["genus"] == 0 and topology["connected_components_number"] == 1
+    assert topology["unreferenced_vertices"] == 0
+    assert told["stop_reason"] == 0 and told["signals"] > 0 and told["splits"] >= 1496 and told["seconds"] > 0
+    assert learned.has_vertex_scalar() and learned.has_vertex_color()
+    counters = learned.vertex_scalar_array()
+    assert counters.min() >= 0 and told["mean_counter"] == pytest.approx(counters.mean(), rel=1e-4)
+    assert selected.sum() == told["feature_vertices"] > 0
+    assert (selected == (counters > 1.0 * told["mean_counter"])).mean() > 0.999
+    assert (learned.transform_matrix() == np.eye(4)).all()
+    assert learned.label() == "Neural Mesh"
+
+
+def test_the_input_layer_stays_and_the_result_is_current(pymeshlab, meshes, model):
+    _, surface = model("sphere")
+    meshes.load_new_mesh(str(surface))
+    before, _ = state(meshes)
+    learn(meshes, target_vertices=200)
+    after, current = state(meshes)
+    assert after[:1] == before and len(after) == 2
+    assert current == after[1][0] and after[1][1] == "Neural Mesh"
+
+
+def test_a_second_run_adds_a_layer_of_its_own(meshes, model):
+    meshes.load_new_mesh(str(model("sphere")[0]))
+    for _ in range(2):
+        meshes.set_current_mesh(0)
+        learn(meshes, target_vertices=100)
+    labels = [mesh.label() for mesh in meshes]
+    assert len(labels) == 3 and labels[1] != labels[2] and all("Neural Mesh" in label for label in labels[1:])
+
+
+def assert_refused(pymeshlab, meshes, words, **values):
+    """Returns the sentence."""
+    before = state(meshes)
+    with pytest.raises(pymeshlab.PyMeshLabException) as caught:
+        learn(meshes, **values)
+    assert state(meshes) == before, "the MeshSet has changed"
+    sentence = str(caught.value).split("Details: ", 1)[1].strip()
+    assert words in sentence and sentence.endswith(".")
+    return sentence
+
+
+@pytest.mark.parametrize("name", BAD_CLOUDS)
+def test_bad_clouds_raise_the_sentence_that_meshlabserver_logs(build, server, pymeshlab, meshes, tmp_path, name):
+    points, words = BAD_CLOUDS[name]
+    cloud = write_points(tmp_path / "cloud.ply", points)
+    # pymeshlab's readers drop points that are not finite, and its Mesh() cannot be empty.
+    if points:
+        meshes.add_mesh(pymeshlab.Mesh(np.array(points, dtype=float)))
+    else:
+        meshes.load_new_mesh(str(cloud))
+    sentence = assert_refused(pymeshlab, meshes, words, target_vertices=100)
+    script = meshlabserver.write_script(build, tmp_path / "s.mlx", target_vertices=100)
+    _, text = meshlabserver.run(server, "-i", cloud, "-s", script)
+    assert sentence in text.splitlines()
+
+
+def test_every_parameter_out_of_range_raises(build, pymeshlab, meshes):
+    meshes.add_mesh(pymeshlab.Mesh(np.array(CORNERS, dtype=float)))
+    for name, value in out_of_range(build):
+        assert_refused(pymeshlab, meshes, f"The parameter {name} ", **{name: value})
+
+
+def test_nothing_selected_raises(pymeshlab, meshes, model):
+    meshes.load_new_mesh(str(model("sphere")[1]))
+    assert_refused(pymeshlab, meshes, "Only the selected faces", selected_only=True)
+    assert_refused(pymeshlab, meshes, "Only the selected vertices", selected_only=True, draw_from_faces=False)
+
+
+@pytest.mark.parametrize("draw_from_faces", [True, False])
+def test_selected_only_learns_the_selected_part(pymeshlab, meshes, draw_from_faces):
+    both = shapes.merged(shapes.sphere(subdivisions=4), shapes.sphere(centre=(5, 0, 0), subdivisions=4))
+    meshes.add_mesh(pymeshlab.Mesh(*both))
+    if draw_from_faces:
+        meshes.compute_selection_by_condition_per_face(condselect="(x0 > 2.5)")
+    else:
+        meshes.compute_selection_by_condition_per_vertex(condselect="(x > 2.5)")
+    learn(meshes, target_vertices=300, selected_only=True, draw_from_faces=draw_from_faces)
+    x = meshes.current_mesh().vertex_matrix()[:, 0]
+    assert x.min() == pytest.approx(4, abs=0.1) and x.max() == pytest.approx(6, abs=0.1)
+
+
+def test_a_mesh_with_faces_is_drawn_over_its_area(pymeshlab, meshes):
+    """A tetrahedron of four vertices has nothing but its faces to learn from."""
+    tetrahedron = pymeshlab.Mesh(np.array([[1.0, 1, 1], [-1, -1, 1], [-1, 1, -1], [1, -1, -1]]),
+                                 np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]))
+    meshes.add_mesh(tetrahedron)
+    told = learn(meshes, target_vertices=500)
+    assert told["vertices"] == 500 and told["rms_error"] < 1
+
+
+LIST_PARAMETERS = """import pymeshlab, sys
+pymeshlab.load_plugin(sys.argv[1])
+pymeshlab.print_filter_parameter_list(sys.argv[2])
+"""
+
+
+def test_parameters_and_defaults_are_those_of_the_table(build):
+    plugin = meshlabserver.plugin_path(build, "pymeshlab-2025.7")
+    text = subprocess.run([sys.executable, "-c", LIST_PARAMETERS, str(plugin), PYTHON_NAME], check=True,
+                          stdout=subprocess.PIPE, text=True).stdout
+    listed = dict(line.strip().split(" : ") for line in text.splitlines() if " : " in line)
+    for name, kind, _, _, default, _ in parameters(build):
+        python_type, python_default = listed.pop(name).split(" = ")
+        assert python_type == {"RichBool": "bool", "RichInt": "int", "RichFloat": "float", "RichEnum": "str"}[kind], name
+        if kind != "RichEnum":
+            assert python_default.lower() == default, name
+    assert not listed
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_the_same_mesh_as_in_meshlabserver_whatever_the_threads(build, server, meshes, model, tmp_path, name):
+    cloud, _ = model(name)
+    script = meshlabserver.write_script(build, tmp_path / "s.mlx", target_vertices=1500, random_seed=7, threads=1)
+    there = meshlabserver.reconstruct(server, cloud, script, tmp_path / "out.ply")
+    meshes.load_new_mesh(str(tmp_path / "out.ply"))
+    expected = meshes.current_mesh()
+    for threads in (0, 2):
+        meshes.load_new_mesh(str(cloud))
+        here = learn(meshes, target_vertices=1500, random_seed=7, threads=threads)
+        learned = meshes.current_mesh()
+        assert (learned.face_matrix() == expected.face_matrix()).all()
+        assert (learned.vertex_matrix().astype("f4") == expected.vertex_matrix().astype("f4")).all()
+        assert (learned.vertex_scalar_array().astype("f4") == expected.vertex_scalar_array().astype("f4")).all()
+        for key in COUNTS:
+            assert here[key] == there[key], key
+    meshes.load_new_mesh(str(cloud))
+    learn(meshes, target_vertices=1500, random_seed=8)
+    assert not np.array_equal(meshes.current_mesh().face_matrix(), expected.face_matrix()), "the seed has no effect"
+
+
+def test_nothing_is_printed(pymeshlab, model, capfd):
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.load_new_mesh(str(model("sphere")[0]))
+    capfd.readouterr()
+    learn(meshes, target_vertices=200)
+    printed = capfd.readouterr()
+    assert (printed.out, printed.err) == ("", "")

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""A plugin in a host it is not built for is refused with a sentence, and never runs."""
+
+import subprocess
+import sys
+
+import meshlabserver
+import pytest
+from conftest import PYTHON_NAME
+
+HOSTS = ("meshlab-2020.09", "meshlab-2022.02", "meshlab-2025.07", "pymeshlab-2025.7")
+
+
+@pytest.mark.parametrize("host", HOSTS[1:])
+def test_meshlab_2020_loads_no_later_plugin(build, model, tmp_path, host):
+    """Its loader misses the later interface, says so, names the file, and does without the filter."""
+    plugin = meshlabserver.plugin_path(build, host)
+    folder = meshlabserver.make_folder(tmp_path / "meshlab", plugin)
+    script = meshlabserver.write_script(build, tmp_path / "s.mlx", target_vertices=100)
+    code, text = meshlabserver.run(folder, "-i", model("sphere")[0], "-o", tmp_path / "out.ply", "-s", script)
+    assert code == 255, text
+    assert "Cannot load library" in text and "libfilter_neuralmesh.so" in text
+    assert "filter Surface Reconstruction: Neural Mesh not found" in text
+    assert not (tmp_path / "out.ply").exists()
+
+
+@pytest.mark.parametrize("kind, built", [("older_release", "2020.07 (float)"), ("other_scalar", "2020.09 (double)")])
+def test_meshlab_2020_is_told_by_the_plugin_itself(build, model, tmp_path, kind, built):
+    """This host would run them into its memory; it checks nothing."""
+    plugin = build / "tests" / "wrong_plugins" / kind / "libfilter_neuralmesh.so"
+    folder = meshlabserver.make_folder(tmp_path / "meshlab", plugin)
+    script = meshlabserver.write_script(build, tmp_path / "s.mlx", target_vertices=100)
+    code, text = meshlabserver.run(folder, "-i", model("sphere")[0], "-o", tmp_path / "out.ply", "-s", script)
+    assert code == 255, text
+    assert (f"This Neural Mesh plugin is built for MeshLab {built}, but the running MeshLab is 2020.09 (float). "
+            "Replace the plugin by the one built for this MeshLab.") in text.splitlines()
+    assert not (tmp_path / "out.ply").exists()
+
+
+LOAD = """import pymeshlab, sys
+try:
+    pymeshlab.load_plugin(sys.argv[1])
+except pymeshlab.PyMeshLabException as error:
+    sys.exit("refused: " + str(error))
+pymeshlab.MeshSet(verbose=False).apply_filter(sys.argv[2])
+"""
+
+
+@pytest.mark.parametrize("host", HOSTS[:3])
+def test_pymeshlab_loads_no_plugin_of_another_host(build, host):
+    plugin = meshlabserver.plugin_path(build, host)
+    done = subprocess.run([sys.executable, "-c", LOAD, str(plugin), PYTHON_NAME], stderr=subprocess.PIPE, text=True,
+                          check=False)
+    assert done.returncode == 1
+    assert done.stderr.startswith("refused: ") and "libfilter_neuralmesh.so" in done.stderr
+
+
+@pytest.mark.parametrize("host", HOSTS)
+def test_the_plugin_exports_its_entry_points_alone_and_looks_nowhere(build, host):
+    plugin = meshlabserver.plugin_path(build, host)
+    names = subprocess.run(["nm", "-D", "--defined-only", str(plugin)], check=True, stdout=subprocess.PIPE,
+                           text=True).stdout
+    functions = [line.split()[2] for line in names.splitlines() if line.split()[1] == "T"]
+    assert sorted(functions) == ["qt_plugin_instance", "qt_plugin_query_metadata"]
+    dynamic = subprocess.run(["readelf", "-dW", str(plugin)], check=True, stdout=subprocess.PIPE, text=True).stdout
+    assert "RPATH" not in dynamic and "RUNPATH" not in dynamic and "NOW" in dynamic
+    segments = subprocess.run(["readelf", "-lW", str(plugin)], check=True, stdout=subprocess.PIPE, text=True).stdout
+    assert "GNU_RELRO" in segments
+    undefined = subprocess.run(["nm", "-DC", "-u", str(plugin)], check=True, stdout=subprocess.PIPE, text=True).stdout
+    assert "neuralmesh" not in undefined and "__stack_chk_fail" in undefined
