@@ -57,7 +57,8 @@ Learner::Learner(const TargetSpace& target, const Settings& settings, Network st
     feature_counters_.resize(network_.slot_count());
 }
 
-StopReason Learner::run(Progress& progress) {
+StopReason Learner::run(int per_vertex, Progress& progress) {
+    if (!settle(per_vertex, progress)) return StopReason::cancelled;
     while (network_.vertex_count() < settings_.target_vertices) {
         basic_step(next_signal());
         if (signals_ % settings_.signals_per_split == 0) vertex_split();

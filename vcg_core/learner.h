@@ -29,9 +29,9 @@ public:
     Learner(const Learner&) = delete;
     Learner& operator=(const Learner&) = delete;
 
-    /// Learns until the network has settings.target_vertices vertices and has settled, the mean counter falls
+    /// Lets the start mesh learn \p per_vertex signals a vertex, then learns until the network has settings.target_vertices vertices and has settled, the mean counter falls
     /// below its bound (eq 8), \p progress asks to stop, or signal_bound() is reached.
-    StopReason run(Progress& progress);
+    StopReason run(int per_vertex, Progress& progress);
 
     /// One signal: the winner moves towards it, its ring is smoothed, its counters learn (eq 1 to 4, 6).
     /// O(1) expected.

@@ -8,19 +8,63 @@
 #include <string>
 
 #include "distance.h"
+#include "fit.h"
 #include "learner.h"
+#include "shell.h"
 
 namespace neuralmesh {
 
 namespace {
 
 constexpr int kDistanceSamples = 20000;
+/// A shell stands off the cloud by its radius; so many signals a vertex bring it down.
+constexpr int kSignalsToLand = 100;
+
+/// Where the run is as a whole, when it is in one of its parts.
+class PartOf : public Progress {
+public:
+    PartOf(Progress& whole, double from, double to) : whole_(whole), from_(from), to_(to) {}
+    bool operator()(double fraction, const char* text) override {
+        return whole_(from_ + fraction * (to_ - from_), text);
+    }
+
+private:
+    Progress& whole_;
+    double from_;
+    double to_;
+};
+
+struct Start {
+    Network network;
+    int signals_to_land;
+};
 
 /// The paper's start: a tetrahedron in the middle of the cloud, which lies around the origin.
-Network tetrahedron() {
+Start tetrahedron() {
     constexpr float a = 0.1F;
-    return Network({{a, a, a}, {-a, -a, a}, {-a, a, -a}, {a, -a, -a}},
-                   {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
+    return {Network({{a, a, a}, {-a, -a, a}, {-a, a, -a}, {a, -a, -a}},
+                    {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}),
+            0};
+}
+
+Start start_of(const TargetSpace& target, const Settings& settings, Report& report, Progress& progress) {
+    if (settings.start_mesh == kTetrahedron) return tetrahedron();
+    ShellOptions options;
+    options.target_vertices = settings.target_vertices;
+    Random random(static_cast<std::uint64_t>(settings.random_seed) + 2);
+    const StartMesh shell = shell_of(target, options, random, progress);
+    report.warnings = shell.warnings;
+    const auto vertices = static_cast<int>(shell.positions.size());
+    if (vertices > settings.target_vertices) {
+        report.warnings.push_back("The shell of the cloud, with " + std::to_string(shell.components) +
+                                  " components and genus " + std::to_string(shell.genus) + ", needs " +
+                                  std::to_string(vertices) + " vertices, more than the " +
+                                  std::to_string(settings.target_vertices) +
+                                  " asked for: the learning started from a tetrahedron instead. Raise "
+                                  "target_vertices to keep the shape.");
+        return tetrahedron();
+    }
+    return {Network(shell.positions, shell.faces), kSignalsToLand};
 }
 
 void write_geometry(const Network& network, const Frame& frame, NeuralMesh& mesh) {
@@ -36,12 +80,13 @@ void write_geometry(const Network& network, const Frame& frame, NeuralMesh& mesh
 }
 
 /// eq 7: a vertex is a feature if its counter exceeds C_nc x Mean(n_c).
-void write_counters(const Learner& learner, const Settings& settings, NeuralMesh& mesh) {
-    const Network& network = learner.network();
+/// \p origin: whose counter a vertex of \p network carries; empty: its own.
+void write_counters(const Learner& learner, const Network& network, const std::vector<VertexId>& origin,
+                    const Settings& settings, NeuralMesh& mesh) {
     const double mean = learner.mean_counter();
     for (VertexId v = 0; v < network.slot_count(); ++v) {
         if (!network.alive(v)) continue;
-        const float n_c = learner.feature_counters().value(v);
+        const float n_c = learner.feature_counters().value(origin.empty() ? v : origin[static_cast<std::size_t>(v)]);
         mesh.counters.push_back(n_c);
         mesh.features.push_back(static_cast<double>(n_c) > settings.feature_threshold * mean ? 1 : 0);
         mesh.report.feature_vertices += mesh.features.back();
@@ -49,8 +94,7 @@ void write_counters(const Learner& learner, const Settings& settings, NeuralMesh
     mesh.report.mean_counter = mean;
 }
 
-void write_report(const Learner& learner, Report& report) {
-    const Network& network = learner.network();
+void write_report(const Learner& learner, const Network& network, Report& report) {
     report.vertices = network.vertex_count();
     report.faces = network.face_count();
     report.signals = learner.signals();
@@ -59,6 +103,10 @@ void write_report(const Learner& learner, Report& report) {
     report.genus = network.genus();
     report.boundary_loops = network.boundary_loop_count();
     report.components = network.component_count();
+    if (learner.forced() && report.stop_reason == StopReason::target_reached)
+        report.warnings.push_back(
+            "Growth had stalled, so it was forced: more vertices were asked for than the points have places for. "
+            "Lower target_vertices if the mesh has slivers.");
     if (report.stop_reason == StopReason::cut_short)
         report.warnings.push_back("The mesh was cut short at " + std::to_string(report.vertices) +
                                   " vertices: it did not grow on within the bound on signals. Lower "
@@ -71,13 +119,25 @@ NeuralMesh reconstruct(const TargetSpace& target, const Settings& settings, Prog
     const auto start = std::chrono::steady_clock::now();
     settings.check();
     NeuralMesh mesh;
-    Learner learner(target, settings, tetrahedron());
-    mesh.report.stop_reason = learner.run(progress);
-    write_geometry(learner.network(), target.frame(), mesh);
-    write_counters(learner, settings, mesh);
-    write_report(learner, mesh.report);
+    PartOf starting(progress, 0, 0.1);
+    PartOf learning(progress, 0.1, settings.fit_to_points ? 0.8 : 1);
+    PartOf fitting(progress, 0.8, 1);
+    Start first = start_of(target, settings, mesh.report, starting);
+    Learner learner(target, settings, std::move(first.network));
+    mesh.report.stop_reason = learner.run(first.signals_to_land, learning);
+
+    Network network = learner.network();
+    FitReport fit;
+    if (settings.fit_to_points && mesh.report.stop_reason != StopReason::cancelled) {
+        FitOptions options;
+        fit = fit_to_points(network, target, options, settings.threads,
+                            static_cast<std::uint64_t>(settings.random_seed) + 3, fitting);
+    }
+    write_geometry(network, target.frame(), mesh);
+    write_counters(learner, network, fit.origin, settings, mesh);
+    write_report(learner, network, mesh.report);
     Random random(static_cast<std::uint64_t>(settings.random_seed) + 1);
-    mesh.report.rms_error = 100 * rms_distance(target, learner.network(), kDistanceSamples, random);
+    mesh.report.rms_error = 100 * rms_distance(target, network, kDistanceSamples, random);
     mesh.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return mesh;
 }

@@ -60,6 +60,12 @@ std::vector<SettingInfo> common_rows() {
             "What makes a vertex worth splitting. Normal counter: how much the surface bends there, so the mesh "
             "is dense at curved places and sparse at flat ones. Signal counter: how often the vertex wins, so "
             "the mesh follows the density of the cloud."),
+        row(&S::start_mesh, "start_mesh", "Start mesh", {"Shell of the cloud", "Tetrahedron"},
+            "What the learning starts from. Shell of the cloud: a coarse mesh around the points that already has "
+            "their components and handles. Tetrahedron: the paper's, for one piece without handles."),
+        row(&S::fit_to_points, "fit_to_points", "Fit to points",
+            "After learning, move the vertices by least squares to where the surface is closest to the points. "
+            "Switched off: the mesh as the paper's learning leaves it."),
         row(&S::draw_from_faces, "draw_from_faces", "Draw from faces",
             "A layer that has faces is sampled uniformly over its area. Switched off, or if the layer has no "
             "faces, its vertices are the cloud."),
@@ -108,8 +114,8 @@ std::vector<SettingInfo> advanced_rows() {
             "Learning goes on for this many signals per vertex after the last split, so that positions and "
             "counters speak of the final mesh."),
         row(&S::stop_below_mean_counter, "stop_below_mean_counter", "Stop below mean counter", 0, 1e6,
-            "α_t of the paper (eq 8): growth ends before the target when the mean counter falls below this. "
-            "0: off."),
+            "α_t of the paper (eq 8), as an angle in degrees: growth ends before the target when a signal turns the "
+            "winner's normal by less than this, root mean square over the normalization window. 0: off."),
     };
 }
 

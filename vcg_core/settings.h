@@ -19,10 +19,18 @@ enum UtilityCounter : int {
     kSignalCounter = 1,  ///< number of wins: density of the mesh follows density of the cloud
 };
 
+/// What the learning starts from.
+enum StartShape : int {
+    kShell = 0,        ///< the shell of the cloud: its components and handles are there from the start
+    kTetrahedron = 1,  ///< the paper's: one piece without handles
+};
+
 /// All parameters of a run. Plain data; check() says whether it makes sense.
 struct Settings {
     int target_vertices = 10000;
     int utility_counter = kNormalCounter;
+    int start_mesh = kShell;
+    bool fit_to_points = true;
     bool draw_from_faces = true;
     bool selected_only = false;
     bool color_by_counter = true;
