@@ -85,6 +85,8 @@ def decimated(meshes, count):
     """
     source = meshes.current_mesh_id()
     meshes.generate_copy_of_current_mesh()
+    # Points that no face uses would be counted here and be gone after the collapse.
+    meshes.meshing_remove_unreferenced_vertices()
     seconds = (0.0, 0.0)
     if meshes.current_mesh().vertex_number() <= count:
         return seconds
@@ -102,6 +104,7 @@ def decimated(meshes, count):
             meshes.delete_current_mesh()
             meshes.set_current_mesh(source)
             meshes.generate_copy_of_current_mesh()
+            meshes.meshing_remove_unreferenced_vertices()
             clock = Clock()
             meshes.meshing_decimation_quadric_edge_collapse(targetfacenum=larger)
             seconds = clock.read()
