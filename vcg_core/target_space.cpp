@@ -38,7 +38,7 @@ void TargetSpace::set_frame(const vcg::Box3d& box, std::size_t not_finite, std::
                          "example with the filter 'Conditional Vertex Selection' and 'Delete Selected Vertices'.");
     frame_.centre = (box.min + box.max) / 2;
     frame_.diagonal = (box.max - box.min).Norm();
-    if (!(frame_.diagonal > 0))
+    if (box.min == box.max)
         throw InputError("All points of the layer are equal: a surface needs at least 4 distinct points.");
     if (!((frame_.diagonal - frame_.diagonal) == 0 && frame_.diagonal > 1e-150))
         throw InputError("The layer's bounding box is too large or too small for double precision: scale it first.");
