@@ -19,7 +19,7 @@ venv="$build/venv"
 compile_packages="ca-certificates cmake g++ libeigen3-dev libglew-dev libqt5opengl5-dev meshlab ninja-build python3
     qtbase5-dev xz-utils"
 venv_packages="python3-venv"
-demo_packages="glmark2-data libgl1-mesa-dri openbox python3-numpy python3-pil xauth xdotool xvfb"
+demo_packages="glmark2-data libgl1-mesa-dri python3-numpy python3-pil xauth xdotool xvfb"
 test_packages="binutils libbenchmark-dev libgtest-dev parallel"
 python=/usr/bin/python3
 
