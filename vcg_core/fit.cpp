@@ -11,6 +11,7 @@
 
 #include "fit_flips.h"
 #include "fit_parallel.h"
+#include "fit_redistribute.h"
 #include "fit_solve.h"
 #include "random.h"
 
@@ -34,9 +35,19 @@ constexpr float kWeightStep = 2.5F;
 /// A flip has to be worth this many squared standard deviations.
 constexpr float kFlipDeviations = 2;
 
+/// Share of the vertices that one redistribution may move, and how many last rounds are without any.
+constexpr double kShiftedShare = 0.05;
+constexpr int kQuietRounds = 3;
+
+/// Points and for each the vertex that it was last found near to.
+struct Followed {
+    std::vector<Vec> points;
+    std::vector<VertexId> near;
+};
+
 struct Split {
-    std::vector<Vec> fitted;
-    std::vector<Vec> held;
+    Followed fitted;
+    Followed held;
 };
 
 /// The points to fit to and those held back: all of a cloud, or a random choice.
@@ -56,8 +67,8 @@ Split choose_points(const TargetSpace& target, std::size_t wanted, Random& rando
     }
     const std::size_t held = std::min(all.size() / kHeldShare, kMostHeld);
     Split split;
-    split.held.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(held));
-    split.fitted.assign(all.begin() + static_cast<std::ptrdiff_t>(held), all.end());
+    split.held.points.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(held));
+    split.fitted.points.assign(all.begin() + static_cast<std::ptrdiff_t>(held), all.end());
     return split;
 }
 
@@ -76,12 +87,42 @@ float mean_edge(const Surface& surface) {
     return static_cast<float>(sum / (3 * static_cast<double>(surface.faces.size())));
 }
 
-std::vector<FaceTree::Hit> nearest_faces(const FaceTree& tree, const std::vector<Vec>& points, int threads) {
-    std::vector<FaceTree::Hit> hits(points.size());
-    for_chunks(points.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) hits[i] = tree.nearest(points[i]);
+std::vector<Hit> exact_hits(const Surface& surface, const Followed& followed, int threads) {
+    const FaceTree tree(surface);
+    std::vector<Hit> hits(followed.points.size());
+    for_chunks(hits.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) hits[i] = tree.nearest(followed.points[i]);
     });
     return hits;
+}
+
+std::vector<Hit> walked_hits(const Surface& surface, const Followed& followed, int threads) {
+    std::vector<Hit> hits(followed.points.size());
+    for_chunks(hits.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            hits[i] = walk_to_nearest(surface, followed.points[i], followed.near[i]);
+    });
+    return hits;
+}
+
+/// Sorts the points by their faces, which also brings neighbours together in memory.
+FacePoints by_face(const Surface& surface, Followed& followed, const std::vector<Hit>& hits) {
+    FacePoints result;
+    result.first.assign(surface.faces.size() + 1, 0);
+    for (const Hit& hit : hits) ++result.first[index(hit.face) + 1];
+    std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
+    result.ties.resize(hits.size());
+    std::vector<int> next(result.first.begin(), result.first.end() - 1);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        result.ties[index(next[index(hits[i].face)]++)] = {followed.points[i], 1, hits[i].foot};
+    followed.near.resize(hits.size());
+    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+        for (auto i = index(result.first[f]); i < index(result.first[f + 1]); ++i) {
+            followed.points[i] = result.ties[i].point;
+            followed.near[i] = nearest_corner(surface, {static_cast<int>(f), result.ties[i].foot});
+        }
+    }
+    return result;
 }
 
 class Fit {
@@ -92,9 +133,10 @@ public:
     void run(FitReport& report, Progress& progress);
 
 private:
-    FacePoints tie(const FaceTree& tree);
-    double held_rms(const FaceTree& tree) const;
-    double move(const FacePoints& ties, FaceTree& tree, Surface& surface, bool first);
+    FacePoints tie(const Surface& surface, bool exact);
+    double rms(const std::vector<Hit>& hits) const;
+    double move(const FacePoints& ties, Surface& surface, bool first);
+    bool shift_vertices(const Surface& surface, const FacePoints& ties, FitReport& report);
     void follow(const Surface& surface, FacePoints& ties) const;
 
     Network& network_;
@@ -104,40 +146,33 @@ private:
     float outlier_ = 0;    ///< for the judgement: fixed from the start
     float deviation_ = 0;  ///< of the fitted points, robust
     float weight_ = 0;
+    std::vector<VertexId> origin_;  ///< as FitReport::origin, of the current state
 };
 
 /// Ties every fitted point to its nearest face.
-FacePoints Fit::tie(const FaceTree& tree) {
-    const std::vector<FaceTree::Hit> hits = nearest_faces(tree, points_.fitted, threads_);
+FacePoints Fit::tie(const Surface& surface, bool exact) {
+    const std::vector<Hit> hits = exact ? exact_hits(surface, points_.fitted, threads_)
+                                        : walked_hits(surface, points_.fitted, threads_);
     std::vector<float> distances(hits.size());
     for (std::size_t i = 0; i < hits.size(); ++i) distances[i] = std::sqrt(hits[i].foot.squared_distance);
     // Residuals are symmetric about the surface, so the median of their absolute values is the MAD.
     deviation_ = 1.4826F * median(std::move(distances));
-    FacePoints ties;
-    ties.first.assign(index(network_.face_count()) + 1, 0);
-    for (const FaceTree::Hit& hit : hits) ++ties.first[index(hit.face) + 1];
-    std::partial_sum(ties.first.begin(), ties.first.end(), ties.first.begin());
-    ties.ties.resize(hits.size());
-    std::vector<int> next(ties.first.begin(), ties.first.end() - 1);
-    const float squared = outlier_ * outlier_;
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-        const Foot& foot = hits[i].foot;
-        const float influence = squared > 0 && foot.squared_distance > squared ? squared / foot.squared_distance : 1;
-        ties.ties[index(next[index(hits[i].face)]++)] = {points_.fitted[i], influence, foot};
-    }
+    FacePoints ties = by_face(surface, points_.fitted, hits);
+    if (!(outlier_ > 0)) outlier_ = std::max(kOutlierDeviations * deviation_, kOutlierEdges * mean_edge(surface));
+    for (FacePoints::Tie& tie : ties.ties)
+        tie.influence = std::min(1.0F, outlier_ * outlier_ / std::max(tie.foot.squared_distance, 1e-20F));
     return ties;
 }
 
-double Fit::held_rms(const FaceTree& tree) const {
-    const std::vector<FaceTree::Hit> hits = nearest_faces(tree, points_.held, threads_);
+double Fit::rms(const std::vector<Hit>& hits) const {
     double sum = 0;
-    for (const FaceTree::Hit& hit : hits)
+    for (const Hit& hit : hits)
         sum += static_cast<double>(std::min(hit.foot.squared_distance, outlier_ * outlier_));
     return std::sqrt(sum / static_cast<double>(hits.size()));
 }
 
 /// Solves for several bending weights, takes what brings the points held back closest. \return their error
-double Fit::move(const FacePoints& ties, FaceTree& tree, Surface& surface, bool first) {
+double Fit::move(const FacePoints& ties, Surface& surface, bool first) {
     std::vector<float> weights{weight_, weight_ / kWeightStep, weight_ * kWeightStep};
     if (first) weights.assign(std::begin(kFirstWeights), std::end(kFirstWeights));
     const FitSystem system(network_, surface, ties, threads_);
@@ -148,11 +183,11 @@ double Fit::move(const FacePoints& ties, FaceTree& tree, Surface& surface, bool 
     std::size_t best = 0;
     double best_rms = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
-        tree.refit(moved[i]);
-        const double rms = held_rms(tree);
-        if (i > 0 && rms >= best_rms) continue;
+        surface.at = moved[i];
+        const double error = rms(walked_hits(surface, points_.held, threads_));
+        if (i > 0 && error >= best_rms) continue;
         best = i;
-        best_rms = rms;
+        best_rms = error;
     }
     weight_ = weights[best];
     surface.at = std::move(moved[best]);
@@ -175,27 +210,50 @@ void Fit::follow(const Surface& surface, FacePoints& ties) const {
     });
 }
 
+/// Moves vertices to where the error is and keeps the records. \return whether the mesh has changed
+bool Fit::shift_vertices(const Surface& surface, const FacePoints& ties, FitReport& report) {
+    const int most = std::max(1, static_cast<int>(kShiftedShare * static_cast<double>(network_.vertex_count())));
+    const Redistribution done = redistribute(network_, surface, ties, most, threads_);
+    if (done.merges.empty()) return false;
+    std::vector<VertexId> heir(index(network_.slot_count()));
+    std::iota(heir.begin(), heir.end(), 0);
+    for (const Redistribution::Merge& merge : done.merges) heir[index(merge.gone)] = merge.into;
+    for (Followed* followed : {&points_.fitted, &points_.held})
+        for (VertexId& v : followed->near) v = heir[index(v)];
+    for (const Redistribution::Insertion& insertion : done.insertions)
+        origin_[index(insertion.added)] = origin_[index(insertion.beside)];
+    report.moved_vertices += static_cast<int>(done.merges.size());
+    return true;
+}
+
 void Fit::run(FitReport& report, Progress& progress) {
+    const Network before = network_;
     Network best = network_;
+    origin_ = report.origin;
+    double best_rms = 0;
     for (int round = 0; round < options_.rounds; ++round) {
         const std::string text = "Fitting to the points, round " + std::to_string(round + 1);
         if (!progress(static_cast<double>(round) / options_.rounds, text.c_str())) break;
         Surface surface(network_);
-        FaceTree tree(surface);
-        FacePoints ties = tie(tree);
+        FacePoints ties = tie(surface, round == 0);
         if (round == 0) {
-            outlier_ = std::max(kOutlierDeviations * deviation_, kOutlierEdges * mean_edge(surface));
+            const std::vector<Hit> hits = exact_hits(surface, points_.held, threads_);
             report.outlier_distance = static_cast<double>(outlier_);
-            report.rms_before = report.rms_after = held_rms(tree);
-            ties = tie(tree);
+            report.rms_before = report.rms_after = best_rms = rms(hits);
+            by_face(surface, points_.held, hits);
         }
-        const double rms = move(ties, tree, surface, round == 0);
-        if (rms < report.rms_after) {
+        if (options_.redistribute && round > 0 && round + kQuietRounds < options_.rounds &&
+            shift_vertices(surface, ties, report)) {
+            surface = Surface(network_);
+            ties = tie(surface, false);
+        }
+        const double error = move(ties, surface, round == 0);
+        if (error < best_rms) {
             best = network_;
-            report.rms_after = rms;
+            report.origin = origin_;
+            best_rms = error;
             report.rounds = round + 1;
             report.bending_weight = static_cast<double>(weight_);
-            report.improved = true;
         }
         if (options_.flip_edges && round + 1 < options_.rounds) {
             follow(surface, ties);
@@ -203,6 +261,14 @@ void Fit::run(FitReport& report, Progress& progress) {
                 flip_edges(network_, surface, ties, kFlipDeviations * deviation_ * deviation_, threads_);
         }
     }
+    // The walks of the rounds may miss a nearer face; the verdict is exact.
+    best_rms = rms(exact_hits(Surface(best), points_.held, threads_));
+    report.improved = best_rms < report.rms_before;
+    if (!report.improved) {
+        best = before;
+        for (VertexId v = 0; v < before.slot_count(); ++v) report.origin[index(v)] = before.alive(v) ? v : -1;
+    }
+    report.rms_after = std::min(best_rms, report.rms_before);
     network_ = std::move(best);
 }
 
@@ -217,7 +283,7 @@ FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOp
     const auto wanted = static_cast<std::size_t>(std::max<long long>(
         options.min_points, static_cast<long long>(options.points_per_vertex) * network.vertex_count()));
     Split points = choose_points(target, wanted, random);
-    if (points.fitted.size() < kLeastPoints || network.face_count() == 0) return report;
+    if (points.fitted.points.size() < kLeastPoints || network.face_count() == 0) return report;
     Fit(network, std::move(points), options, threads).run(report, progress);
     return report;
 }

@@ -72,15 +72,31 @@ Surface::Surface(const Network& network) : faces(network.faces()) {
         for (const VertexId v : faces[f]) face_of[index(next[index(v)]++)] = static_cast<int>(f);
 }
 
-FaceTree::FaceTree(const Surface& surface) : faces_(surface.faces), order_(faces_.size()), corners_(faces_.size()) {
-    std::vector<Vec> centres(faces_.size());
-    for (std::size_t f = 0; f < faces_.size(); ++f)
+Hit walk_to_nearest(const Surface& surface, const Vec& p, VertexId start) {
+    Hit best{-1, {std::numeric_limits<float>::max(), {1, 0, 0}}};
+    for (VertexId v = start;;) {
+        const float before = best.foot.squared_distance;
+        for (int i = surface.first_face[index(v)]; i < surface.first_face[index(v) + 1]; ++i) {
+            const int face = surface.face_of[index(i)];
+            const Foot foot = foot_on_triangle(p, surface.corner(face, 0), surface.corner(face, 1), surface.corner(face, 2));
+            if (foot.squared_distance < best.foot.squared_distance) best = {face, foot};
+        }
+        if (!(best.foot.squared_distance < before)) return best;
+        const VertexId next = nearest_corner(surface, best);
+        if (next == v) return best;
+        v = next;
+    }
+}
+
+FaceTree::FaceTree(const Surface& surface) : order_(surface.faces.size()), corners_(surface.faces.size()) {
+    std::vector<Vec> centres(order_.size());
+    for (std::size_t f = 0; f < order_.size(); ++f)
         centres[f] = surface.corner(static_cast<int>(f), 0) + surface.corner(static_cast<int>(f), 1) +
                      surface.corner(static_cast<int>(f), 2);
     std::iota(order_.begin(), order_.end(), 0);
-    nodes_.reserve(faces_.size());
-    if (!faces_.empty()) build(centres, 0, static_cast<int>(faces_.size()));
-    refit(surface.at);
+    nodes_.reserve(order_.size());
+    if (!order_.empty()) build(centres, 0, static_cast<int>(order_.size()));
+    set_boxes(surface);
 }
 
 int FaceTree::build(const std::vector<Vec>& centres, int begin, int end) {
@@ -107,11 +123,10 @@ int FaceTree::build(const std::vector<Vec>& centres, int begin, int end) {
     return node;
 }
 
-void FaceTree::refit(const std::vector<Vec>& at) {
+void FaceTree::set_boxes(const Surface& surface) {
     for (std::size_t i = 0; i < order_.size(); ++i) {
-        const Triangle& f = faces_[index(order_[i])];
-        const Vec& a = at[index(f[0])];
-        corners_[i] = {a, at[index(f[1])] - a, at[index(f[2])] - a};
+        const Vec& a = surface.corner(order_[i], 0);
+        corners_[i] = {a, surface.corner(order_[i], 1) - a, surface.corner(order_[i], 2) - a};
     }
     for (std::size_t n = nodes_.size(); n-- > 0;) {
         Node& node = nodes_[n];
@@ -122,15 +137,15 @@ void FaceTree::refit(const std::vector<Vec>& at) {
         }
         node.low = node.high = corners_[index(node.begin)].a;
         for (int i = node.begin; i < node.end; ++i) {
-            for (const VertexId v : faces_[index(order_[index(i)])]) {
-                node.low = node.low.cwiseMin(at[index(v)]);
-                node.high = node.high.cwiseMax(at[index(v)]);
+            for (std::size_t k = 0; k < 3; ++k) {
+                node.low = node.low.cwiseMin(surface.corner(order_[index(i)], k));
+                node.high = node.high.cwiseMax(surface.corner(order_[index(i)], k));
             }
         }
     }
 }
 
-FaceTree::Hit FaceTree::nearest(const Vec& p) const {
+Hit FaceTree::nearest(const Vec& p) const {
     struct Entry {
         float squared_distance;
         int node;

@@ -48,19 +48,29 @@ struct Surface {
     const Vec& corner(int face, std::size_t k) const { return at[index(faces[index(face)][k])]; }
 };
 
+/// A face and the point of it nearest to some other point.
+struct Hit {
+    int face;
+    Foot foot;
+};
+
+/// The nearest face of \p p that a walk finds: from the faces around the vertex \p start on to those around the
+/// corner nearest to the foot, as long as that brings it closer. Not exact across thin gaps; five times as fast as
+/// a tree if the start is near.
+Hit walk_to_nearest(const Surface& surface, const Vec& p, VertexId start);
+
+/// The corner of the hit face that is nearest to the foot: where to start the walk next time.
+inline VertexId nearest_corner(const Surface& surface, const Hit& hit) {
+    const auto& w = hit.foot.weights;
+    return surface.faces[index(hit.face)][w[0] >= w[1] ? (w[0] >= w[2] ? 0U : 2U) : (w[1] >= w[2] ? 1U : 2U)];
+}
+
 /// Nearest face by a tree of bounding boxes. vcglib's grids lose against it where the faces' sizes vary by
-/// hundreds, as here; it can also follow moving vertices without being built anew.
+/// hundreds, as here.
 class FaceTree {
 public:
-    struct Hit {
-        int face;
-        Foot foot;
-    };
-
     /// O(faces log faces).
     explicit FaceTree(const Surface& surface);
-    /// Takes over new positions of the same faces. O(faces).
-    void refit(const std::vector<Vec>& at);
     /// The nearest face of \p p, the one of smallest index among equals. Exact in float.
     /// O(log faces) expected near the surface.
     Hit nearest(const Vec& p) const;
@@ -78,8 +88,8 @@ private:
     };
 
     int build(const std::vector<Vec>& centres, int begin, int end);
+    void set_boxes(const Surface& surface);
 
-    std::vector<Triangle> faces_;
     std::vector<int> order_;
     std::vector<Corners> corners_;  ///< in order_
     std::vector<Node> nodes_;

@@ -165,9 +165,10 @@ TEST(Fit, MakesNoSpikesWhereThereAreNoPoints) {
 
 TEST(Fit, LeavesAMeshAloneThatIsRight) {
     const Shape sphere = shapes::icosphere(2);
-    // The points lie in the faces themselves.
-    Random random(5);
-    const TargetSpace target = target_of(shapes::sample(sphere, 20000, random));
+    // The points are drawn from its own faces.
+    const TargetSpace target = TargetSpace::triangles(sphere.faces.size(), [&](std::size_t i, int k) {
+        return sphere.positions[static_cast<std::size_t>(sphere.faces[i][static_cast<std::size_t>(k)])];
+    });
     Network network = network_of(sphere, target);
     const double before = rms(target, network);
     const FitReport report = fit(network, target);
