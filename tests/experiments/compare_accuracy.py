@@ -91,6 +91,7 @@ class Case:
 
     def rows(self, method, counts, seed=None, **ours):
         """Runs a method for all counts and measures the results. A run that fails gives rows with its error."""
+        truth = self.truth()  # a model that cannot be had is the caller's trouble, not a failure of the method
         folder = self.folder / (method if seed is None else f"{method}-{seed}")
         try:
             figures = peers.run(method, self.cloud(), folder, counts, **ours)
@@ -100,7 +101,7 @@ class Case:
         for n in counts:
             row = {"method": method, "seed": seed, "target": n, **self.key(), **figures[n]}
             try:
-                row.update(evaluate.evaluate(*models.load_mesh(folder / f"{n}.ply"), self.truth()))
+                row.update(evaluate.evaluate(*models.load_mesh(folder / f"{n}.ply"), truth))
             except (ValueError, models.ModelError) as error:
                 row["error"] = str(error)
             rows.append(row)

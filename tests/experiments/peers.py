@@ -56,6 +56,10 @@ def reconstruct_ball_pivoting(meshes, count):
     meshes.generate_surface_reconstruction_ball_pivoting()
     meshes.meshing_repair_non_manifold_edges()
     meshes.meshing_close_holes(maxholesize=100)
+    # Anew from its arrays, as after saving and loading: with what Ball Pivoting leaves in the flags of the elements
+    # Quadric Edge Collapse often collapses nothing.
+    mesh = meshes.current_mesh()
+    meshes.add_mesh(pymeshlab.Mesh(mesh.vertex_matrix(), mesh.face_matrix()))
 
 
 # name: (reconstruction, whether it depends on the number of vertices)

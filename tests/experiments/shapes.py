@@ -8,8 +8,8 @@ import pymeshlab
 
 
 def _grid_faces(rows, columns, wrap_rows, wrap_columns):
-    i, j = np.meshgrid(np.arange(rows if wrap_rows else rows - 1), np.arange(columns if wrap_columns else columns - 1),
-                       indexing="ij")
+    i, j = np.meshgrid(np.arange(rows if wrap_rows else rows - 1),
+                       np.arange(columns if wrap_columns else columns - 1), indexing="ij")
     i, j = i.ravel(), j.ravel()
     i1, j1 = (i + 1) % rows, (j + 1) % columns
     a, b, c, d = i * columns + j, i1 * columns + j, i1 * columns + j1, i * columns + j1
@@ -60,7 +60,8 @@ def revolved(profile, around=256):
     v = np.vstack([v.reshape(-1, 3), [[0, 0, profile[0, 1]], [0, 0, profile[-1, 1]]]])
     k, k1 = np.arange(around), (np.arange(around) + 1) % around
     first, last, end = len(v) - 2, len(v) - 1, (len(ring) - 1) * around
-    caps = [np.column_stack([np.full(around, first), k1, k]), np.column_stack([np.full(around, last), end + k, end + k1])]
+    caps = [np.column_stack([np.full(around, first), k1, k]),
+            np.column_stack([np.full(around, last), end + k, end + k1])]
     return v, np.vstack([_grid_faces(len(ring), around, False, True)[:, ::-1]] + caps)
 
 
