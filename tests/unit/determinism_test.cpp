@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The same input gives the same bytes, and what must not matter does not.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "shapes.h"
+#include "vcg_core/reconstruct.h"
+
+namespace neuralmesh {
+namespace {
+
+TargetSpace target_of(const shapes::Cloud& cloud) {
+    return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+}
+
+NeuralMesh learn(const shapes::Cloud& cloud, const Settings& settings) {
+    NoProgress progress;
+    return reconstruct(target_of(cloud), settings, progress);
+}
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+void expect_same(const NeuralMesh& a, const NeuralMesh& b) {
+    EXPECT_TRUE(same_bytes(a.positions, b.positions));
+    EXPECT_TRUE(same_bytes(a.faces, b.faces));
+    EXPECT_TRUE(same_bytes(a.counters, b.counters));
+    EXPECT_TRUE(same_bytes(a.features, b.features));
+    EXPECT_EQ(a.report.signals, b.report.signals);
+    EXPECT_EQ(a.report.rms_error, b.report.rms_error);
+    EXPECT_EQ(a.report.mean_counter, b.report.mean_counter);
+}
+
+/// Each start, with and without fit, each counter.
+std::vector<Settings> variants() {
+    std::vector<Settings> result;
+    for (int i = 0; i < 4; ++i) {
+        Settings settings;
+        settings.target_vertices = 300;
+        settings.start_mesh = (i & 1) != 0 ? kTetrahedron : kShell;
+        settings.fit_to_points = (i & 2) != 0;
+        settings.utility_counter = i == 1 || i == 2 ? kSignalCounter : kNormalCounter;
+        result.push_back(settings);
+    }
+    return result;
+}
+
+TEST(Determinism, SameSeedSameBytesWhateverTheThreads) {
+    const shapes::Cloud cloud = shapes::sphere_cloud(1500, 0.01);
+    for (Settings settings : variants()) {
+        settings.threads = 1;
+        const NeuralMesh first = learn(cloud, settings);
+        for (const int threads : {1, 3, 0}) {
+            SCOPED_TRACE(threads);
+            settings.threads = threads;
+            expect_same(first, learn(cloud, settings));
+        }
+    }
+}
+
+TEST(Determinism, AnotherSeedGivesAnotherMesh) {
+    const shapes::Cloud cloud = shapes::sphere_cloud(1500);
+    for (Settings settings : variants()) {
+        const NeuralMesh first = learn(cloud, settings);
+        settings.random_seed = 2;
+        EXPECT_FALSE(same_bytes(first.positions, learn(cloud, settings).positions));
+    }
+}
+
+TEST(Determinism, PlaceAndScaleDoNotMatter) {
+    // Dyadic coordinates, moved and scaled by powers of two: exact in double.
+    shapes::Cloud cloud = shapes::box_cloud(1500);
+    for (vcg::Point3d& p : cloud)
+        for (int k = 0; k < 3; ++k) p[k] = std::round(p[k] * 0x1p20) * 0x1p-20;
+    shapes::Cloud moved = cloud;
+    for (vcg::Point3d& p : moved) p = p * 0x1p10 + vcg::Point3d(0x1p24, -0x1p20, 0x1p22);
+    for (const Settings& settings : variants()) {
+        const NeuralMesh here = learn(cloud, settings);
+        const NeuralMesh there = learn(moved, settings);
+        EXPECT_TRUE(same_bytes(here.faces, there.faces));
+        EXPECT_TRUE(same_bytes(here.counters, there.counters));
+        ASSERT_EQ(here.positions.size(), there.positions.size());
+        for (std::size_t i = 0; i < here.positions.size(); ++i) {
+            const vcg::Point3d back = (there.positions[i] - vcg::Point3d(0x1p24, -0x1p20, 0x1p22)) * 0x1p-10;
+            ASSERT_LT((back - here.positions[i]).Norm(), 1e-11);
+        }
+    }
+}
+
+TEST(Determinism, RandomRepeatsItselfAndStaysInRange) {
+    Random a(1);
+    Random b(1);
+    Random c(2);
+    int differ = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const std::uint32_t x = a.bits();
+        EXPECT_EQ(x, b.bits());
+        differ += x != c.bits() ? 1 : 0;
+    }
+    EXPECT_GT(differ, 990);
+    for (const std::uint32_t n : {1U, 2U, 3U, 1000U, 0xffffffffU})
+        for (int i = 0; i < 1000; ++i) EXPECT_LT(a.below(n), n);
+    for (int i = 0; i < 1000; ++i) {
+        const float u = a.unit();
+        EXPECT_TRUE(u >= 0 && u < 1);
+    }
+}
+
+}  // namespace
+}  // namespace neuralmesh
