@@ -145,6 +145,12 @@ void UtilityCounters::waive_maturity() {
         if (keys_[v] != kZero) enter(static_cast<VertexId>(v), keys_[v]);
 }
 
+std::size_t UtilityCounters::bytes() const {
+    std::size_t bytes = keys_.size() * sizeof(double) + wins_.size() * sizeof(std::int32_t);
+    for (const auto& level : tournament_) bytes += level.size() * sizeof(double);
+    return bytes;
+}
+
 VertexId UtilityCounters::highest() const {
     std::size_t i = 0;
     for (std::size_t level = tournament_.size(); level-- > 0;) {

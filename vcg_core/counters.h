@@ -57,6 +57,7 @@ public:
     void pass_over(VertexId v) { enter(v, kNone); }
     /// From now on highest() passes nobody over. O(n).
     void waive_maturity();
+    std::size_t bytes() const;
     /// The mature vertex with the highest counter, the smaller id among equals; -1 if none is mature.
     /// O(log n).
     VertexId highest() const;

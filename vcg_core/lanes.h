@@ -8,6 +8,10 @@
 #include <cstdint>
 #include <cstring>
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 namespace neuralmesh {
 
 using Four = float __attribute__((vector_size(16)));
@@ -21,6 +25,18 @@ inline Four load_xyz(const void* from) {
     Four v;
     std::memcpy(&v, &bits, sizeof v);
     return v;
+}
+
+/// Bit i is set where word i of four equals v.
+inline unsigned equal_mask(const std::int32_t* words, std::int32_t v) {
+#ifdef __SSE2__
+    const __m128i four = _mm_loadu_si128(reinterpret_cast<const __m128i*>(words));
+    return static_cast<unsigned>(_mm_movemask_ps(_mm_castsi128_ps(_mm_cmpeq_epi32(four, _mm_set1_epi32(v)))));
+#else
+    unsigned mask = 0;
+    for (unsigned i = 0; i < 4; ++i) mask |= (words[i] == v ? 1u : 0u) << i;
+    return mask;
+#endif
 }
 
 inline Four cross(Four a, Four b) {

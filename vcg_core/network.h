@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "error.h"
+#include "lanes.h"
 
 namespace neuralmesh {
 
@@ -36,6 +37,13 @@ struct alignas(64) Ring {
         for (int i = 0; i < valence; ++i)
             if (neighbours[static_cast<std::size_t>(i)] == v) return i;
         return -1;
+    }
+    /// find() of a neighbour that is there, without a branch that cannot be predicted.
+    int position_of(VertexId v) const {
+        // Entries beyond the valence may repeat a neighbour, so the first hit counts.
+        unsigned hits = equal_mask(neighbours.data(), v) | equal_mask(neighbours.data() + 4, v) << 4;
+        if (hits == 0) hits = equal_mask(neighbours.data() + 8, v) << 8 | equal_mask(neighbours.data() + 11, v) << 11;
+        return __builtin_ctz(hits);
     }
     VertexId operator[](int i) const { return neighbours[static_cast<std::size_t>(i)]; }
     /// The neighbour after / before position i, cyclically.
@@ -75,6 +83,10 @@ public:
     Slot* slots() { return slots_.data(); }
     const Slot* slots() const { return slots_.data(); }
     void reserve(int vertices);
+    /// Memory in use, without what is reserved for growth.
+    std::size_t bytes() const {
+        return rings_.size() * sizeof(Ring) + slots_.size() * sizeof(Slot) + free_.size() * sizeof(VertexId);
+    }
 
     bool adjacent(VertexId a, VertexId b) const { return ring(a).find(b) >= 0; }
 

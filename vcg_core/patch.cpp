@@ -129,19 +129,29 @@ void Patch::gather_star(const Network& network, int i) {
     moves_[i] = ring.open != 0 ? 0.0F : 1.0F;
     still_.inverse_valence[i] = 1 / static_cast<float>(k);
     const Four origin = load_xyz(&slots[winner_]);
-    int j = ring.find(winner_) + 2;  // past w and r_(i-1)
-    if (j >= k) j -= k;
+    const int past = ring.position_of(winner_) + 2;  // w and r_(i-1)
+    const auto outer = [&](int m) {
+        const int j = past + m;
+        return load_xyz(&slots[ring[j < k ? j : j - k]]) - origin;
+    };
+    const int count = k - 3;
     Four sum = {0, 0, 0, 0};
     Four area = {0, 0, 0, 0};
     // Without outer vertices r_(i-1) and r_(i+1) follow each other: the latter, as it stands, takes their part.
     Four first = points_[i + 1 == valence_ ? 0 : i + 1];
     Four last = first;
-    if (k > 3) {
-        first = last = load_xyz(&slots[ring[j]]) - origin;
-        sum = first;
-        for (int m = 1; m < k - 3; ++m) {
-            if (++j == k) j = 0;
-            const Four o = load_xyz(&slots[ring[j]]) - origin;
+    if (count > 0) {
+        sum = first = last = outer(0);
+        // Four at the most is by far the most frequent. The last one stands in for those that are missing: it adds
+        // no area with itself, and how many there are, which nobody can predict, needs no branch.
+        for (int m = 1; m < 4; ++m) {
+            const Four o = outer(m < count ? m : count - 1);
+            sum += m < count ? o : Four{0, 0, 0, 0};
+            area += cross(last, o);
+            last = o;
+        }
+        for (int m = 4; m < count; ++m) {
+            const Four o = outer(m);
             sum += o;
             area += cross(last, o);
             last = o;

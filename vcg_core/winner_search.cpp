@@ -5,25 +5,43 @@
 #include "winner_search.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
+#include <cstring>
 
 namespace neuralmesh {
 
 namespace {
 
-/// Cell edge in mean edge lengths of the network: measured, flat between 0.8 and 1.3.
+/// Cell edge in mean edge lengths of the network, by measurement.
 constexpr float kCellEdge = 1.0F;
 /// Float rounding of a cell border, in cells, generously.
 constexpr float kRounding = 1e-3F;
 /// A box of more cells than this is dearer than looking at every vertex of a small network.
 constexpr int kMostCells = 1000;
 
-float squared_distance(const Slot& a, const vcg::Point3f& s) {
-    const float x = a.x - s[0];
-    const float y = a.y - s[1];
-    const float z = a.z - s[2];
-    return x * x + y * y + z * z;
+/// Squared distance and vertex in one number that orders by distance, then by id: the bits of a non-negative
+/// float order like the float.
+using Candidate = std::uint64_t;
+constexpr Candidate kNobody = Candidate{0x7f800000} << 32 | 0xffffffff;
+
+Candidate candidate(const Slot& slot, VertexId v, const vcg::Point3f& s) {
+    const float x = slot.x - s[0];
+    const float y = slot.y - s[1];
+    const float z = slot.z - s[2];
+    const float squared_distance = x * x + y * y + z * z;
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &squared_distance, sizeof bits);
+    return Candidate{bits} << 32 | static_cast<std::uint32_t>(v);
 }
+
+float squared_distance_of(Candidate c) {
+    const auto bits = static_cast<std::uint32_t>(c >> 32);
+    float d = 0;
+    std::memcpy(&d, &bits, sizeof d);
+    return d;
+}
+
+VertexId vertex_of(Candidate c) { return static_cast<VertexId>(c & 0xffffffff); }
 
 /// Mean edge length, from every vertex's first edge.
 float mean_edge_length(const Network& network) {
@@ -51,127 +69,111 @@ void WinnerSearch::lay_out() {
     // Below 1e-5 of the diagonal a cell coordinate would no longer be exact in float.
     edge_ = std::max(kCellEdge * mean_edge_length(network_), 1e-5F);
     inverse_edge_ = 1 / edge_;
-    std::size_t capacity = 64;
-    hash_shift_ = 64 - 4;  // the last two bits of an index are those of x
-    while (capacity < 2 * static_cast<std::size_t>(laid_out_for_)) {
-        capacity *= 2;
-        --hash_shift_;
+    std::size_t lines = 2;
+    line_shift_ = 31;
+    while (16 * lines < 4 * static_cast<std::size_t>(laid_out_for_)) {
+        lines *= 2;
+        --line_shift_;
     }
-    cells_.assign(capacity, Cell{kEmpty, -1});
-    used_cells_ = 0;
+    heads_.assign(16 * lines, -1);
     for (VertexId v = 0; v < network_.slot_count(); ++v)
-        if (network_.alive(v)) link(v, key_at(network_.slots()[v]));
+        if (network_.alive(v)) add(v);
 }
 
-WinnerSearch::Cell& WinnerSearch::cell_for(std::uint64_t key) {
-    std::size_t i = home_of(key);
-    while (cells_[i].key != key && cells_[i].key != kEmpty) i = (i + 1) & (cells_.size() - 1);
-    if (cells_[i].key == kEmpty) {
-        cells_[i].key = key;
-        ++used_cells_;
-    }
-    return cells_[i];
+void WinnerSearch::link(VertexId v, std::size_t bucket) {
+    network_.slots()[v].next_in_cell = heads_[bucket];
+    heads_[bucket] = v;
 }
 
-VertexId WinnerSearch::head_of(std::uint64_t key) const {
-    std::size_t i = home_of(key);
-    while (cells_[i].key != key) {
-        if (cells_[i].key == kEmpty) return -1;
-        i = (i + 1) & (cells_.size() - 1);
-    }
-    return cells_[i].head;
-}
-
-void WinnerSearch::link(VertexId v, std::uint64_t key) {
-    Cell& cell = cell_for(key);
-    network_.slots()[v].next_in_cell = cell.head;
-    cell.head = v;
-}
-
-void WinnerSearch::unlink(VertexId v, std::uint64_t key) {
+void WinnerSearch::unlink(VertexId v, std::size_t bucket) {
     Slot* slots = network_.slots();
-    VertexId* link = &cell_for(key).head;
+    VertexId* link = &heads_[bucket];
     while (*link != v) link = &slots[*link].next_in_cell;
     *link = slots[v].next_in_cell;
 }
 
-void WinnerSearch::add(VertexId v) {
-    link(v, key_at(network_.slots()[v]));
-    // Emptied cells keep their entry until the next layout, so moves alone can fill the table.
-    if (2 * used_cells_ > cells_.size()) lay_out();
-}
+void WinnerSearch::add(VertexId v) { link(v, bucket_of(cell_of(load_xyz(&network_.slots()[v])))); }
 
-void WinnerSearch::remove(VertexId v) { unlink(v, key_at(network_.slots()[v])); }
+void WinnerSearch::remove(VertexId v) { unlink(v, bucket_of(cell_of(load_xyz(&network_.slots()[v])))); }
 
 void WinnerSearch::move(VertexId v, const vcg::Point3f& where) {
     Slot& slot = network_.slots()[v];
     const FourInts from = cell_of(load_xyz(&slot));
-    const FourInts to = cell_of(Four{where[0], where[1], where[2], 0});
-    if (from[0] == to[0] && from[1] == to[1] && from[2] == to[2]) {
+    const FourInts to = cell_of(where);
+    if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) == 0) {
         network_.set_position(v, where);
         return;
     }
-    unlink(v, key_of(from[0], from[1], from[2]));
+    unlink(v, bucket_of(from));
     network_.set_position(v, where);
-    link(v, key_of(to[0], to[1], to[2]));
-    if (2 * used_cells_ > cells_.size()) lay_out();
+    link(v, bucket_of(to));
 }
 
 void WinnerSearch::prefetch(const vcg::Point3f& s) const {
     const float half = 0.5F * edge_;
-    for (const float z : {s[2] - half, s[2] + half})
-        for (const float y : {s[1] - half, s[1] + half})
-            __builtin_prefetch(&cells_[home_of(key_of(cell_of(s[0] - half), cell_of(y), cell_of(z)))]);
+    const FourInts low = cell_of(s - vcg::Point3f(half, half, half));
+    for (int z = 0; z < 2; ++z)
+        for (int y = 0; y < 2; ++y) __builtin_prefetch(&heads_[bucket_of(low[0], low[1] + y, low[2] + z)]);
 }
 
-void WinnerSearch::scan_cell(std::int32_t x, std::int32_t y, std::int32_t z, const vcg::Point3f& s,
-                             Best& best) const {
+/// The 2 x 2 x 2 cells nearest to s, which reach at least half a cell's edge in all directions. The lists are
+/// walked abreast and without a branch per vertex: which cells are empty is unpredictable.
+std::uint64_t WinnerSearch::scan_nearest_cells(const vcg::Point3f& s) const {
     const Slot* slots = network_.slots();
-    for (VertexId v = head_of(key_of(x, y, z)); v >= 0; v = slots[v].next_in_cell) {
-        const float d = squared_distance(slots[v], s);
-        if (d < best.squared_distance || (d == best.squared_distance && v < best.vertex)) best = {d, v};
+    const float half = 0.5F * edge_;
+    const FourInts low = cell_of(s - vcg::Point3f(half, half, half));
+    VertexId lists[8];
+    int open = 0;
+    for (int i = 0; i < 8; ++i) {
+        lists[open] = heads_[bucket_of(low[0] + (i & 1), low[1] + (i >> 1 & 1), low[2] + (i >> 2))];
+        open += lists[open] >= 0 ? 1 : 0;
     }
+    Candidate best = kNobody;
+    while (open > 0) {
+        int still_open = 0;
+        for (int i = 0; i < open; ++i) {
+            const VertexId v = lists[i];
+            best = std::min(best, candidate(slots[v], v, s));
+            lists[still_open] = slots[v].next_in_cell;
+            still_open += lists[still_open] >= 0 ? 1 : 0;
+        }
+        open = still_open;
+    }
+    return best;
 }
 
-void WinnerSearch::scan_box(const vcg::Point3f& s, float reach, Best& best) const {
-    std::int32_t low[3];
-    std::int32_t high[3];
-    for (int i = 0; i < 3; ++i) {
-        low[i] = cell_of(s[i] - reach);
-        high[i] = cell_of(s[i] + reach);
-    }
+std::uint64_t WinnerSearch::scan_box(const vcg::Point3f& s, float reach) const {
+    const Slot* slots = network_.slots();
+    const FourInts low = cell_of(s - vcg::Point3f(reach, reach, reach));
+    const FourInts high = cell_of(s + vcg::Point3f(reach, reach, reach));
+    Candidate best = kNobody;
     for (std::int32_t z = low[2]; z <= high[2]; ++z)
         for (std::int32_t y = low[1]; y <= high[1]; ++y)
-            for (std::int32_t x = low[0]; x <= high[0]; ++x) scan_cell(x, y, z, s, best);
+            for (std::int32_t x = low[0]; x <= high[0]; ++x)
+                for (VertexId v = heads_[bucket_of(x, y, z)]; v >= 0; v = slots[v].next_in_cell)
+                    best = std::min(best, candidate(slots[v], v, s));
+    return best;
 }
 
-void WinnerSearch::scan_all(const vcg::Point3f& s, Best& best) const {
+std::uint64_t WinnerSearch::scan_all(const vcg::Point3f& s) const {
     const Slot* slots = network_.slots();
-    for (VertexId v = 0; v < network_.slot_count(); ++v) {
-        if (!network_.alive(v)) continue;
-        const float d = squared_distance(slots[v], s);
-        if (d < best.squared_distance) best = {d, v};
-    }
+    Candidate best = kNobody;
+    for (VertexId v = 0; v < network_.slot_count(); ++v)
+        if (network_.alive(v)) best = std::min(best, candidate(slots[v], v, s));
+    return best;
 }
 
 VertexId WinnerSearch::winner(const vcg::Point3f& s) const {
-    Best best{std::numeric_limits<float>::infinity(), -1};
-    // Half a cell each way: the 2 x 2 x 2 cells nearest to s, which settle most signals.
+    Candidate best = scan_nearest_cells(s);
     const float sure = (0.5F - kRounding) * edge_;
-    scan_box(s, 0.5F * edge_, best);
-    if (best.squared_distance < sure * sure) return best.vertex;
-    if (best.vertex < 0) scan_box(s, 2 * edge_, best);
-    const float reach = best.vertex < 0 ? std::numeric_limits<float>::infinity()
-                                        : std::sqrt(best.squared_distance) + kRounding * edge_;
-    const float cells_across = 2 * reach * inverse_edge_ + 2;
-    if (cells_across * cells_across * cells_across < static_cast<float>(std::min(network_.slot_count(), kMostCells)) ||
-        cells_across < 5) {
-        scan_box(s, reach, best);
-    } else {
-        best = {std::numeric_limits<float>::infinity(), -1};
-        scan_all(s, best);
-    }
-    return best.vertex;
+    if (squared_distance_of(best) < sure * sure) return vertex_of(best);
+    // Anybody at all gives a radius that holds the winner.
+    if (best == kNobody) best = scan_box(s, 2 * edge_);
+    const float reach = std::sqrt(squared_distance_of(best)) + kRounding * edge_;
+    const float across = 2 * reach * inverse_edge_ + 2;
+    const bool box_is_small = across < 5 || across * across * across <
+                                                static_cast<float>(std::min(network_.slot_count(), kMostCells));
+    return vertex_of(box_is_small ? scan_box(s, reach) : scan_all(s));
 }
 
 }  // namespace neuralmesh

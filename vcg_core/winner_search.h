@@ -16,11 +16,12 @@
 namespace neuralmesh {
 
 /// Exact nearest-vertex search. Every change of the network must be told; the grid is laid out anew when
-/// the number of vertices has doubled or halved.
+/// the number of vertices has doubled or fallen to a third.
 ///
+/// The table has a list head per cell, found by hashing, and no keys: cells that share a head share a list. That
+/// costs a few distances to vertices elsewhere, which cannot win, and saves every comparison of keys.
 /// Ties go to the smaller id, so that the answer is that of a linear search to the bit.
-/// Memory: the list links live in the network's slots; 16 bytes per hash entry, two to four entries
-/// per occupied cell.
+/// Memory: 8 to 16 bytes per vertex; the list links live in the network's slots.
 class WinnerSearch {
 public:
     /// Keeps a reference to \p network. O(vertices).
@@ -28,11 +29,10 @@ public:
 
     /// The vertex nearest to \p s. O(1) expected near the mesh; O(vertices) far from it.
     VertexId winner(const vcg::Point3f& s) const;
-
     /// Brings into the cache what winner(s) will read first.
     void prefetch(const vcg::Point3f& s) const;
 
-    /// \p v has just been born. Amortised O(1).
+    /// \p v has just been born. O(1).
     void add(VertexId v);
     /// \p v is about to be removed. O(1) expected.
     void remove(VertexId v);
@@ -41,49 +41,35 @@ public:
     /// Lays the grid out anew if the network has outgrown it.
     void keep_up();
 
+    std::size_t bytes() const { return heads_.size() * sizeof(VertexId); }
+
 private:
     /// Makes all coordinates positive: the core's frame lies in [-0.5, 0.5], start meshes somewhat beyond.
     static constexpr float kOffset = 4;
-    static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
 
-    struct Cell {
-        std::uint64_t key;
-        VertexId head;
-    };
-    struct Best {
-        float squared_distance;
-        VertexId vertex;
-    };
-
-    static std::uint64_t key_of(std::int32_t x, std::int32_t y, std::int32_t z) {
-        return static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) |
-               (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 21) |
-               (static_cast<std::uint64_t>(static_cast<std::uint32_t>(z)) << 42);
-    }
-    std::int32_t cell_of(float coordinate) const {
-        return static_cast<std::int32_t>((coordinate + kOffset) * inverse_edge_);
-    }
     FourInts cell_of(Four position) const {
         return __builtin_convertvector((position + kOffset) * inverse_edge_, FourInts);
     }
-    std::uint64_t key_at(const Slot& slot) const { return key_of(cell_of(slot.x), cell_of(slot.y), cell_of(slot.z)); }
-    /// Four cells in a row along x share a cache line.
-    std::size_t home_of(std::uint64_t key) const {
-        return static_cast<std::size_t>(((key >> 2) * 0x9e3779b97f4a7c15u) >> hash_shift_ << 2 | (key & 3));
+    FourInts cell_of(const vcg::Point3f& p) const { return cell_of(Four{p[0], p[1], p[2], 0}); }
+    /// Index of a cell's list head. 4 x 2 x 2 neighbouring cells share a cache line.
+    std::size_t bucket_of(std::int32_t x, std::int32_t y, std::int32_t z) const {
+        const auto hash = static_cast<std::uint32_t>(x >> 2) * 0x9e3779b1u ^
+                          static_cast<std::uint32_t>(y >> 1) * 0x85ebca77u ^
+                          static_cast<std::uint32_t>(z >> 1) * 0xc2b2ae3du;
+        const std::uint32_t line = (hash * 0x27d4eb2fu) >> line_shift_;
+        return line << 4 | static_cast<std::uint32_t>((x & 3) | (y & 1) << 2 | (z & 1) << 3);
     }
-    Cell& cell_for(std::uint64_t key);
-    VertexId head_of(std::uint64_t key) const;
-    void link(VertexId v, std::uint64_t key);
-    void unlink(VertexId v, std::uint64_t key);
+    std::size_t bucket_of(FourInts cell) const { return bucket_of(cell[0], cell[1], cell[2]); }
+    void link(VertexId v, std::size_t bucket);
+    void unlink(VertexId v, std::size_t bucket);
     void lay_out();
-    void scan_cell(std::int32_t x, std::int32_t y, std::int32_t z, const vcg::Point3f& s, Best& best) const;
-    void scan_box(const vcg::Point3f& s, float reach, Best& best) const;
-    void scan_all(const vcg::Point3f& s, Best& best) const;
+    std::uint64_t scan_nearest_cells(const vcg::Point3f& s) const;
+    std::uint64_t scan_box(const vcg::Point3f& s, float reach) const;
+    std::uint64_t scan_all(const vcg::Point3f& s) const;
 
     Network& network_;
-    std::vector<Cell> cells_;
-    std::size_t used_cells_ = 0;
-    int hash_shift_ = 0;
+    std::vector<VertexId> heads_;
+    int line_shift_ = 0;
     int laid_out_for_ = 0;
     float edge_ = 1;
     float inverse_edge_ = 1;

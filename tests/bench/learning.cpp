@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Signals per second of the learning loop, and where the time goes: search, smoothing, normals, counters, moves,
+// topology. One thread. The cloud is 200,000 points of a bumpy torus made here.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "vcg_core/counters.h"
+#include "vcg_core/learner.h"
+#include "vcg_core/patch.h"
+#include "vcg_core/winner_search.h"
+
+namespace {
+
+using namespace neuralmesh;
+
+constexpr int kPoints = 200000;
+constexpr int kSignals = 20000;  ///< per iteration of a benchmark
+
+const TargetSpace& cloud() {
+    static const TargetSpace target = [] {
+        Random random(7);
+        std::vector<vcg::Point3d> points;
+        for (int i = 0; i < kPoints; ++i) {
+            const double u = 6.283185307179586 * random.unit();
+            const double v = 6.283185307179586 * random.unit();
+            const double tube = 0.4 + 0.03 * std::sin(8 * u) * std::cos(5 * v);
+            const double ring = 1 + tube * std::cos(v);
+            points.emplace_back(ring * std::cos(u), ring * std::sin(u), tube * std::sin(v));
+        }
+        return TargetSpace::points(points.size(), [&](std::size_t i) { return points[i]; });
+    }();
+    return target;
+}
+
+Network torus_start() {
+    constexpr int kAround = 24, kAcross = 12;
+    std::vector<vcg::Point3f> positions;
+    std::vector<Triangle> faces;
+    const auto id = [](int i, int j) { return (i % kAround) * kAcross + j % kAcross; };
+    for (int i = 0; i < kAround; ++i)
+        for (int j = 0; j < kAcross; ++j) {
+            const double u = 6.283185307179586 * i / kAround, v = 6.283185307179586 * j / kAcross;
+            positions.push_back(cloud().frame().inside(
+                {(1 + 0.4 * std::cos(v)) * std::cos(u), (1 + 0.4 * std::cos(v)) * std::sin(u), 0.4 * std::sin(v)}));
+            faces.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
+            faces.push_back({id(i, j), id(i + 1, j + 1), id(i, j + 1)});
+        }
+    return Network(positions, faces);
+}
+
+/// A network of that many vertices, learned once for all benchmarks.
+const Network& learned(int vertices) {
+    static std::map<int, Network> networks;
+    auto it = networks.find(vertices);
+    if (it == networks.end()) {
+        Settings settings;
+        settings.target_vertices = vertices;
+        settings.settling_signals_per_vertex = 0;
+        Learner learner(cloud(), settings, torus_start());
+        NoProgress progress;
+        learner.run(0, progress);
+        it = networks.emplace(vertices, learner.network()).first;
+    }
+    return it->second;
+}
+
+std::vector<vcg::Point3f> signals() {
+    Random random(11);
+    std::vector<vcg::Point3f> drawn;
+    for (int i = 0; i < kSignals; ++i) drawn.push_back(cloud().sample(random));
+    return drawn;
+}
+
+void per_signal(benchmark::State& state) {
+    state.SetItemsProcessed(state.iterations() * kSignals);
+    state.counters["ns_per_signal"] =
+        benchmark::Counter(static_cast<double>(state.iterations()) * kSignals * 1e-9,
+                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+/// Whole Basic Steps on a mesh that does not grow; arguments: vertices, C_L.
+void basic_step(benchmark::State& state) {
+    Settings settings;
+    settings.target_vertices = static_cast<int>(state.range(0));
+    settings.smoothing_steps = static_cast<int>(state.range(1));
+    Learner learner(cloud(), settings, learned(settings.target_vertices));
+    const auto drawn = signals();
+    for (auto _ : state)
+        for (const vcg::Point3f& s : drawn) learner.basic_step(s);
+    per_signal(state);
+}
+BENCHMARK(basic_step)->ArgsProduct({{1000, 10000, 100000}, {5, 0}})->Unit(benchmark::kMillisecond);
+
+/// From the start mesh to so many vertices, splits and collapses included; argument: vertices.
+void growth(benchmark::State& state) {
+    Settings settings;
+    settings.target_vertices = static_cast<int>(state.range(0));
+    settings.settling_signals_per_vertex = 0;
+    NoProgress progress;
+    std::int64_t count = 0;
+    for (auto _ : state) {
+        Learner learner(cloud(), settings, torus_start());
+        learner.run(0, progress);
+        count += learner.signals();
+    }
+    state.SetItemsProcessed(count);
+}
+BENCHMARK(growth)->Arg(1000)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond);
+
+void part_search(benchmark::State& state) {
+    Network network = learned(static_cast<int>(state.range(0)));
+    const WinnerSearch search(network);
+    const auto drawn = signals();
+    for (auto _ : state)
+        for (const vcg::Point3f& s : drawn) benchmark::DoNotOptimize(search.winner(s));
+    per_signal(state);
+}
+
+std::vector<VertexId> winners(Network& network) {
+    const WinnerSearch search(network);
+    std::vector<VertexId> result;
+    for (const vcg::Point3f& s : signals()) result.push_back(search.winner(s));
+    return result;
+}
+
+void part_gather(benchmark::State& state) {
+    Network network = learned(static_cast<int>(state.range(0)));
+    const auto who = winners(network);
+    Patch patch;
+    for (auto _ : state)
+        for (const VertexId w : who) {
+            patch.gather(network, w);
+            benchmark::DoNotOptimize(patch);
+        }
+    per_signal(state);
+}
+
+/// Smoothing and the two normals, on what has been gathered.
+void part_smoothing(benchmark::State& state) {
+    const Network& network = learned(static_cast<int>(state.range(0)));
+    Patch patch;
+    patch.gather(network, 0);
+    for (auto _ : state)
+        for (int i = 0; i < kSignals; ++i) {
+            patch.smooth(5, 0.05F);
+            benchmark::DoNotOptimize(patch);
+        }
+    per_signal(state);
+}
+
+void part_normals(benchmark::State& state) {
+    const Network& network = learned(static_cast<int>(state.range(0)));
+    Patch patch;
+    patch.gather(network, 0);
+    for (auto _ : state)
+        for (int i = 0; i < kSignals; ++i) {
+            benchmark::DoNotOptimize(patch.normal());
+            benchmark::DoNotOptimize(patch.normal());
+        }
+    per_signal(state);
+}
+
+void part_counters(benchmark::State& state) {
+    Network network = learned(static_cast<int>(state.range(0)));
+    const auto who = winners(network);
+    UtilityCounters utility(0.95, 30);
+    FeatureCounters features(0.95);
+    WindowMean mean(1000);
+    utility.resize(network.slot_count());
+    features.resize(network.slot_count());
+    for (auto _ : state)
+        for (const VertexId w : who) {
+            mean.add(1e-4);
+            utility.win(w, 1e-4 / mean.mean());
+            features.win(w, 1e-4 / mean.mean());
+        }
+    per_signal(state);
+}
+
+/// The winner and its ring told to the grid, without leaving their cells.
+void part_moves(benchmark::State& state) {
+    Network network = learned(static_cast<int>(state.range(0)));
+    WinnerSearch search(network);
+    const auto who = winners(network);
+    for (auto _ : state)
+        for (const VertexId w : who) {
+            search.move(w, network.position(w));
+            const Ring& ring = network.ring(w);
+            for (int i = 0; i < ring.valence; ++i) search.move(ring[i], network.position(ring[i]));
+        }
+    per_signal(state);
+}
+
+/// Vertex splits alone; per split, not per signal.
+void part_topology(benchmark::State& state) {
+    Settings settings;
+    settings.target_vertices = 2 * static_cast<int>(state.range(0));
+    for (auto _ : state) {
+        state.PauseTiming();
+        auto learner = std::make_unique<Learner>(cloud(), settings, learned(static_cast<int>(state.range(0))));
+        for (const vcg::Point3f& s : signals()) learner->basic_step(s);
+        state.ResumeTiming();
+        while (learner->splits() < 100 && learner->vertex_split()) {
+        }
+        state.PauseTiming();
+        learner.reset();
+        state.ResumeTiming();
+    }
+    state.counters["ns_per_split"] = benchmark::Counter(static_cast<double>(state.iterations()) * 100 * 1e-9,
+                                                        benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void sizes(benchmark::internal::Benchmark* b) { b->Arg(1000)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond); }
+
+BENCHMARK(part_search)->Apply(sizes);
+BENCHMARK(part_gather)->Apply(sizes);
+BENCHMARK(part_smoothing)->Arg(10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(part_normals)->Arg(10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(part_counters)->Apply(sizes);
+BENCHMARK(part_moves)->Apply(sizes);
+BENCHMARK(part_topology)->Arg(1000)->Iterations(20)->Unit(benchmark::kMillisecond);
+
+/// Bytes of the network, the search and the counters per vertex, by what they allocate.
+void memory(benchmark::State& state) {
+    Network network = learned(static_cast<int>(state.range(0)));
+    const WinnerSearch search(network);
+    UtilityCounters utility(0.95, 30);
+    utility.resize(network.slot_count());
+    for (auto _ : state) benchmark::DoNotOptimize(search.bytes());
+    const double n = network.vertex_count();
+    state.counters["network_bytes_per_vertex"] = static_cast<double>(network.bytes()) / n;
+    state.counters["search_bytes_per_vertex"] = static_cast<double>(search.bytes()) / n;
+    state.counters["counters_bytes_per_vertex"] = static_cast<double>(utility.bytes()) / n + sizeof(float);
+    state.counters["learner_bytes_per_vertex"] = sizeof(std::int64_t);
+}
+BENCHMARK(memory)->Apply(sizes);
+
+}  // namespace
