@@ -135,7 +135,14 @@ figures() {
     need $compile_packages $demo_packages $test_packages
     need_venv
     compile all
-    NEURALMESH_BUILD="$here/$build" PYTHON="$here/$venv/bin/python" tests/experiments/figures.sh
+    local plugin="$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
+    say "Accuracy against Poisson and quadric collapse"
+    "$venv/bin/python" tests/experiments/compare_accuracy.py --plugin "$plugin" --out out/figures
+    say "Counters against curvature"
+    "$venv/bin/python" tests/experiments/compare_curvature.py --plugin "$plugin" --out out/figures
+    demo
+    say "Screenshots"
+    PYTHON="$python" tests/hosts/gui_2020_09.sh "" "" screenshots
 }
 
 mkdir -p "$build"

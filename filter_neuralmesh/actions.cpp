@@ -19,13 +19,15 @@ namespace neuralmesh {
 namespace {
 
 constexpr const char* kReconstructInfo =
-    "Reconstructs the surface of a point cloud as a triangle mesh with exactly the wanted number of vertices, "
-    "dense where the surface bends and sparse where it is flat. The points need no normals and may be noisy "
-    "and uneven. A growing neural network of mesh vertices learns the cloud: a random point attracts the "
-    "nearest vertex, vertices whose normal varies much are split, vertices that never win are collapsed."
-    "<br/>The current layer stays as it is; the result is a new layer in world coordinates. Its vertex quality is the "
-    "feature counter: how much the normal of the vertex still varied while it learned, near zero on smooth "
-    "parts, large on edges and corners.<br/>"
+    "Reconstructs the surface of a point cloud as a triangle mesh with exactly the wanted number of "
+    "vertices, dense where the surface bends and sparse where it is flat. The points need no normals and may "
+    "be noisy and uneven. A growing neural network of mesh vertices learns the cloud: a random point "
+    "attracts "
+    "the nearest vertex, vertices whose normal varies much are split, vertices that never win are "
+    "collapsed.<br/>"
+    "The current layer stays as it is; the result is a new layer in world coordinates. Its vertex quality is "
+    "the feature counter: how much the normal of the vertex still varied while it learned, near zero on "
+    "smooth parts, large on edges and corners.<br/>"
     "See:<br/>"
     "<i>Won-Ki Jeong, Ioannis Ivrissimtzis, Hans-Peter Seidel</i><br/>"
     "<b>\"Neural Meshes: Statistical Learning based on Normals\"</b><br/>"
@@ -55,7 +57,8 @@ std::string stage_of(const std::string& text) { return text.substr(0, text.find_
 
 const std::vector<Action>& all_actions() {
     static const std::vector<Action> all = {{kReconstruct, "Surface Reconstruction: Neural Mesh",
-                                             "generate_surface_reconstruction_neural_mesh", kReconstructInfo}};
+                                             "generate_surface_reconstruction_neural_mesh",
+                                             kReconstructInfo}};
     return all;
 }
 
@@ -120,8 +123,8 @@ std::string sentence_of_current_exception() {
         return std::string("The filter met an unexpected error and has changed nothing (") + error.what() +
                "). Please report it with the layer and the parameters.";
     } catch (...) {
-        return "The filter met an unknown error and has changed nothing. Please report it with the layer and the "
-               "parameters.";
+        return "The filter met an unknown error and has changed nothing. Please report it with the layer and "
+               "the parameters.";
     }
 }
 

@@ -29,7 +29,8 @@ constexpr int kReconstruct = 0;
 constexpr const char* kPluginName = "FilterNeuralMesh";
 constexpr const char* kVendor = "The Neural Mesh authors";
 constexpr const char* kLayerLabel = "Neural Mesh";
-constexpr const char* kNoLayer = "There is no current layer to learn: open or create a point cloud or a mesh first.";
+constexpr const char* kNoLayer =
+    "There is no current layer to learn: open or create a point cloud or a mesh first.";
 
 /// All actions, in order of their ids, which count from 0.
 const std::vector<Action>& all_actions();
@@ -57,8 +58,8 @@ double from_host(double value);
 /// What an exception means to the user. Call it inside a catch block, for the exception being handled.
 std::string sentence_of_current_exception();
 
-/// The host's progress callback as the core's progress. At most ten calls a second beside those at a change of stage, as
-/// some hosts redraw their window in each.
+/// The host's progress callback as the core's progress. At most ten calls a second beside those at a change
+/// of stage, as some hosts redraw their window in each.
 class HostProgress : public Progress {
 public:
     /// vcg::CallBackPos, spelled out; null: nobody listens.

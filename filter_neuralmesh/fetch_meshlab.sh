@@ -33,13 +33,13 @@ fetch() {
     local tarball="$1" sum="$2" uri
     uri="$(mirror)"
     if [ -z "$uri" ]; then
-        fail "apt knows no Debian mirror, so MeshLab's sources cannot be fetched: run apt-get update on a Debian system."
+        fail "apt knows no Debian mirror to fetch MeshLab's sources from: run apt-get update on a Debian system."
     fi
     echo "Fetching $tarball from $uri"
     rm -f "$cache/$tarball.part"
     # apt's own downloader, so that its proxies and mirrors hold here, too.
-    /usr/lib/apt/apt-helper -qq download-file "${uri%/}/pool/main/m/meshlab/$tarball" "$cache/$tarball.part" \
-        "SHA256:$sum" 2> "$cache/fetch.log" ||
+    /usr/lib/apt/apt-helper -qq download-file "${uri%/}/pool/main/m/meshlab/$tarball" \
+        "$cache/$tarball.part" "SHA256:$sum" 2> "$cache/fetch.log" ||
         fail "$tarball could not be fetched ($(tail -n 1 "$cache/fetch.log")). Check the network and run this again."
     mv "$cache/$tarball.part" "$cache/$tarball"
 }

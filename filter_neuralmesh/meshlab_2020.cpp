@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Forwards MeshLab 2020.09's calls to actions.h. This host checks nothing when it loads a plugin, and would run
-// one built for another release or another scalar into its memory; so the plugin checks its host itself.
+// Forwards MeshLab 2020.09's calls to actions.h. This host checks nothing when it loads a plugin, and would
+// run one built for another release or another scalar into its memory; so the plugin checks its host itself.
+
 // Before any of Qt's headers, which make a keyword of "signals".
 #include "actions.h"
 
@@ -22,8 +23,10 @@ using namespace neuralmesh;
 
 /// The running MeshLab's scalar type, told from a function that its library exports for that type alone.
 std::string scalar_of_host() {
-    if (dlsym(RTLD_DEFAULT, "_Z14Matrix44mToXMLRN3vcg8Matrix44IfEER12QDomDocument") != nullptr) return "float";
-    if (dlsym(RTLD_DEFAULT, "_Z14Matrix44mToXMLRN3vcg8Matrix44IdEER12QDomDocument") != nullptr) return "double";
+    if (dlsym(RTLD_DEFAULT, "_Z14Matrix44mToXMLRN3vcg8Matrix44IfEER12QDomDocument") != nullptr)
+        return "float";
+    if (dlsym(RTLD_DEFAULT, "_Z14Matrix44mToXMLRN3vcg8Matrix44IdEER12QDomDocument") != nullptr)
+        return "double";
     return "unknown";
 }
 
@@ -73,8 +76,8 @@ void FilterNeuralMeshPlugin::initParameterSet(QAction* /*action*/, MeshDocument&
     for (const SettingInfo& info : setting_table()) add_parameter(list, info);
 }
 
-bool FilterNeuralMeshPlugin::applyFilter(QAction* /*action*/, MeshDocument& document, const RichParameterList& list,
-                                         vcg::CallBackPos* call_back) {
+bool FilterNeuralMeshPlugin::applyFilter(QAction* /*action*/, MeshDocument& document,
+                                         const RichParameterList& list, vcg::CallBackPos* call_back) {
     try {
         const std::string refusal = misfit();
         if (!refusal.empty()) throw Error(refusal);

@@ -30,5 +30,6 @@ public:
                      vcg::CallBackPos* call_back) override;
 
 private:
-    void learn_current_layer(MeshDocument& document, const RichParameterList& list, vcg::CallBackPos* call_back);
+    void learn_current_layer(MeshDocument& document, const RichParameterList& list,
+                             vcg::CallBackPos* call_back);
 };

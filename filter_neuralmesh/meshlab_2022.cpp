@@ -3,6 +3,7 @@
 
 // Forwards the calls of MeshLab 2022.02 to 2025.07 and of pymeshlab to actions.h. These hosts compare the
 // plugin's release and scalar type with their own before they use it.
+
 // Before any of Qt's headers, which make a keyword of "signals".
 #include "actions.h"
 
@@ -37,9 +38,13 @@ QString FilterNeuralMeshPlugin::filterInfo(ActionIDType id) const {
     return QString::fromUtf8(action_of(id).info);
 }
 
-FilterPlugin::FilterClass FilterNeuralMeshPlugin::getClass(const QAction* /*action*/) const { return Remeshing; }
+FilterPlugin::FilterClass FilterNeuralMeshPlugin::getClass(const QAction* /*action*/) const {
+    return Remeshing;
+}
 
-FilterPlugin::FilterArity FilterNeuralMeshPlugin::filterArity(const QAction* /*action*/) const { return SINGLE_MESH; }
+FilterPlugin::FilterArity FilterNeuralMeshPlugin::filterArity(const QAction* /*action*/) const {
+    return SINGLE_MESH;
+}
 
 int FilterNeuralMeshPlugin::postCondition(const QAction* /*action*/) const {
     return MeshModel::MM_VERTNUMBER | MeshModel::MM_FACENUMBER;
@@ -67,9 +72,8 @@ std::map<std::string, QVariant> FilterNeuralMeshPlugin::applyFilter(const QActio
     throw MLException(QString::fromStdString(sentence));
 }
 
-std::map<std::string, QVariant> FilterNeuralMeshPlugin::learn_current_layer(MeshDocument& document,
-                                                                            const RichParameterList& list,
-                                                                            vcg::CallBackPos* call_back) const {
+std::map<std::string, QVariant> FilterNeuralMeshPlugin::learn_current_layer(
+    MeshDocument& document, const RichParameterList& list, vcg::CallBackPos* call_back) const {
     MeshModel* const layer = document.mm();
     if (layer == nullptr) throw InputError(kNoLayer);
     const Settings settings = settings_from(list);
@@ -91,7 +95,8 @@ std::map<std::string, QVariant> FilterNeuralMeshPlugin::learn_current_layer(Mesh
     for (const std::string& line : log_lines(result.report)) log(line.c_str());
     std::map<std::string, QVariant> results;
     for (const Figure& figure : figures(result.report))
-        results[figure.key] = figure.is_count ? QVariant(static_cast<int>(figure.value)) : QVariant(figure.value);
+        results[figure.key] =
+            figure.is_count ? QVariant(static_cast<int>(figure.value)) : QVariant(figure.value);
     return results;
 }
 

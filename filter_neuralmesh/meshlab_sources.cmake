@@ -8,7 +8,8 @@ if(DEFINED ENV{XDG_CACHE_HOME} AND NOT "$ENV{XDG_CACHE_HOME}" STREQUAL "")
 else()
     set(neuralmesh_cache "$ENV{HOME}/.cache/neural-mesh")
 endif()
-set(NEURALMESH_CACHE "${neuralmesh_cache}" CACHE PATH "Where filter_neuralmesh/fetch_meshlab.sh keeps MeshLab's sources")
+set(NEURALMESH_CACHE "${neuralmesh_cache}" CACHE PATH
+    "Where filter_neuralmesh/fetch_meshlab.sh keeps MeshLab's sources")
 
 # Sets ${result} to the release of the MeshLab source tree in ${dir}, empty if it is none.
 function(meshlab_version_of dir result)
@@ -36,18 +37,18 @@ set(core_meshlab "${NEURALMESH_CACHE}/meshlab-2025.07")
 if(MESHLAB_SOURCE_DIR)
     meshlab_version_of("${MESHLAB_SOURCE_DIR}" found_version)
     if(NOT found_version)
-        message(FATAL_ERROR "MESHLAB_SOURCE_DIR is ${MESHLAB_SOURCE_DIR}, which does not hold MeshLab's sources: "
+        message(FATAL_ERROR "MESHLAB_SOURCE_DIR is ${MESHLAB_SOURCE_DIR}, which holds no MeshLab sources: "
                             "a file ML_VERSION and a folder src/common are expected there.")
     endif()
     set(core_meshlab "${MESHLAB_SOURCE_DIR}")
 elseif(NOT EXISTS "${core_meshlab}/ML_VERSION")
-    message(FATAL_ERROR "There are no MeshLab sources in ${NEURALMESH_CACHE}. Run `./run.sh build`, which fetches them, "
-                        "or pass -DMESHLAB_SOURCE_DIR=DIR with the sources of your MeshLab.")
+    message(FATAL_ERROR "There are no MeshLab sources in ${NEURALMESH_CACHE}. Run `./run.sh build`, which "
+                        "fetches them, or pass -DMESHLAB_SOURCE_DIR=DIR with the sources of your MeshLab.")
 endif()
 
 vcglib_of("${core_meshlab}" core_vcglib)
-# In a plugin the core meets the host's vcglib, another release with the same names for functions that differ (Point3
-# is passed in registers by 2025.07, in memory by its elders): so the core's goes by another name.
+# In a plugin the core meets the host's vcglib, another release with the same names for functions that differ
+# (Point3 is passed in registers by 2025.07, in memory by its elders): so the core's goes by another name.
 add_library(neuralmesh_vcglib INTERFACE)
 target_compile_definitions(neuralmesh_vcglib INTERFACE vcg=neuralmesh_vcg)
 target_include_directories(neuralmesh_vcglib SYSTEM INTERFACE "${core_vcglib}")

@@ -14,10 +14,9 @@ namespace {
 
 // Every 32nd colour of viridis; between them, straight lines are hard to tell from it.
 // vcglib has the ramp from 2025.07 on only.
-const std::array<Color, 9> kRamp = {
-    Color{68, 1, 84},    Color{71, 45, 123},  Color{59, 82, 139},
-    Color{44, 114, 142}, Color{33, 145, 140}, Color{40, 174, 128},
-    Color{94, 201, 98},  Color{173, 220, 48}, Color{253, 231, 37}};
+const std::array<Color, 9> kRamp = {Color{68, 1, 84},    Color{71, 45, 123},  Color{59, 82, 139},
+                                    Color{44, 114, 142}, Color{33, 145, 140}, Color{40, 174, 128},
+                                    Color{94, 201, 98},  Color{173, 220, 48}, Color{253, 231, 37}};
 
 float percentile(std::vector<float> values, double fraction) {
     const auto rank = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));

@@ -16,7 +16,8 @@ TargetSpace target_of_points(std::size_t count, const std::function<Coordinates(
     return TargetSpace::points(count, [&](std::size_t i) { return point(point_at(i)); });
 }
 
-TargetSpace target_of_triangles(std::size_t count, const std::function<Coordinates(std::size_t, int)>& corner_at) {
+TargetSpace target_of_triangles(std::size_t count,
+                                const std::function<Coordinates(std::size_t, int)>& corner_at) {
     return TargetSpace::triangles(count, [&](std::size_t i, int k) { return point(corner_at(i, k)); });
 }
 

@@ -42,7 +42,8 @@ using Coordinates = std::array<double, 3>;
 // The caller may be compiled against another vcglib than the core, and the two pass Point3 in different
 // ways. So only standard types cross here.
 TargetSpace target_of_points(std::size_t count, const std::function<Coordinates(std::size_t)>& point_at);
-TargetSpace target_of_triangles(std::size_t count, const std::function<Coordinates(std::size_t, int)>& corner_at);
+TargetSpace target_of_triangles(std::size_t count,
+                                const std::function<Coordinates(std::size_t, int)>& corner_at);
 
 /// The elements of a vcg container that are to be learned, \p kind being their name for the user.
 template <class Container>
@@ -53,7 +54,8 @@ std::vector<const typename Container::value_type*> elements_of(const Container& 
     for (const auto& element : all)
         if (!element.IsD() && (element.IsS() || !selected_only)) elements.push_back(&element);
     if (selected_only && elements.empty())
-        throw InputError("Only the selected " + kind + " of the layer are to be learned, but none is selected: select "
+        throw InputError("Only the selected " + kind +
+                         " of the layer are to be learned, but none is selected: select "
                          "some, or switch selected_only off.");
     return elements;
 }
@@ -74,18 +76,20 @@ TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const
                                            [&](std::size_t i, int k) { return in_world(faces[i]->cP(k)); });
     }
     const auto vertices = detail::elements_of(mesh.vert, settings.selected_only && mesh.vn > 0, "vertices");
-    return detail::target_of_points(vertices.size(), [&](std::size_t i) { return in_world(vertices[i]->cP()); });
+    return detail::target_of_points(vertices.size(),
+                                    [&](std::size_t i) { return in_world(vertices[i]->cP()); });
 }
 
 template <class MeshType>
 void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& out) {
     using Coord = typename MeshType::CoordType;
     auto vertex = vcg::tri::Allocator<MeshType>::AddVertices(out, result.positions.size());
-    const std::vector<Color> colors = settings.color_by_counter ? counter_colors(result.counters) : std::vector<Color>();
+    const std::vector<Color> colors =
+        settings.color_by_counter ? counter_colors(result.counters) : std::vector<Color>();
     for (std::size_t i = 0; i < result.positions.size(); ++i, ++vertex) {
         vertex->P() = Coord::Construct(result.positions[i]);
         if (vcg::tri::HasPerVertexQuality(out)) vertex->Q() = result.counters[i];
-        if (settings.color_by_counter && vcg::tri::HasPerVertexColor(out)) 
+        if (settings.color_by_counter && vcg::tri::HasPerVertexColor(out))
             vertex->C() = vcg::Color4b(colors[i][0], colors[i][1], colors[i][2], 255);
         if (settings.select_features && result.features[i] != 0) vertex->SetS();
     }

@@ -23,7 +23,8 @@ SettingInfo row(bool Settings::*member, const char* id, const char* label, const
     return info;
 }
 
-SettingInfo row(int Settings::*member, const char* id, const char* label, double low, double high, const char* help) {
+SettingInfo row(int Settings::*member, const char* id, const char* label, double low, double high,
+                const char* help) {
     SettingInfo info{Kind::integer, id, label, help, false, low, high, {}};
     info.integer_member = member;
     return info;
@@ -57,33 +58,42 @@ std::vector<SettingInfo> common_rows() {
         row(&S::target_vertices, "target_vertices", "Target vertices", 4, 20e6,
             "The mesh grows until it has exactly this many vertices. The time needed grows in proportion."),
         row(&S::utility_counter, "utility_counter", "Utility counter", {"Normal counter", "Signal counter"},
-            "What makes a vertex worth splitting. Normal counter: how much the surface bends there, so the mesh "
-            "is dense at curved places and sparse at flat ones. Signal counter: how often the vertex wins, so "
+            "What makes a vertex worth splitting. Normal counter: how much the surface bends there, so the "
+            "mesh "
+            "is dense at curved places and sparse at flat ones. Signal counter: how often the vertex wins, "
+            "so "
             "the mesh follows the density of the cloud."),
         row(&S::start_mesh, "start_mesh", "Start mesh", {"Shell of the cloud", "Tetrahedron"},
-            "What the learning starts from. Shell of the cloud: a coarse mesh around the points that already has "
+            "What the learning starts from. Shell of the cloud: a coarse mesh around the points that already "
+            "has "
             "their components and handles. Tetrahedron: the paper's, for one piece without handles."),
         row(&S::fit_to_points, "fit_to_points", "Fit to points",
-            "After learning, move the vertices by least squares to where the surface is closest to the points. "
+            "After learning, move the vertices by least squares to where the surface is closest to the "
+            "points. "
             "Switched off: the mesh as the paper's learning leaves it."),
         row(&S::draw_from_faces, "draw_from_faces", "Draw from faces",
             "A layer that has faces is sampled uniformly over its area. Switched off, or if the layer has no "
             "faces, its vertices are the cloud."),
         row(&S::selected_only, "selected_only", "Selected only",
-            "Learn the selected part of the layer alone: its selected faces if it is drawn from faces, else its "
+            "Learn the selected part of the layer alone: its selected faces if it is drawn from faces, else "
+            "its "
             "selected vertices."),
         row(&S::color_by_counter, "color_by_counter", "Colour by counter",
             "Colour the vertices of the result by their feature counter: dark violet where the surface is "
-            "smooth, over green to yellow at features. The counter itself is the vertex quality in any case."),
+            "smooth, over green to yellow at features. The counter itself is the vertex quality in any "
+            "case."),
         row(&S::select_features, "select_features", "Select features",
             "Select the vertices of the result whose feature counter is above the feature threshold."),
         row(&S::feature_threshold, "feature_threshold", "Feature threshold", 0, 1000,
-            "C_nc of the paper (eq 7): a vertex is a feature if its counter is above this many times the mean "
+            "C_nc of the paper (eq 7): a vertex is a feature if its counter is above this many times the "
+            "mean "
             "counter."),
         row(&S::random_seed, "random_seed", "Random seed", 0, kLargestInt,
-            "The same seed gives the same mesh to the last bit, on any machine and with any number of threads."),
+            "The same seed gives the same mesh to the last bit, on any machine and with any number of "
+            "threads."),
         row(&S::threads, "threads", "Threads", 0, 1024,
-            "How many threads may work. 0: as many as the machine has. The result is the same for any number."),
+            "How many threads may work. 0: as many as the machine has. The result is the same for any "
+            "number."),
     };
 }
 
@@ -110,11 +120,13 @@ std::vector<SettingInfo> advanced_rows() {
         row(&S::min_wins_per_split, "min_wins_per_split", "Minimum wins per split", 0, 1e6,
             "A vertex must have won this many signals since its last split, or its birth, before it is split "
             "again. 0: the paper to the letter, where growth can stall."),
-        row(&S::settling_signals_per_vertex, "settling_signals_per_vertex", "Settling signals per vertex", 0, 1e5,
+        row(&S::settling_signals_per_vertex, "settling_signals_per_vertex", "Settling signals per vertex", 0,
+            1e5,
             "Learning goes on for this many signals per vertex after the last split, so that positions and "
             "counters speak of the final mesh."),
         row(&S::stop_below_mean_counter, "stop_below_mean_counter", "Stop below mean counter", 0, 1e6,
-            "α_t of the paper (eq 8), as an angle in degrees: growth ends before the target when a signal turns the "
+            "α_t of the paper (eq 8), as an angle in degrees: growth ends before the target when a signal "
+            "turns the "
             "winner's normal by less than this, root mean square over the normalization window. 0: off."),
     };
 }
@@ -153,8 +165,8 @@ void Settings::check() const {
         std::ostringstream text;
         text.imbue(std::locale::classic());
         text.precision(10);
-        text << "The parameter " << info.id << " (" << info.label << ") is " << value << ": choose a value from "
-             << info.low << " to " << info.high << '.';
+        text << "The parameter " << info.id << " (" << info.label << ") is " << value
+             << ": choose a value from " << info.low << " to " << info.high << '.';
         throw SettingError(text.str());
     }
 }

@@ -18,10 +18,12 @@ namespace {
 class Vertex;
 class Face;
 struct Types : vcg::UsedTypes<vcg::Use<Vertex>::AsVertexType, vcg::Use<Face>::AsFaceType> {};
-class Vertex : public vcg::Vertex<Types, vcg::vertex::Coord3d, vcg::vertex::Normal3d, vcg::vertex::Qualityd,
-                                  vcg::vertex::Color4b, vcg::vertex::VFAdj, vcg::vertex::Mark, vcg::vertex::BitFlags> {};
-class Face : public vcg::Face<Types, vcg::face::VertexRef, vcg::face::Normal3d, vcg::face::FFAdj, vcg::face::VFAdj,
-                              vcg::face::Mark, vcg::face::BitFlags> {};
+class Vertex
+    : public vcg::Vertex<Types, vcg::vertex::Coord3d, vcg::vertex::Normal3d, vcg::vertex::Qualityd,
+                         vcg::vertex::Color4b, vcg::vertex::VFAdj, vcg::vertex::Mark, vcg::vertex::BitFlags> {
+};
+class Face : public vcg::Face<Types, vcg::face::VertexRef, vcg::face::Normal3d, vcg::face::FFAdj,
+                              vcg::face::VFAdj, vcg::face::Mark, vcg::face::BitFlags> {};
 class Mesh : public vcg::tri::TriMesh<std::vector<Vertex>, std::vector<Face>> {};
 
 using Clean = vcg::tri::Clean<Mesh>;
@@ -77,7 +79,8 @@ void tell_distance(const std::string& name, Mesh& from, Mesh& to, double unit) {
         vcg::tri::SurfaceSampling<Mesh, vcg::tri::HausdorffSampler<Mesh>>::AllVertex(from, sampler);
     } else {
         constexpr int kSamples = 200000;
-        vcg::tri::SurfaceSampling<Mesh, vcg::tri::HausdorffSampler<Mesh>>::Montecarlo(from, sampler, kSamples);
+        vcg::tri::SurfaceSampling<Mesh, vcg::tri::HausdorffSampler<Mesh>>::Montecarlo(from, sampler,
+                                                                                      kSamples);
     }
     tell(("rms_" + name).c_str(), 100.0 * static_cast<double>(sampler.getRMSDist()) / unit);
     tell(("max_" + name).c_str(), 100.0 * static_cast<double>(sampler.getMaxDist()) / unit);

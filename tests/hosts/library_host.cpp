@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The filter run by MeshLab 2022.02 or 2025.07 without its window: the plugin manager of libmeshlab-common checks and
-// loads the plugin, and the filter learns a sphere. Compiled per release, its symbols left to load time;
-// run_library_host.cpp starts it. Prints one JSON object, or the host's sentence.
+// The filter run by MeshLab 2022.02 or 2025.07 without its window: the plugin manager of libmeshlab-common
+// checks and loads the plugin, and the filter learns a sphere. Compiled per release, its symbols left to load
+// time; run_library_host.cpp starts it. Prints one JSON object, or the host's sentence.
 #include <common/mlexception.h>
 #include <common/plugins/interfaces/filter_plugin.h>
 #include <common/plugins/plugin_manager.h>
@@ -22,7 +22,8 @@ void add_sphere(CMeshO& mesh, int count) {
         const double z = 1 - (2 * i + 1.0) / count;
         const double r = std::sqrt(1 - z * z);
         const double turn = 2.399963229728653 * i;
-        v->P() = Point3m(Scalarm(10 + 2 * r * std::cos(turn)), Scalarm(2 * r * std::sin(turn)), Scalarm(2 * z));
+        v->P() =
+            Point3m(Scalarm(10 + 2 * r * std::cos(turn)), Scalarm(2 * r * std::sin(turn)), Scalarm(2 * z));
     }
 }
 
@@ -39,8 +40,9 @@ void run(const char* plugin_file) {
     const auto results = plugin->applyFilter(action, list, document, mask, nullptr);
 
     MeshModel& learned = *document.mm();
-    std::cout << "{\"label\": \"" << learned.label().toStdString() << "\", \"layers\": " << document.meshNumber()
-              << ", \"cloud_points\": " << cloud->cm.vn << ", \"vn\": " << learned.cm.vn << ", \"watertight\": "
+    std::cout << "{\"label\": \"" << learned.label().toStdString()
+              << "\", \"layers\": " << document.meshNumber() << ", \"cloud_points\": " << cloud->cm.vn
+              << ", \"vn\": " << learned.cm.vn << ", \"watertight\": "
               << (vcg::tri::Clean<CMeshO>::IsWaterTight(learned.cm) ? "true" : "false");
     for (const auto& [key, value] : results) std::cout << ", \"" << key << "\": " << value.toDouble();
     std::cout << "}" << std::endl;

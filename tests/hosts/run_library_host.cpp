@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// run_library_host LIBMESHLAB_COMMON LIBRARY_HOST PLUGIN: lends the symbols of MeshLab's library to all that is loaded
-// after it, as MeshLab's own program does, and starts library_host.cpp.
+// run_library_host LIBMESHLAB_COMMON LIBRARY_HOST PLUGIN: lends the symbols of MeshLab's library to all that
+// is loaded after it, as MeshLab's own program does, and starts library_host.cpp.
 #include <dlfcn.h>
 
 #include <cstdio>

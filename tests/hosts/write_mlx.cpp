@@ -19,10 +19,14 @@ using Kind = SettingInfo::Kind;
 
 const char* type_of(const SettingInfo& info) {
     switch (info.kind) {
-        case Kind::boolean: return "RichBool";
-        case Kind::integer: return "RichInt";
-        case Kind::real: return "RichFloat";
-        case Kind::choice: return "RichEnum";
+        case Kind::boolean:
+            return "RichBool";
+        case Kind::integer:
+            return "RichInt";
+        case Kind::real:
+            return "RichFloat";
+        case Kind::choice:
+            return "RichEnum";
     }
     return "";
 }
@@ -37,7 +41,8 @@ std::string default_of(const SettingInfo& info) {
 }
 
 void write_parameter(const SettingInfo& info, const std::string& value) {
-    std::cout << "  <Param type=\"" << type_of(info) << "\" name=\"" << info.id << "\" value=\"" << value << '"';
+    std::cout << "  <Param type=\"" << type_of(info) << "\" name=\"" << info.id << "\" value=\"" << value
+              << '"';
     if (info.kind == Kind::choice) {
         std::cout << " enum_cardinality=\"" << info.choices.size() << '"';
         for (std::size_t i = 0; i < info.choices.size(); ++i)
@@ -47,7 +52,8 @@ void write_parameter(const SettingInfo& info, const std::string& value) {
 }
 
 void write_script(std::map<std::string, std::string> values) {
-    std::cout << "<!DOCTYPE FilterScript>\n<FilterScript>\n <filter name=\"" << action_of(kReconstruct).name << "\">\n";
+    std::cout << "<!DOCTYPE FilterScript>\n<FilterScript>\n <filter name=\"" << action_of(kReconstruct).name
+              << "\">\n";
     for (const SettingInfo& info : setting_table()) {
         const auto given = values.find(info.id);
         write_parameter(info, given == values.end() ? default_of(info) : given->second);
@@ -58,8 +64,8 @@ void write_script(std::map<std::string, std::string> values) {
 void write_table() {
     std::cout.precision(17);
     for (const SettingInfo& info : setting_table())
-        std::cout << info.id << ' ' << type_of(info) << ' ' << info.low << ' ' << info.high << ' ' << default_of(info)
-                  << ' ' << info.advanced << '\n';
+        std::cout << info.id << ' ' << type_of(info) << ' ' << info.low << ' ' << info.high << ' '
+                  << default_of(info) << ' ' << info.advanced << '\n';
 }
 
 bool is_id(const std::string& word) {
@@ -80,7 +86,8 @@ int main(int argc, char** argv) {
         }
         const std::size_t equals = word.find('=');
         if (equals == std::string::npos || !is_id(word.substr(0, equals))) {
-            std::cerr << word << " is not ID=VALUE with the id of a parameter; write_mlx --table lists them.\n";
+            std::cerr << word
+                      << " is not ID=VALUE with the id of a parameter; write_mlx --table lists them.\n";
             return EXIT_FAILURE;
         }
         values[word.substr(0, equals)] = word.substr(equals + 1);
