@@ -11,6 +11,7 @@
 
 #include "fit_flips.h"
 #include "fit_parallel.h"
+#include "fit_points.h"
 #include "fit_redistribute.h"
 #include "fit_solve.h"
 #include "random.h"
@@ -30,20 +31,33 @@ constexpr float kOutlierDeviations = 6;
 /// ... but not within this share of the mean edge length.
 constexpr float kOutlierEdges = 0.5F;
 /// Bending weights tried in the first round; later ones try the neighbours of the last choice.
-constexpr float kFirstWeights[] = {0.003F, 0.03F, 0.3F, 3.0F};
+constexpr float kFirstWeights[] = {0.01F, 0.1F, 1.0F, 8.0F, 50.0F};
 constexpr float kWeightStep = 2.5F;
-/// A flip has to be worth this many squared standard deviations.
-constexpr float kFlipDeviations = 2;
+/// Least bending weight: falls by the factor from round to round, since in the first ones points may still be tied
+/// to the wrong faces.
+constexpr float kFirstLeastWeight = 0.3F;
+constexpr float kLeastWeightDecay = 0.25F;
+constexpr float kLastLeastWeight = 1e-3F;
+/// What an edge's gap is likely to be on surfaces of no noise, in edge lengths: the least bending weight under noise
+/// is what Bayes' rule makes of it.
+constexpr float kLikelyGap = 0.05F;
+/// The points held back from the fit were not held back from the learning, which has followed their noise: its mean
+/// squared error at them is too low by about this many noise variances x vertices / points (twice the leverage of a
+/// point, 1 without any smoothing; measured at 0.1 to 0.6 % noise).
+constexpr double kLearnedShare = 0.8;
+/// A crumpled surface is nearer to points even along a given direction, by about the square of its slopes, which are
+/// those of noise over edges. So a mesh that learning left crumpled must not win by that.
+constexpr double kCrumpling = 3;
+/// The first round with a redistribution.
+constexpr int kFirstShift = 1;
+/// A flip, or the split of an edge, has to be worth this many variances of the noise: the best of ten thousand
+/// that follow nothing but noise seem to gain about as much.
+constexpr float kFlipVariances = 6;
+constexpr float kSplitVariances = 16;
 
 /// Share of the vertices that one redistribution may move, and how many last rounds are without any.
 constexpr double kShiftedShare = 0.05;
 constexpr int kQuietRounds = 3;
-
-/// Points and for each the vertex that it was last found near to.
-struct Followed {
-    std::vector<Vec> points;
-    std::vector<VertexId> near;
-};
 
 struct Split {
     Followed fitted;
@@ -72,79 +86,33 @@ Split choose_points(const TargetSpace& target, std::size_t wanted, Random& rando
     return split;
 }
 
-float median(std::vector<float> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-float mean_edge(const Surface& surface) {
-    double sum = 0;
-    for (std::size_t f = 0; f < surface.faces.size(); ++f)
-        for (std::size_t k = 0; k < 3; ++k)
-            sum += static_cast<double>(
-                (surface.corner(static_cast<int>(f), k) - surface.corner(static_cast<int>(f), (k + 1) % 3)).norm());
-    return static_cast<float>(sum / (3 * static_cast<double>(surface.faces.size())));
-}
-
-std::vector<Hit> exact_hits(const Surface& surface, const Followed& followed, int threads) {
-    const FaceTree tree(surface);
-    std::vector<Hit> hits(followed.points.size());
-    for_chunks(hits.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) hits[i] = tree.nearest(followed.points[i]);
-    });
-    return hits;
-}
-
-std::vector<Hit> walked_hits(const Surface& surface, const Followed& followed, int threads) {
-    std::vector<Hit> hits(followed.points.size());
-    for_chunks(hits.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            hits[i] = walk_to_nearest(surface, followed.points[i], followed.near[i]);
-    });
-    return hits;
-}
-
-/// Sorts the points by their faces, which also brings neighbours together in memory.
-FacePoints by_face(const Surface& surface, Followed& followed, const std::vector<Hit>& hits) {
-    FacePoints result;
-    result.first.assign(surface.faces.size() + 1, 0);
-    for (const Hit& hit : hits) ++result.first[index(hit.face) + 1];
-    std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
-    result.ties.resize(hits.size());
-    std::vector<int> next(result.first.begin(), result.first.end() - 1);
-    for (std::size_t i = 0; i < hits.size(); ++i)
-        result.ties[index(next[index(hits[i].face)]++)] = {followed.points[i], 1, hits[i].foot};
-    followed.near.resize(hits.size());
-    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
-        for (auto i = index(result.first[f]); i < index(result.first[f + 1]); ++i) {
-            followed.points[i] = result.ties[i].point;
-            followed.near[i] = nearest_corner(surface, {static_cast<int>(f), result.ties[i].foot});
-        }
-    }
-    return result;
-}
-
 class Fit {
 public:
-    Fit(Network& network, Split points, const FitOptions& options, int threads)
-        : network_(network), points_(std::move(points)), options_(options), threads_(threads) {}
+    /// \param learned_share see kLearnedShare
+    Fit(Network& network, Split points, const FitOptions& options, double learned_share, int threads)
+        : network_(network),
+          points_(std::move(points)),
+          options_(options),
+          learned_share_(learned_share),
+          threads_(threads) {}
 
     void run(FitReport& report, Progress& progress);
 
 private:
     FacePoints tie(const Surface& surface, bool exact);
-    double rms(const std::vector<Hit>& hits) const;
-    double move(const FacePoints& ties, Surface& surface, bool first);
+    void aim(const Surface& surface);
+    double held_error(const Surface& surface) const;
+    double move(const FacePoints& ties, Surface& surface, int round);
     bool shift_vertices(const Surface& surface, const FacePoints& ties, FitReport& report);
     void follow(const Surface& surface, FacePoints& ties) const;
 
     Network& network_;
     Split points_;
     const FitOptions& options_;
+    double learned_share_;
     int threads_;
     float outlier_ = 0;    ///< for the judgement: fixed from the start
-    float deviation_ = 0;  ///< of the fitted points, robust
+    float noise_ = 0;    ///< variance
     float weight_ = 0;
     std::vector<VertexId> origin_;  ///< as FitReport::origin, of the current state
 };
@@ -153,28 +121,76 @@ private:
 FacePoints Fit::tie(const Surface& surface, bool exact) {
     const std::vector<Hit> hits = exact ? exact_hits(surface, points_.fitted, threads_)
                                         : walked_hits(surface, points_.fitted, threads_);
-    std::vector<float> distances(hits.size());
-    for (std::size_t i = 0; i < hits.size(); ++i) distances[i] = std::sqrt(hits[i].foot.squared_distance);
-    // Residuals are symmetric about the surface, so the median of their absolute values is the MAD.
-    deviation_ = 1.4826F * median(std::move(distances));
     FacePoints ties = by_face(surface, points_.fitted, hits);
-    if (!(outlier_ > 0)) outlier_ = std::max(kOutlierDeviations * deviation_, kOutlierEdges * mean_edge(surface));
+    noise_ = noise_variance(surface, ties);
+    if (!(outlier_ > 0)) {
+        std::vector<float> distances(hits.size());
+        for (std::size_t i = 0; i < hits.size(); ++i) distances[i] = std::sqrt(hits[i].foot.squared_distance);
+        // Residuals are symmetric about the surface, so the median of their absolute values is the MAD.
+        const float deviation = 1.4826F * median(std::move(distances));
+        outlier_ = std::max(kOutlierDeviations * deviation, kOutlierEdges * mean_edge(surface));
+    }
     for (FacePoints::Tie& tie : ties.ties)
         tie.influence = std::min(1.0F, outlier_ * outlier_ / std::max(tie.foot.squared_distance, 1e-20F));
     return ties;
 }
 
-double Fit::rms(const std::vector<Hit>& hits) const {
+/// Measures from now on along the smoothed normals of \p surface.
+void Fit::aim(const Surface& surface) {
+    const std::vector<Vec> normals = smoothed_normals(network_, surface);
+    Followed& held = points_.held;
+    held.directions.resize(held.points.size());
+    for_chunks(held.points.size(), kChunk, threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Hit hit = walk_to_nearest(surface, held.points[i], held.near[i]);
+            const Triangle& f = surface.faces[index(hit.face)];
+            held.near[i] = nearest_corner(surface, hit);
+            held.directions[i] = (hit.foot.weights[0] * normals[index(f[0])] +
+                                  hit.foot.weights[1] * normals[index(f[1])] +
+                                  hit.foot.weights[2] * normals[index(f[2])])
+                                     .normalized();
+        }
+    });
+}
+
+/// Root mean square distance of the points held back, along their directions. The nearest distance would not do:
+/// under noise a crumpled surface is nearer to every point than the true one.
+double Fit::held_error(const Surface& surface) const {
+    constexpr int kSteps = 3;
+    const Followed& held = points_.held;
+    std::vector<float> squared(held.points.size());
+    for_chunks(held.points.size(), kChunk, threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            // The point of the line nearest to the surface's point nearest to it, and so on: where they meet.
+            VertexId near = held.near[i];
+            float along = 0;
+            for (int step = 0; step < kSteps; ++step) {
+                const Vec from = held.points[i] + along * held.directions[i];
+                const Hit hit = walk_to_nearest(surface, from, near);
+                near = nearest_corner(surface, hit);
+                Vec foot = Vec::Zero();
+                for (std::size_t k = 0; k < 3; ++k) foot += hit.foot.weights[k] * surface.corner(hit.face, k);
+                along += (foot - from).dot(held.directions[i]);
+                if (step + 1 == kSteps) squared[i] = along * along;
+            }
+        }
+    });
     double sum = 0;
-    for (const Hit& hit : hits)
-        sum += static_cast<double>(std::min(hit.foot.squared_distance, outlier_ * outlier_));
-    return std::sqrt(sum / static_cast<double>(hits.size()));
+    for (const float d : squared) sum += static_cast<double>(std::min(d, outlier_ * outlier_));
+    return std::sqrt(sum / static_cast<double>(squared.size()));
 }
 
 /// Solves for several bending weights, takes what brings the points held back closest. \return their error
-double Fit::move(const FacePoints& ties, Surface& surface, bool first) {
+double Fit::move(const FacePoints& ties, Surface& surface, int round) {
     std::vector<float> weights{weight_, weight_ / kWeightStep, weight_ * kWeightStep};
-    if (first) weights.assign(std::begin(kFirstWeights), std::end(kFirstWeights));
+    if (round == 0) weights.assign(std::begin(kFirstWeights), std::end(kFirstWeights));
+    float least = kFirstLeastWeight;
+    for (int i = 0; i < round; ++i) least *= kLeastWeightDecay;
+    const float gap = kLikelyGap * mean_edge(surface);
+    const float per_vertex = static_cast<float>(ties.ties.size()) / static_cast<float>(network_.vertex_count());
+    least = std::max({least, kLastLeastWeight, noise_ / (gap * gap * per_vertex)});
+    for (float& weight : weights) weight = std::max(weight, least);
+    weights.erase(std::unique(weights.begin(), weights.end()), weights.end());
     const FitSystem system(network_, surface, ties, threads_);
     std::vector<std::vector<Vec>> moved(weights.size());
     for_chunks(weights.size(), 1, threads_, [&](std::size_t i, std::size_t, std::size_t) {
@@ -184,7 +200,7 @@ double Fit::move(const FacePoints& ties, Surface& surface, bool first) {
     double best_rms = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         surface.at = moved[i];
-        const double error = rms(walked_hits(surface, points_.held, threads_));
+        const double error = held_error(surface);
         if (i > 0 && error >= best_rms) continue;
         best = i;
         best_rms = error;
@@ -213,7 +229,7 @@ void Fit::follow(const Surface& surface, FacePoints& ties) const {
 /// Moves vertices to where the error is and keeps the records. \return whether the mesh has changed
 bool Fit::shift_vertices(const Surface& surface, const FacePoints& ties, FitReport& report) {
     const int most = std::max(1, static_cast<int>(kShiftedShare * static_cast<double>(network_.vertex_count())));
-    const Redistribution done = redistribute(network_, surface, ties, most, threads_);
+    const Redistribution done = redistribute(network_, surface, ties, most, kSplitVariances * noise_, threads_);
     if (done.merges.empty()) return false;
     std::vector<VertexId> heir(index(network_.slot_count()));
     std::iota(heir.begin(), heir.end(), 0);
@@ -226,49 +242,64 @@ bool Fit::shift_vertices(const Surface& surface, const FacePoints& ties, FitRepo
     return true;
 }
 
+/// Small meshes are cheap, and there every vertex counts.
+int automatic_rounds(int vertices) { return std::min(20, std::max(10, 40000 / std::max(vertices, 1))); }
+
 void Fit::run(FitReport& report, Progress& progress) {
+    const int rounds = options_.rounds > 0 ? options_.rounds : automatic_rounds(network_.vertex_count());
     const Network before = network_;
     Network best = network_;
+    Followed at_start;
     origin_ = report.origin;
     double best_rms = 0;
-    for (int round = 0; round < options_.rounds; ++round) {
+    for (int round = 0; round < rounds; ++round) {
         const std::string text = "Fitting to the points, round " + std::to_string(round + 1);
-        if (!progress(static_cast<double>(round) / options_.rounds, text.c_str())) break;
+        if (!progress(static_cast<double>(round) / rounds, text.c_str())) break;
         Surface surface(network_);
         FacePoints ties = tie(surface, round == 0);
         if (round == 0) {
-            const std::vector<Hit> hits = exact_hits(surface, points_.held, threads_);
+            by_face(surface, points_.held, exact_hits(surface, points_.held, threads_));
+            aim(surface);
+            at_start = points_.held;
             report.outlier_distance = static_cast<double>(outlier_);
-            report.rms_before = report.rms_after = best_rms = rms(hits);
-            by_face(surface, points_.held, hits);
+            report.rms_before = report.rms_after = held_error(surface);
         }
-        if (options_.redistribute && round > 0 && round + kQuietRounds < options_.rounds &&
+        if (options_.redistribute && round >= kFirstShift && round + kQuietRounds < rounds &&
             shift_vertices(surface, ties, report)) {
             surface = Surface(network_);
             ties = tie(surface, false);
         }
-        const double error = move(ties, surface, round == 0);
-        if (error < best_rms) {
+        if (round > 0) aim(surface);
+        const double error = move(ties, surface, round);
+        if (round == 0 || error < best_rms) {
             best = network_;
             report.origin = origin_;
             best_rms = error;
             report.rounds = round + 1;
             report.bending_weight = static_cast<double>(weight_);
         }
-        if (options_.flip_edges && round + 1 < options_.rounds) {
+        if (options_.flip_edges && round + 1 < rounds) {
             follow(surface, ties);
             report.flips +=
-                flip_edges(network_, surface, ties, kFlipDeviations * deviation_ * deviation_, threads_);
+                flip_edges(network_, surface, ties, kFlipVariances * noise_, threads_);
         }
     }
-    // The walks of the rounds may miss a nearer face; the verdict is exact.
-    best_rms = rms(exact_hits(Surface(best), points_.held, threads_));
-    report.improved = best_rms < report.rms_before;
+    // The verdict: both meshes along the directions of the one before.
+    points_.held = std::move(at_start);
+    const Surface fitted(best);
+    const std::vector<Hit> hits = exact_hits(fitted, points_.held, threads_);
+    for (std::size_t i = 0; i < hits.size(); ++i) points_.held.near[i] = nearest_corner(fitted, hits[i]);
+    best_rms = held_error(fitted);
+    const double edge = static_cast<double>(mean_edge(fitted));
+    const double variance = static_cast<double>(noise_);
+    const double optimism = variance * (learned_share_ + kCrumpling * variance / (edge * edge));
+    report.improved = report.rounds > 0 &&
+                      best_rms * best_rms < report.rms_before * report.rms_before + optimism;
     if (!report.improved) {
         best = before;
         for (VertexId v = 0; v < before.slot_count(); ++v) report.origin[index(v)] = before.alive(v) ? v : -1;
     }
-    report.rms_after = std::min(best_rms, report.rms_before);
+    if (report.improved) report.rms_after = best_rms;
     network_ = std::move(best);
 }
 
@@ -284,7 +315,10 @@ FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOp
         options.min_points, static_cast<long long>(options.points_per_vertex) * network.vertex_count()));
     Split points = choose_points(target, wanted, random);
     if (points.fitted.points.size() < kLeastPoints || network.face_count() == 0) return report;
-    Fit(network, std::move(points), options, threads).run(report, progress);
+    const double learned_share =
+        target.has_faces() ? 0.0
+                           : kLearnedShare * network.vertex_count() / static_cast<double>(target.positions().size());
+    Fit(network, std::move(points), options, learned_share, threads).run(report, progress);
     return report;
 }
 

@@ -16,7 +16,7 @@ namespace neuralmesh {
 
 /// What the fit may do. The defaults were found by experiment.
 struct FitOptions {
-    int rounds = 10;  ///< of least squares, each with new nearest faces
+    int rounds = 0;  ///< of least squares, each with new nearest faces; 0: 20 up to 2,000 vertices, 10 from 4,000 on
     bool flip_edges = true;
     /// Move vertices from where they are of little use to where the error is large (Hoppe et al. 1993). Off: every
     /// vertex keeps its place in the mesh, for meshes whose density is to follow something else than the error.
@@ -26,10 +26,10 @@ struct FitOptions {
     int min_points = 50000;
 };
 
-/// Figures of a fit. Errors are root mean squares over points held back from it, in the core's frame, every
-/// distance counted up to outlier_distance.
+/// Figures of a fit. Errors are root mean squares over points held back from it, in the core's frame, along smoothed
+/// normals of the mesh as it was before, every distance counted up to outlier_distance.
 struct FitReport {
-    double rms_before = 0;
+    double rms_before = 0;  ///< too low under noise: the points were not held back from the learning
     double rms_after = 0;
     double outlier_distance = 0;
     double bending_weight = 0;  ///< that of the smoothness, as the points held back chose it
@@ -46,7 +46,8 @@ struct FitReport {
 /// of linear least squares over the distances of the points to their nearest faces, with a bending term whose
 /// weight the points held back decide; between them edges are flipped (and vertices redistributed) where that brings
 /// the points closer. Far outliers lose their pull. No face turns over or becomes a sliver; the result is kept only
-/// if it is closer to the points held back than the mesh was before.
+/// if it is closer to the points held back than the mesh was before (but for what learning has followed of their
+/// noise, see rms_before).
 ///
 /// The number of vertices, components, handles and boundary loops stays. The same bytes for any \p threads (0: as
 /// many as the machine has). Stops early, with the best mesh so far, when \p progress asks for it; fractions run

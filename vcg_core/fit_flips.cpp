@@ -16,6 +16,7 @@ constexpr float kSliver = 0.1F;  ///< triangle_quality() that a new face must ha
 /// Cosine of the largest angle by which the normals of the new faces may differ from the mean of the old.
 constexpr float kLeastTurn = 0.5F;
 constexpr float kSharpestFold = -0.6F;  ///< cosine between the normals of neighbouring faces
+constexpr float kUnfolding = 0.3F;       ///< rise of that cosine that makes a flip worth while for itself
 constexpr float kFlat = 0.995F;         ///< cosine between normals from which the shape of the faces may decide
 
 struct Candidate {
@@ -42,8 +43,7 @@ Vec normal_of(const Vec& a, const Vec& b, const Vec& c) { return (b - a).cross(c
 
 class Judge {
 public:
-    Judge(const Network& network, const Surface& surface, const FacePoints& points)
-        : network_(network), surface_(surface), points_(points) {}
+    Judge(const Surface& surface, const FacePoints& points) : surface_(surface), points_(points) {}
 
     /// Drop of the sum of squared distances by the flip of \p q; negative if the flip is out of the question.
     float gain(const Quad& q, float least_gain) const {
@@ -55,13 +55,22 @@ public:
         const Vec old_g = normal_of(b, a, d);
         const Vec new_f = normal_of(c, d, b);
         const Vec new_g = normal_of(d, c, a);
+        // The other four edges of the quad, and its diagonal.
+        const Vec bc = normal_beyond(surface_, q.b, q.c);
+        const Vec ca = normal_beyond(surface_, q.c, q.a);
+        const Vec ad = normal_beyond(surface_, q.a, q.d);
+        const Vec db = normal_beyond(surface_, q.d, q.b);
+        const float old_fold = std::min({old_f.dot(bc), old_f.dot(ca), old_g.dot(ad), old_g.dot(db), old_f.dot(old_g)});
+        const float new_fold = std::min({new_f.dot(bc), new_g.dot(ca), new_g.dot(ad), new_f.dot(db), new_f.dot(new_g)});
+        const bool unfolds = old_fold < kSharpestFold && new_fold > old_fold + kUnfolding;
         const Vec mean = (old_f + old_g).normalized();
-        if (!(new_f.dot(mean) > kLeastTurn && new_g.dot(mean) > kLeastTurn)) return -1;
+        if (!unfolds && !(new_f.dot(mean) > kLeastTurn && new_g.dot(mean) > kLeastTurn)) return -1;
+        if (new_fold < std::min(kSharpestFold, old_fold)) return -1;
         const float old_quality = std::min(triangle_quality(a, b, c), triangle_quality(b, a, d));
         const float new_quality = std::min(triangle_quality(c, d, b), triangle_quality(d, c, a));
         if (new_quality < std::min(kSliver, old_quality)) return -1;
-        if (folds(q, new_f, new_g)) return -1;
         const float drop = distance_drop(q);
+        if (unfolds) return std::max(drop, least_gain);
         if (drop > least_gain) return drop;
         const bool indifferent = drop > -0.25F * least_gain && old_f.dot(old_g) > kFlat && new_f.dot(new_g) > kFlat;
         return indifferent && new_quality > 1.2F * old_quality ? 0.0F : -1.0F;
@@ -83,25 +92,6 @@ private:
         return drop;
     }
 
-    /// The new faces fold sharply onto each other or onto a face around the quad.
-    bool folds(const Quad& q, const Vec& new_f, const Vec& new_g) const {
-        if (new_f.dot(new_g) < kSharpestFold) return true;
-        return folds_over(q.b, q.c, q.a, new_f) || folds_over(q.d, q.b, q.a, new_f) ||
-               folds_over(q.c, q.a, q.b, new_g) || folds_over(q.a, q.d, q.b, new_g);
-    }
-
-    /// The face beyond the edge x-y, seen from the one with vertex \p inner, against \p normal.
-    bool folds_over(VertexId x, VertexId y, VertexId inner, const Vec& normal) const {
-        const Ring& ring = network_.ring(x);
-        const int i = ring.find(y);
-        if (ring.open != 0 && (i == 0 || i + 1 == ring.valence)) return false;
-        const VertexId outer = ring.next(i) == inner ? ring.previous(i) : ring.next(i);
-        // x, y, inner is counter-clockwise or not; the outer face has x and y the other way round.
-        const Vec n = ring.next(i) == inner ? normal_of(at(y), at(x), at(outer)) : normal_of(at(x), at(y), at(outer));
-        return n.dot(normal) < kSharpestFold;
-    }
-
-    const Network& network_;
     const Surface& surface_;
     const FacePoints& points_;
 };
@@ -110,7 +100,7 @@ private:
 
 int flip_edges(Network& network, const Surface& surface, const FacePoints& points, float least_gain, int threads) {
     constexpr std::size_t kChunk = 256;
-    const Judge judge(network, surface, points);
+    const Judge judge(surface, points);
     const auto slots = index(network.slot_count());
     std::vector<std::vector<Candidate>> found((slots + kChunk - 1) / kChunk);
     for_chunks(slots, kChunk, threads, [&](std::size_t chunk, std::size_t begin, std::size_t end) {

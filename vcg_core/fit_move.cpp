@@ -11,7 +11,7 @@ namespace neuralmesh {
 
 namespace {
 
-constexpr float kLongestMove = 0.5F;    ///< in mean lengths of the vertex's edges
+constexpr float kLongestMove = 0.25F;   ///< in mean lengths of the vertex's edges
 constexpr float kLeastTurn = 0.3F;      ///< cosine between a face's normals before and after
 constexpr float kSharpestFold = -0.6F;  ///< cosine between the normals of neighbouring faces
 constexpr float kSliver = 0.06F;        ///< triangle_quality() below which a face may not fall
@@ -32,6 +32,13 @@ public:
             if (!(norm >= 0)) move_[index(v)].setZero();
         }
         normals_ = normals(surface.at);
+        // A face that lies folded back already has to turn to come right.
+        folded_.resize(normals_.size());
+        for (std::size_t i = 0; i < normals_.size(); ++i) {
+            const Triangle& f = surface.faces[i];
+            for (std::size_t k = 0; k < 3; ++k)
+                if (normals_[i].dot(normal_beyond(surface, f[k], f[(k + 1) % 3])) < kSharpestFold) folded_[i] = 1;
+        }
     }
 
     std::vector<Vec> run() {
@@ -66,7 +73,7 @@ private:
     }
 
     bool spoiled(std::size_t i, const std::vector<Vec>& now) const {
-        if (normals_[i].dot(now[i]) < kLeastTurn) return true;
+        if (normals_[i].dot(now[i]) < kLeastTurn && folded_[i] == 0) return true;
         const Triangle& f = surface_.faces[i];
         const auto quality = [&](const std::vector<Vec>& at) {
             return triangle_quality(at[index(f[0])], at[index(f[1])], at[index(f[2])]);
@@ -111,7 +118,8 @@ private:
     const Surface& surface_;
     std::vector<Vec> move_;
     std::vector<Vec> moved_;
-    std::vector<Vec> normals_;
+    std::vector<Vec> normals_;  ///< before the move
+    std::vector<char> folded_;
 };
 
 }  // namespace

@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kChunk = 128;
 constexpr float kSliver = 0.1F;      ///< triangle_quality() that the faces of a collapse must have
 constexpr float kLeastTurn = 0.3F;   ///< cosine between the normals of a face before and after a collapse
+constexpr float kSharpestFold = -0.5F;  ///< cosine between the normals of neighbouring faces
 constexpr int kStarPoints = 64;      ///< about as many points of a star are enough to judge a collapse by
 constexpr int kTries = 3;            ///< neighbours to collapse into, the best by the quadric
 constexpr float kLongestOffset = 0.3F;  ///< of a new vertex from its edge, in edge lengths
@@ -74,9 +75,12 @@ private:
             const VertexId a = ring[i];
             const VertexId b = ring.next(i);
             if (a == u || b == u) continue;
-            const Vec before = area_vector(at(v), at(a), at(b));
-            const Vec after = area_vector(at(u), at(a), at(b));
-            if (!(before.dot(after) > kLeastTurn * before.norm() * after.norm())) return false;
+            const Vec before = area_vector(at(v), at(a), at(b)).normalized();
+            const Vec after = area_vector(at(u), at(a), at(b)).normalized();
+            const Vec outside = normal_beyond(surface_, a, b);
+            const float fold = before.dot(outside);
+            if (!(before.dot(after) > kLeastTurn) && !(fold < kSharpestFold)) return false;
+            if (after.dot(outside) < std::min(kSharpestFold, fold)) return false;
             if (triangle_quality(at(u), at(a), at(b)) < std::min(kSliver, triangle_quality(at(v), at(a), at(b))))
                 return false;
         }
@@ -201,7 +205,8 @@ int split_position(const Network& network, VertexId a, VertexId b) {
 
 }  // namespace
 
-Redistribution redistribute(Network& network, const Surface& surface, const FacePoints& points, int most, int threads) {
+Redistribution redistribute(Network& network, const Surface& surface, const FacePoints& points, int most,
+                            float least_gain, int threads) {
     const CollapseJudge judge(network, surface, points);
     std::vector<Collapse> collapses(index(network.slot_count()));
     for_chunks(collapses.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -215,7 +220,7 @@ Redistribution redistribute(Network& network, const Surface& surface, const Face
     std::vector<char> touched(collapses.size(), 0);
     std::vector<EdgeSplit> chosen;
     for (const EdgeSplit& split : splits) {
-        if (static_cast<int>(chosen.size()) >= most) break;
+        if (static_cast<int>(chosen.size()) >= most || split.gain < least_gain) break;
         const Ring& ring = network.ring(split.a);
         const int i = ring.find(split.b);
         const std::array<VertexId, 4> corners{split.a, split.b, ring.next(i), ring.previous(i)};

@@ -21,6 +21,11 @@ constexpr float kTangential = 0.03F;
 constexpr float kCentring = 2e-3F;
 /// Pull of a vertex to where it is, in points per vertex.
 constexpr float kDamping = 2e-3F;
+/// A vertex lacks support if the points around it, weighted with its hat function squared, are fewer than this
+/// share of what the density of the points around allows for.
+constexpr float kSupport = 0.7F;
+/// Pull of such a vertex towards the middle of its ring, per point missing.
+constexpr float kRetreat = 8.0F;
 /// An edge counts as a crease from this many times the median gap.
 constexpr float kCrease = 4.0F;
 constexpr int kIterations = 40;
@@ -75,6 +80,7 @@ FitSystem::FitSystem(const Network& network, const Surface& surface, const FaceP
     diagonal_.resize(slots);
     force_.resize(slots, Vec::Zero());
 
+    measure_support(surface, points);
     std::vector<FaceSums> sums(surface.faces.size());
     for_chunks(sums.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) sums[f] = sum_over(surface, points, static_cast<int>(f));
@@ -105,6 +111,46 @@ void FitSystem::gather(const std::vector<FaceSums>& sums, const Surface& surface
     }
 }
 
+/// A spike or a web is surface without points. The hat function squared looks at the tip.
+void FitSystem::measure_support(const Surface& surface, const FacePoints& points) {
+    constexpr int kSpreads = 2;
+    constexpr float kPseudoPoints = 1;
+    const std::size_t slots = surface.at.size();
+    std::vector<float> support(slots, 0);
+    std::vector<float> area(slots, 0);
+    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+        const Triangle& face = surface.faces[f];
+        const Vec& a = surface.at[index(face[0])];
+        const float twice = (surface.at[index(face[1])] - a).cross(surface.at[index(face[2])] - a).norm();
+        for (std::size_t k = 0; k < 3; ++k) area[index(face[k])] += twice / 12;
+        for (int i = points.first[f]; i < points.first[f + 1]; ++i)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const float w = points.ties[index(i)].foot.weights[k];
+                support[index(face[k])] += w * w;
+            }
+    }
+    // The density around: both sums over some rings.
+    std::vector<float> points_around = support;
+    std::vector<float> area_around = area;
+    for (int spread = 0; spread < kSpreads; ++spread) {
+        const std::vector<float> p = points_around;
+        const std::vector<float> a = area_around;
+        for (VertexId v = 0; v < network_.slot_count(); ++v) {
+            const Ring& ring = network_.ring(v);
+            for (int i = 0; i < ring.valence; ++i) {
+                points_around[index(v)] += p[index(ring[i])];
+                area_around[index(v)] += a[index(ring[i])];
+            }
+        }
+    }
+    missing_.assign(slots, 0);
+    for (std::size_t v = 0; v < slots; ++v) {
+        if (!(area_around[v] > 0)) continue;
+        const float expected = kSupport * area[v] * points_around[v] / area_around[v];
+        missing_[v] = std::max(0.0F, expected - support[v] - kPseudoPoints);
+    }
+}
+
 void FitSystem::regularise(const Surface& surface, VertexId v) {
     const Ring& ring = network_.ring(v);
     diagonal_[index(v)].add_identity(kDamping * unit_);
@@ -118,6 +164,9 @@ void FitSystem::regularise(const Surface& surface, VertexId v) {
     }
     normal.normalize();
     const Vec away = middle / static_cast<float>(ring.valence) - surface.at[index(v)];
+    const float retreat = kRetreat * missing_[index(v)];
+    diagonal_[index(v)].add_identity(retreat);
+    force_[index(v)] += retreat * away;
     diagonal_[index(v)].add_identity(kCentring * unit_);
     diagonal_[index(v)].add(outer(normal), -kCentring * unit_);
     force_[index(v)] += kCentring * unit_ * (away - away.dot(normal) * normal);

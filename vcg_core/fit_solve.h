@@ -50,6 +50,7 @@ struct Block {
 ///   sum over ties  w ((n.e)^2 + kTangential |e_t|^2),  e = p - sum_k b_k (x_k + u_k), n the direction of e
 /// + sum over edges  lambda c_e |gap_e(x + u)|^2       bending, see below
 /// + sum over vertices  (tangential smoothing and damping, both weak)
+/// + sum over vertices  with a star that has far fewer points than its area should have: a pull to the ring's middle
 ///
 /// To first order n.e is the distance of the point from the moved surface, whatever slides along it: this is what
 /// lets vertices find creases. gap is the vector between the points where the two diagonals of an edge's quad
@@ -78,11 +79,13 @@ private:
     static FaceSums sum_over(const Surface& surface, const FacePoints& points, int face);
     void gather(const std::vector<FaceSums>& sums, const Surface& surface, VertexId v);
     void regularise(const Surface& surface, VertexId v);
+    void measure_support(const Surface& surface, const FacePoints& points);
     void make_hinges(const Surface& surface);
     void multiply(float lambda, const std::vector<Vec>& u, std::vector<Vec>& result) const;
 
     const Network& network_;
     float unit_ = 1;  ///< points per vertex
+    std::vector<float> missing_;    ///< of slot v: points that its faces should have more, as the density around goes
     std::vector<std::size_t> row_;  ///< of slot v: block_[row_[v]] + i belongs to ring position i
     std::vector<Block> block_;
     std::vector<Block> diagonal_;
@@ -93,7 +96,7 @@ private:
 };
 
 /// Shortens the displacements \p u until no face turns over, folds onto its neighbour or becomes a sliver and no
-/// vertex moves further than half the way to its neighbours; adds them to the positions.
+/// vertex moves further than a quarter of the way to its neighbours; adds them to the positions.
 /// \return the new positions by slot
 std::vector<Vec> bounded_move(const Network& network, const Surface& surface, const std::vector<Vec>& u);
 

@@ -72,6 +72,18 @@ Surface::Surface(const Network& network) : faces(network.faces()) {
         for (const VertexId v : faces[f]) face_of[index(next[index(v)]++)] = static_cast<int>(f);
 }
 
+Vec normal_beyond(const Surface& surface, VertexId a, VertexId b) {
+    for (int i = surface.first_face[index(b)]; i < surface.first_face[index(b) + 1]; ++i) {
+        const Triangle& f = surface.faces[index(surface.face_of[index(i)])];
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (f[k] != b || f[(k + 1) % 3] != a) continue;
+            const Vec& c = surface.at[index(f[(k + 2) % 3])];
+            return (surface.at[index(a)] - surface.at[index(b)]).cross(c - surface.at[index(b)]).normalized();
+        }
+    }
+    return Vec::Zero();
+}
+
 Hit walk_to_nearest(const Surface& surface, const Vec& p, VertexId start) {
     Hit best{-1, {std::numeric_limits<float>::max(), {1, 0, 0}}};
     for (VertexId v = start;;) {

@@ -48,6 +48,9 @@ struct Surface {
     const Vec& corner(int face, std::size_t k) const { return at[index(faces[index(face)][k])]; }
 };
 
+/// Unit normal of the face that has the edge a-b the other way round, b to a; 0 on a boundary.
+Vec normal_beyond(const Surface& surface, VertexId a, VertexId b);
+
 /// A face and the point of it nearest to some other point.
 struct Hit {
     int face;

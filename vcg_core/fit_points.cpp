@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Points and their faces.
+#include "fit_points.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "fit_parallel.h"
+
+namespace neuralmesh {
+
+namespace {
+
+constexpr std::size_t kChunk = 512;
+
+}  // namespace
+
+float median(std::vector<float> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+float mean_edge(const Surface& surface) {
+    double sum = 0;
+    for (std::size_t f = 0; f < surface.faces.size(); ++f)
+        for (std::size_t k = 0; k < 3; ++k)
+            sum += static_cast<double>(
+                (surface.corner(static_cast<int>(f), k) - surface.corner(static_cast<int>(f), (k + 1) % 3)).norm());
+    return static_cast<float>(sum / (3 * static_cast<double>(surface.faces.size())));
+}
+
+std::vector<Hit> exact_hits(const Surface& surface, const Followed& followed, int threads) {
+    const FaceTree tree(surface);
+    std::vector<Hit> hits(followed.points.size());
+    for_chunks(hits.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) hits[i] = tree.nearest(followed.points[i]);
+    });
+    return hits;
+}
+
+std::vector<Hit> walked_hits(const Surface& surface, const Followed& followed, int threads) {
+    std::vector<Hit> hits(followed.points.size());
+    for_chunks(hits.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            hits[i] = walk_to_nearest(surface, followed.points[i], followed.near[i]);
+    });
+    return hits;
+}
+
+FacePoints by_face(const Surface& surface, Followed& followed, const std::vector<Hit>& hits) {
+    FacePoints result;
+    result.first.assign(surface.faces.size() + 1, 0);
+    for (const Hit& hit : hits) ++result.first[index(hit.face) + 1];
+    std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
+    result.ties.resize(hits.size());
+    std::vector<int> next(result.first.begin(), result.first.end() - 1);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        result.ties[index(next[index(hits[i].face)]++)] = {followed.points[i], 1, hits[i].foot};
+    followed.near.resize(hits.size());
+    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+        for (auto i = index(result.first[f]); i < index(result.first[f + 1]); ++i) {
+            followed.points[i] = result.ties[i].point;
+            followed.near[i] = nearest_corner(surface, {static_cast<int>(f), result.ties[i].foot});
+        }
+    }
+    return result;
+}
+
+float noise_variance(const Surface& surface, const FacePoints& points) {
+    constexpr int kLeast = 4;
+    std::vector<float> variances;
+    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+        const int count = points.first[f + 1] - points.first[f];
+        if (count < kLeast) continue;
+        const Vec& a = surface.corner(static_cast<int>(f), 0);
+        const Vec normal = (surface.corner(static_cast<int>(f), 1) - a)
+                               .cross(surface.corner(static_cast<int>(f), 2) - a)
+                               .normalized();
+        float sum = 0;
+        float squares = 0;
+        for (auto i = index(points.first[f]); i < index(points.first[f + 1]); ++i) {
+            const float height = normal.dot(points.ties[i].point - a);
+            sum += height;
+            squares += height * height;
+        }
+        const auto n = static_cast<float>(count);
+        variances.push_back(std::max(0.0F, squares - sum * sum / n) / (n - 1));
+    }
+    return variances.empty() ? 0.0F : median(std::move(variances));
+}
+
+std::vector<Vec> smoothed_normals(const Network& network, const Surface& surface) {
+    constexpr int kSpreads = 2;
+    std::vector<Vec> normals(surface.at.size(), Vec::Zero());
+    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+        const int face = static_cast<int>(f);
+        const Vec& a = surface.corner(face, 0);
+        const Vec area = (surface.corner(face, 1) - a).cross(surface.corner(face, 2) - a);
+        for (const VertexId v : surface.faces[f]) normals[index(v)] += area;
+    }
+    for (int spread = 0; spread < kSpreads; ++spread) {
+        const std::vector<Vec> before = normals;
+        for (VertexId v = 0; v < network.slot_count(); ++v) {
+            const Ring& ring = network.ring(v);
+            for (int i = 0; i < ring.valence; ++i) normals[index(v)] += before[index(ring[i])];
+        }
+    }
+    for (Vec& n : normals) n.normalize();
+    return normals;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The points of a fit: which face each belongs to, and what they tell of the noise.
+#pragma once
+
+#include <vector>
+
+#include "fit_solve.h"
+
+namespace neuralmesh {
+
+/// Points and for each the vertex that it was last found near to.
+struct Followed {
+    std::vector<Vec> points;
+    std::vector<VertexId> near;
+    std::vector<Vec> directions;  ///< along which to measure; only of the points held back
+};
+
+/// The nearest faces of the points, exactly. O(points log faces)
+std::vector<Hit> exact_hits(const Surface& surface, const Followed& followed, int threads);
+/// The nearest faces of the points by walks from the vertices that they were last found near to. O(points)
+std::vector<Hit> walked_hits(const Surface& surface, const Followed& followed, int threads);
+
+/// Ties the points to the faces hit. Sorts them by their faces, which also brings neighbours together in memory, and
+/// notes the vertices that they are near to. Directions are not carried along.
+FacePoints by_face(const Surface& surface, Followed& followed, const std::vector<Hit>& hits);
+
+/// Variance of the noise: the median over the faces of that of their points about a plane parallel to the face.
+/// What neighbouring points share is misfit, what they do not share is noise.
+float noise_variance(const Surface& surface, const FacePoints& points);
+
+/// Normals of the vertices, averaged over their rings twice: what noise leaves of them.
+std::vector<Vec> smoothed_normals(const Network& network, const Surface& surface);
+
+float median(std::vector<float> values);
+float mean_edge(const Surface& surface);
+
+}  // namespace neuralmesh
