@@ -59,16 +59,18 @@ Learner::Learner(const TargetSpace& target, const Settings& settings, Network st
 
 StopReason Learner::run(int per_vertex, Progress& progress) {
     if (!settle(per_vertex, progress)) return StopReason::cancelled;
+    const std::int64_t budget = signals_ + growth_budget();
+    const std::int64_t bound = signals_ + signal_bound();
     while (network_.vertex_count() < settings_.target_vertices) {
         basic_step(next_signal());
         if (signals_ % settings_.signals_per_split == 0) vertex_split();
         if (due_for_collapse()) half_edge_collapse();
 
+        if (signals_ == budget) force_growth();
+        if (signals_ >= bound) return StopReason::cut_short;
         if (signals_ % kReportEvery != 0) continue;
         if (!report("Learning", progress)) return StopReason::cancelled;
         if (mean_turn() < settings_.stop_below_mean_counter) return StopReason::converged;  // eq 8
-        if (signals_ >= growth_budget()) force_growth();
-        if (signals_ >= signal_bound()) return StopReason::cut_short;
     }
     return settle(settings_.settling_signals_per_vertex, progress) ? StopReason::target_reached
                                                                    : StopReason::cancelled;
@@ -172,9 +174,10 @@ Learner::Halving Learner::halve_star(VertexId v, int longest) const {
     const auto irregularity = [](int valence) { return (valence - 6) * (valence - 6); };
     for (int back = 1; back <= k / 2; ++back) {
         for (int ahead = 1; ahead <= k / 2; ++ahead) {
-            if (std::abs(back - ahead) > 1 || std::abs(2 * (back + ahead) - k) > 1) continue;
-            const int count = back + ahead + 1;
-            const int first = (longest - back + k) % k;
+            if (std::abs(back - ahead) > 1 || std::abs(2 * (back + ahead) - std::max(k, 3)) > 1) continue;
+            // An open star ends at its boundary edges.
+            const int first = ring.open != 0 ? std::max(longest - back, 0) : (longest - back + k) % k;
+            const int count = ring.open != 0 ? std::min(longest + ahead, k - 1) - first + 1 : back + ahead + 1;
             if (!network_.can_split(v, first, count)) continue;
             const int cost = irregularity(count + 1) + irregularity(k - count + 3) +
                              irregularity(network_.ring(ring[first]).valence + 1) +
@@ -188,7 +191,6 @@ Learner::Halving Learner::halve_star(VertexId v, int longest) const {
 }
 
 void Learner::force_growth() {
-    if (forced_) return;
     forced_ = true;
     utility_counters_.waive_maturity();
 }

@@ -46,7 +46,7 @@ public:
     /// mesh. False if \p progress asked to stop.
     bool settle(int per_vertex, Progress& progress);
 
-    /// Learning is cut short after this many signals before settling. Growth that has not come to its target
+    /// Learning is cut short after this many signals of growth. Growth that has not come to its target
     /// after growth_budget() signals is forced: no more collapses, no more maturity, so that every C_vs signals
     /// add a vertex. (It stalls where more vertices are asked for than the target space has places to win:
     /// a handful of points, say.) So growth ends; the bound leaves twice what forcing needs.

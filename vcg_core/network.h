@@ -103,8 +103,8 @@ public:
     /// Half-edge collapse: removes \p gone by moving it into its neighbour \p kept, which stays where it is.
     /// \pre can_collapse(gone, kept). O(valence).
     void collapse(VertexId gone, VertexId kept);
-    /// The link condition (Dey et al. 1999: the common neighbours are exactly those opposite the edge, and
-    /// two boundary vertices are joined by a boundary edge), no valence below 3 (2 on a boundary) or above
+    /// The link condition (Dey et al. 1999: the common neighbours are exactly those opposite the edge), a boundary
+    /// vertex only along its boundary (or the boundary would move), no valence below 3 (2 on a boundary) or above
     /// Ring::kMaxValence afterwards.
     bool can_collapse(VertexId gone, VertexId kept) const;
 
@@ -114,7 +114,8 @@ public:
     /// True if a-b is an inner edge, the new edge does not exist yet and all valences stay in range.
     bool can_flip(VertexId a, VertexId b) const;
 
-    /// Swaps ids so that the used ones are 0 .. vertex_count() - 1, in unchanged order.
+    /// Gives new ids, so that the used ones are 0 .. vertex_count() - 1, in unchanged order. Whatever holds ids, a
+    /// WinnerSearch for one, must be made anew.
     /// \return for every old slot its new id, or -1.
     std::vector<VertexId> compact();
 
@@ -125,6 +126,11 @@ public:
     /// V - E + F.
     int euler_characteristic() const { return vertex_count() - edge_count() + face_count(); }
     int component_count() const;
+    /// For every slot the number of its component, from 0 in order of the smallest vertex; -1 for free slots.
+    std::vector<int> components() const;
+    /// Turns every closed component that encloses a negative volume inside out, so that all faces are
+    /// counter-clockwise seen from outside. O(vertices).
+    void orient_outward();
     int boundary_loop_count() const;
     /// Sum over the components, from the Euler characteristic: components - (euler + loops) / 2.
     int genus() const;

@@ -96,26 +96,49 @@ std::vector<Triangle> Network::faces() const {
     return result;
 }
 
-int Network::component_count() const {
-    std::vector<char> seen(rings_.size(), 0);
+std::vector<int> Network::components() const {
+    std::vector<int> component(rings_.size(), -1);
     std::vector<VertexId> stack;
-    int components = 0;
+    int count = 0;
     for (VertexId start = 0; start < slot_count(); ++start) {
-        if (!alive(start) || seen[static_cast<std::size_t>(start)] != 0) continue;
-        ++components;
-        seen[static_cast<std::size_t>(start)] = 1;
+        if (!alive(start) || component[static_cast<std::size_t>(start)] >= 0) continue;
+        component[static_cast<std::size_t>(start)] = count;
         stack.push_back(start);
         while (!stack.empty()) {
             const Ring& r = ring(stack.back());
             stack.pop_back();
             for (int i = 0; i < r.valence; ++i) {
-                if (seen[static_cast<std::size_t>(r[i])] != 0) continue;
-                seen[static_cast<std::size_t>(r[i])] = 1;
+                if (component[static_cast<std::size_t>(r[i])] >= 0) continue;
+                component[static_cast<std::size_t>(r[i])] = count;
                 stack.push_back(r[i]);
             }
         }
+        ++count;
     }
-    return components;
+    return component;
+}
+
+int Network::component_count() const {
+    const std::vector<int> component = components();
+    return component.empty() ? 0 : *std::max_element(component.begin(), component.end()) + 1;
+}
+
+void Network::orient_outward() {
+    const std::vector<int> component = components();
+    std::vector<double> volume(component.size() + 1, 0.0);
+    std::vector<char> open(component.size() + 1, 0);
+    for (const Triangle& f : faces()) {
+        const auto p = [&](std::size_t k) { return vcg::Point3d::Construct(position(f[k])); };
+        volume[static_cast<std::size_t>(component[static_cast<std::size_t>(f[0])])] += p(0) * (p(1) ^ p(2));
+    }
+    for (std::size_t v = 0; v < rings_.size(); ++v)
+        if (rings_[v].open != 0) open[static_cast<std::size_t>(component[v])] = 1;
+    for (std::size_t v = 0; v < rings_.size(); ++v) {
+        Ring& r = rings_[v];
+        if (r.valence == 0) continue;
+        const auto c = static_cast<std::size_t>(component[v]);
+        if (volume[c] < 0 && open[c] == 0) std::reverse(r.neighbours.begin(), r.neighbours.begin() + r.valence);
+    }
 }
 
 int Network::boundary_loop_count() const {

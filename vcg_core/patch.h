@@ -17,7 +17,8 @@ namespace neuralmesh {
 /// One sweep of smoothing sees, for a ring vertex r_i, its ring in the order w, r_(i-1), o_1 .. o_m, r_(i+1).
 /// Only its two neighbours along the winner's ring move during the sweeps; w and the outer o_j stand still.
 /// So what they add to the mean and to the area vector of the star of r_i is summed once, and a sweep costs
-/// two cross products and one division per ring vertex, in lanes.
+/// two cross products and one division per ring vertex, in lanes. (Where three edges bound no face, or a ring
+/// vertex has valence 3, an o_j is itself in the ring; it is then seen where it stood before the sweeps.)
 ///
 /// Reused from signal to signal: lanes beyond the valence hold what is left of earlier ones and do not move.
 class Patch {

@@ -4,6 +4,7 @@
 // Target space in, neural mesh out.
 #include "reconstruct.h"
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 
@@ -20,16 +21,33 @@ constexpr int kDistanceSamples = 20000;
 /// A shell stands off the cloud by its radius; so many signals a vertex bring it down.
 constexpr int kSignalsToLand = 100;
 
-/// Where the run is as a whole, when it is in one of its parts.
-class PartOf : public Progress {
+/// The caller's progress as one run: fractions never decrease, and a wish to stop is remembered.
+class Run {
 public:
-    PartOf(Progress& whole, double from, double to) : whole_(whole), from_(from), to_(to) {}
+    explicit Run(Progress& progress) : progress_(progress) {}
+    bool report(double fraction, const char* text) {
+        done_ = std::max(done_, fraction);
+        stopped_ = stopped_ || !progress_(done_, text);
+        return !stopped_;
+    }
+    bool stopped() const { return stopped_; }
+
+private:
+    Progress& progress_;
+    double done_ = 0;
+    bool stopped_ = false;
+};
+
+/// One part of the run, from one fraction of the whole to another.
+class Part : public Progress {
+public:
+    Part(Run& run, double from, double to) : run_(run), from_(from), to_(to) {}
     bool operator()(double fraction, const char* text) override {
-        return whole_(from_ + fraction * (to_ - from_), text);
+        return run_.report(from_ + fraction * (to_ - from_), text);
     }
 
 private:
-    Progress& whole_;
+    Run& run_;
     double from_;
     double to_;
 };
@@ -83,11 +101,15 @@ void write_geometry(const Network& network, const Frame& frame, NeuralMesh& mesh
 /// \p origin: whose counter a vertex of \p network carries; empty: its own.
 void write_counters(const Learner& learner, const Network& network, const std::vector<VertexId>& origin,
                     const Settings& settings, NeuralMesh& mesh) {
-    const double mean = learner.mean_counter();
+    double sum = 0;
     for (VertexId v = 0; v < network.slot_count(); ++v) {
         if (!network.alive(v)) continue;
-        const float n_c = learner.feature_counters().value(origin.empty() ? v : origin[static_cast<std::size_t>(v)]);
-        mesh.counters.push_back(n_c);
+        mesh.counters.push_back(
+            learner.feature_counters().value(origin.empty() ? v : origin[static_cast<std::size_t>(v)]));
+        sum += static_cast<double>(mesh.counters.back());
+    }
+    const double mean = sum / static_cast<double>(mesh.counters.size());
+    for (const float n_c : mesh.counters) {
         mesh.features.push_back(static_cast<double>(n_c) > settings.feature_threshold * mean ? 1 : 0);
         mesh.report.feature_vertices += mesh.features.back();
     }
@@ -119,20 +141,21 @@ NeuralMesh reconstruct(const TargetSpace& target, const Settings& settings, Prog
     const auto start = std::chrono::steady_clock::now();
     settings.check();
     NeuralMesh mesh;
-    PartOf starting(progress, 0, 0.1);
-    PartOf learning(progress, 0.1, settings.fit_to_points ? 0.8 : 1);
-    PartOf fitting(progress, 0.8, 1);
+    Run run(progress);
+    Part starting(run, 0, 0.1);
+    Part learning(run, 0.1, settings.fit_to_points ? 0.8 : 1);
+    Part fitting(run, 0.8, 1);
     Start first = start_of(target, settings, mesh.report, starting);
     Learner learner(target, settings, std::move(first.network));
-    mesh.report.stop_reason = learner.run(first.signals_to_land, learning);
+    if (!run.stopped()) mesh.report.stop_reason = learner.run(first.signals_to_land, learning);
 
     Network network = learner.network();
     FitReport fit;
-    if (settings.fit_to_points && mesh.report.stop_reason != StopReason::cancelled) {
-        FitOptions options;
-        fit = fit_to_points(network, target, options, settings.threads,
+    if (settings.fit_to_points && !run.stopped())
+        fit = fit_to_points(network, target, FitOptions{}, settings.threads,
                             static_cast<std::uint64_t>(settings.random_seed) + 3, fitting);
-    }
+    if (run.stopped()) mesh.report.stop_reason = StopReason::cancelled;
+    network.orient_outward();
     write_geometry(network, target.frame(), mesh);
     write_counters(learner, network, fit.origin, settings, mesh);
     write_report(learner, network, mesh.report);
