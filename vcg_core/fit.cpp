@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kChunk = 512;
 /// One point in this many is held back, but at most kMostHeld.
 constexpr std::size_t kHeldShare = 8;
-constexpr std::size_t kMostHeld = 20000;
+constexpr std::size_t kMostHeld = 10000;
 /// With fewer points than this there is nothing to fit to and to judge by.
 constexpr std::size_t kLeastPoints = 64;
 /// A point is an outlier from this many robust standard deviations (1.4826 MAD) ...
@@ -57,6 +57,7 @@ constexpr float kSplitVariances = 16;
 
 /// Share of the vertices that one redistribution may move, and how many last rounds are without any.
 constexpr double kShiftedShare = 0.05;
+constexpr int kShiftEvery = 1;
 constexpr int kQuietRounds = 3;
 
 struct Split {
@@ -156,7 +157,7 @@ void Fit::aim(const Surface& surface) {
 /// Root mean square distance of the points held back, along their directions. The nearest distance would not do:
 /// under noise a crumpled surface is nearer to every point than the true one.
 double Fit::held_error(const Surface& surface) const {
-    constexpr int kSteps = 3;
+    constexpr int kSteps = 2;
     const Followed& held = points_.held;
     std::vector<float> squared(held.points.size());
     for_chunks(held.points.size(), kChunk, threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -264,7 +265,8 @@ void Fit::run(FitReport& report, Progress& progress) {
             report.outlier_distance = static_cast<double>(outlier_);
             report.rms_before = report.rms_after = held_error(surface);
         }
-        if (options_.redistribute && round >= kFirstShift && round + kQuietRounds < rounds &&
+        if (options_.redistribute && round >= kFirstShift && (round - kFirstShift) % kShiftEvery == 0 &&
+            round + kQuietRounds < rounds &&
             shift_vertices(surface, ties, report)) {
             surface = Surface(network_);
             ties = tie(surface, false);

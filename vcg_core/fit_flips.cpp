@@ -5,6 +5,7 @@
 #include "fit_flips.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "fit_parallel.h"
 
@@ -18,6 +19,13 @@ constexpr float kLeastTurn = 0.5F;
 constexpr float kSharpestFold = -0.6F;  ///< cosine between the normals of neighbouring faces
 constexpr float kUnfolding = 0.3F;       ///< rise of that cosine that makes a flip worth while for itself
 constexpr float kFlat = 0.995F;         ///< cosine between normals from which the shape of the faces may decide
+
+/// A new face needs this share of the points that its area should have, as the density of the old ones goes, but for
+/// kPseudoPoints; with fewer than kFewPoints the flip may not enlarge the area by more than kStretch.
+constexpr float kSupport = 0.3F;
+constexpr float kPseudoPoints = 2;
+constexpr float kFewPoints = 6;
+constexpr float kStretch = 1.02F;
 
 struct Candidate {
     float gain;
@@ -70,7 +78,7 @@ public:
         const float new_quality = std::min(triangle_quality(c, d, b), triangle_quality(d, c, a));
         if (new_quality < std::min(kSliver, old_quality)) return -1;
         const float drop = distance_drop(q);
-        if (unfolds) return std::max(drop, least_gain);
+        if (unfolds && drop > -std::numeric_limits<float>::max()) return std::max(drop, least_gain);
         if (drop > least_gain) return drop;
         const bool indifferent = drop > -0.25F * least_gain && old_f.dot(old_g) > kFlat && new_f.dot(new_g) > kFlat;
         return indifferent && new_quality > 1.2F * old_quality ? 0.0F : -1.0F;
@@ -79,18 +87,31 @@ public:
 private:
     const Vec& at(VertexId v) const { return surface_.at[index(v)]; }
 
+    /// \return a negative number for a flip that would stretch surface over where there are no points
     float distance_drop(const Quad& q) const {
         float drop = 0;
+        float count = 0;
+        float count_f = 0;
         for (const int face : {q.f, q.g}) {
             for (int i = points_.first[index(face)]; i < points_.first[index(face) + 1]; ++i) {
                 const FacePoints::Tie& tie = points_.ties[index(i)];
                 const float f = foot_on_triangle(tie.point, at(q.c), at(q.d), at(q.b)).squared_distance;
                 const float g = foot_on_triangle(tie.point, at(q.d), at(q.c), at(q.a)).squared_distance;
                 drop += tie.influence * (tie.foot.squared_distance - std::min(f, g));
+                count += 1;
+                count_f += f < g ? 1.0F : 0.0F;
             }
         }
-        return drop;
+        const float old_area = area(q.a, q.b, q.c) + area(q.b, q.a, q.d);
+        const float area_f = area(q.c, q.d, q.b);
+        const float area_g = area(q.d, q.c, q.a);
+        const float per_area = kSupport * count / std::max(old_area, 1e-20F);
+        const bool bare = per_area * area_f > count_f + kPseudoPoints || per_area * area_g > count - count_f + kPseudoPoints;
+        const bool stretched = count < kFewPoints && area_f + area_g > kStretch * old_area;
+        return bare || stretched ? -std::numeric_limits<float>::max() : drop;
     }
+
+    float area(VertexId a, VertexId b, VertexId c) const { return (at(b) - at(a)).cross(at(c) - at(a)).norm() / 2; }
 
     const Surface& surface_;
     const FacePoints& points_;

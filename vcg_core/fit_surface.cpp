@@ -10,48 +10,6 @@
 
 namespace neuralmesh {
 
-namespace {
-
-float ratio(float part, float rest) { return part + rest > 0 ? part / (part + rest) : 0.0F; }
-
-Foot foot_with(const Vec& ab, const Vec& ac, const Vec& ap, float b, float c) {
-    const Vec d = ap - b * ab - c * ac;
-    return {d.squaredNorm(), {1 - b - c, b, c}};
-}
-
-}  // namespace
-
-Foot foot_on_triangle(const Vec& ab, const Vec& ac, const Vec& ap) {
-    const float d1 = ab.dot(ap);
-    const float d2 = ac.dot(ap);
-    if (d1 <= 0 && d2 <= 0) return {ap.squaredNorm(), {1, 0, 0}};
-    const float bb = ab.squaredNorm();
-    const float bc = ab.dot(ac);
-    const float cc = ac.squaredNorm();
-    const float d3 = d1 - bb;
-    const float d4 = d2 - bc;
-    if (d3 >= 0 && d4 <= d3) return {(ap - ab).squaredNorm(), {0, 1, 0}};
-    const float vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-        Foot foot = foot_with(ab, ac, ap, ratio(d1, -d3), 0);
-        return foot;
-    }
-    const float d5 = d1 - bc;
-    const float d6 = d2 - cc;
-    if (d6 >= 0 && d5 <= d6) return {(ap - ac).squaredNorm(), {0, 0, 1}};
-    const float vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return foot_with(ab, ac, ap, 0, ratio(d2, -d6));
-    const float va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-        const float c = ratio(d4 - d3, d5 - d6);
-        Foot foot = foot_with(ab, ac, ap, 1 - c, c);
-        foot.weights[0] = 0;
-        return foot;
-    }
-    const float sum = va + vb + vc;
-    return foot_with(ab, ac, ap, vb / sum, vc / sum);
-}
-
 float triangle_quality(const Vec& a, const Vec& b, const Vec& c) {
     constexpr float kTwoSqrtThree = 3.4641016F;
     const float edges = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
