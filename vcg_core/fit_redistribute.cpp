@@ -17,6 +17,12 @@ constexpr std::size_t kChunk = 128;
 constexpr float kSliver = 0.1F;      ///< triangle_quality() that the faces of a collapse must have
 constexpr float kLeastTurn = 0.3F;   ///< cosine between the normals of a face before and after a collapse
 constexpr float kSharpestFold = -0.5F;  ///< cosine between the normals of neighbouring faces
+/// A new face needs this share of the points that its area should have, but for kPseudoPoints; with fewer than
+/// kFewPoints in the star its area may not grow by more than kStretch.
+constexpr float kSupport = 0.3F;
+constexpr int kPseudoPoints = 2;
+constexpr int kFewPoints = 6;
+constexpr float kStretch = 1.02F;
 constexpr int kStarPoints = 64;      ///< about as many points of a star are enough to judge a collapse by
 constexpr int kTries = 3;            ///< neighbours to collapse into, the best by the quadric
 constexpr float kLongestOffset = 0.3F;  ///< of a new vertex from its edge, in edge lengths
@@ -87,16 +93,28 @@ private:
         return true;
     }
 
+    struct Star {
+        int count = 0;   ///< of points
+        float area = 0;
+    };
+
+    Star star(VertexId v) const {
+        Star result;
+        for (int i = surface_.first_face[index(v)]; i < surface_.first_face[index(v) + 1]; ++i) {
+            const int f = surface_.face_of[index(i)];
+            result.count += points_.first[index(f) + 1] - points_.first[index(f)];
+            result.area += area_vector(surface_.corner(f, 0), surface_.corner(f, 1), surface_.corner(f, 2)).norm();
+        }
+        return result;
+    }
+
     /// Rise of the sum of squared distances of the points around v when it goes into u; some value of at
-    /// least \p bound if it is not less.
+    /// least \p bound if it is not less, or if a face would stretch over where there are no points.
     float rise(VertexId v, VertexId u, float bound) const {
         const Ring& ring = network_.ring(v);
-        int count = 0;
-        for (int i = surface_.first_face[index(v)]; i < surface_.first_face[index(v) + 1]; ++i) {
-            const auto f = index(surface_.face_of[index(i)]);
-            count += points_.first[f + 1] - points_.first[f];
-        }
-        const int step = std::max(1, count / kStarPoints);
+        const Star old = star(v);
+        const int step = std::max(1, old.count / kStarPoints);
+        std::array<int, Ring::kMaxValence> counts{};
         float sum = 0;
         int next = 0;
         for (int i = surface_.first_face[index(v)]; i < surface_.first_face[index(v) + 1]; ++i) {
@@ -106,18 +124,37 @@ private:
             for (; next < size; next += step) {
                 const FacePoints::Tie& tie = points_.ties[index(begin + next)];
                 float least = std::numeric_limits<float>::max();
+                int nearest = 0;
                 for (int j = 0; j < ring.face_count(); ++j) {
                     const VertexId a = ring[j];
                     const VertexId b = ring.next(j);
                     if (a == u || b == u) continue;
-                    least = std::min(least, foot_on_triangle(tie.point, at(u), at(a), at(b)).squared_distance);
+                    const float d = foot_on_triangle(tie.point, at(u), at(a), at(b)).squared_distance;
+                    if (d < least) nearest = j;
+                    least = std::min(least, d);
                 }
+                counts[index(nearest)] += step;
                 sum += tie.influence * (least - tie.foot.squared_distance) * static_cast<float>(step);
             }
             next -= size;
             if (sum > 2 * bound) return sum;
         }
-        return std::max(sum, 0.0F);
+        return bare(ring, u, old, counts, step) ? std::numeric_limits<float>::max() : std::max(sum, 0.0F);
+    }
+
+    bool bare(const Ring& ring, VertexId u, const Star& old, const std::array<int, Ring::kMaxValence>& counts,
+              int step) const {
+        const float per_area = kSupport * static_cast<float>(old.count) / std::max(old.area, 1e-20F);
+        float area = 0;
+        for (int j = 0; j < ring.face_count(); ++j) {
+            const VertexId a = ring[j];
+            const VertexId b = ring.next(j);
+            if (a == u || b == u) continue;
+            const float of_face = area_vector(at(u), at(a), at(b)).norm();
+            area += of_face;
+            if (per_area * of_face > static_cast<float>(counts[index(j)] + kPseudoPoints * step)) return true;
+        }
+        return old.count < kFewPoints && area > kStretch * old.area;
     }
 
     const Network& network_;
