@@ -15,13 +15,15 @@ namespace {
 using vcg::Point3f;
 
 // Found by experiment; the results are flat around all of them.
-constexpr int kSweeps = 4;              ///< of bilateral evening
-constexpr float kAngleWidth = 6;        ///< its width, squared, in medians of the squared difference of adjacent normals
-constexpr float kWidest = 1;            ///< where creases are so many that the median is one
-constexpr float kPlaneWidth = 0.05F;    ///< width, squared, of a plane's normals, in squared differences of the two
-constexpr float kReach = 1.5F;          ///< at this many edge lengths a face counts half
+constexpr int kSweeps = 4;  ///< of bilateral evening
+constexpr float kAngleWidth =
+    6;  ///< its width, squared, in medians of the squared difference of adjacent normals
+constexpr float kWidest = 1;  ///< where creases are so many that the median is one
+constexpr float kPlaneWidth =
+    0.05F;                      ///< width, squared, of a plane's normals, in squared differences of the two
+constexpr float kReach = 1.5F;  ///< at this many edge lengths a face counts half
 constexpr int kPlaneRounds = 2;
-constexpr float kOpposite = -0.9F;      ///< cosine below which two normals belong to the two sides of a thin part
+constexpr float kOpposite = -0.9F;  ///< cosine below which two normals belong to the two sides of a thin part
 constexpr float kTiny = 1e-30F;
 
 std::size_t at(VertexId i) { return static_cast<std::size_t>(i); }
@@ -33,8 +35,8 @@ Point3f unit(const Point3f& n) {
 
 float squared(float x) { return x * x; }
 
-/// A weight that falls from 1 with the squared difference \p d of two normals; robust as exp(-d) is not cheap to
-/// have in equal bits everywhere.
+/// A weight that falls from 1 with the squared difference \p d of two normals; robust as exp(-d) is not cheap
+/// to have in equal bits everywhere.
 float similarity(float d, float width) { return 1 / squared(1 + d / width); }
 
 /// 1 - |mean unit normal| of the faces around v: 0 where it is flat.
@@ -108,7 +110,9 @@ public:
     float area(int f) const { return areas_[at(f)]; }
 
 private:
-    bool holds(std::size_t f, VertexId v) const { return faces_[f][0] == v || faces_[f][1] == v || faces_[f][2] == v; }
+    bool holds(std::size_t f, VertexId v) const {
+        return faces_[f][0] == v || faces_[f][1] == v || faces_[f][2] == v;
+    }
 
     /// Median over the inner edges of the squared difference of the normals on both sides.
     float median_difference() const {
@@ -119,7 +123,8 @@ private:
                 const VertexId b = faces_[f][(k + 1) % 3];
                 for (int i = begin(a); i < end(a); ++i) {
                     const std::size_t g = at(around_[at(i)]);
-                    if (g > f && holds(g, b)) differences.push_back((normals_[g] - normals_[f]).SquaredNorm());
+                    if (g > f && holds(g, b))
+                        differences.push_back((normals_[g] - normals_[f]).SquaredNorm());
                 }
             }
         if (differences.empty()) return 0;
@@ -152,7 +157,8 @@ public:
         const float e2 = normals_[1] * (x - points_[1]);
         const float cosine = normals_[0] * normals_[1];
         const float squared_sine = std::max(1 - cosine * cosine, cosine < 0 ? 1 - squared(kOpposite) : 1e-9F);
-        const float squared_distance = std::max(0.0F, e1 * e1 + e2 * e2 - 2 * e1 * e2 * cosine) / squared_sine;
+        const float squared_distance =
+            std::max(0.0F, e1 * e1 + e2 * e2 - 2 * e1 * e2 * cosine) / squared_sine;
         const float d = 4 * squared_distance / (edge * edge + kTiny);
         return std::sqrt(std::max(0.0F, 2 - 2 * cosine)) / (1 + d * d);
     }
@@ -182,7 +188,8 @@ private:
         for (int i = 0; i < ring.valence; ++i) add_star(ring[i], x, kReach * mean_edge);
     }
 
-    /// The two most different normals, opposite ones only if there is nothing else; false if all are the same.
+    /// The two most different normals, opposite ones only if there is nothing else; false if all are the
+    /// same.
     bool seed() { return seed_above(kOpposite) || seed_above(-2); }
 
     bool seed_above(float bound) {
@@ -207,7 +214,8 @@ private:
         Point3f points[2] = {{0, 0, 0}, {0, 0, 0}};
         float weights[2] = {0, 0};
         for (const Member& m : members_) {
-            const float to[2] = {(m.normal - normals_[0]).SquaredNorm(), (m.normal - normals_[1]).SquaredNorm()};
+            const float to[2] = {(m.normal - normals_[0]).SquaredNorm(),
+                                 (m.normal - normals_[1]).SquaredNorm()};
             const int k = to[0] < to[1] ? 0 : 1;
             const float w = m.weight * similarity(to[k], width);
             normals[k] += m.normal * w;
@@ -244,9 +252,7 @@ void FeatureStatistic::observe(const Network& network) {
 }
 
 std::vector<float> FeatureStatistic::values(const Network& learned) const {
-    std::vector<VertexId> origin(at(learned.slot_count()));
-    for (VertexId v = 0; v < learned.slot_count(); ++v) origin[at(v)] = v;
-    return values(learned, learned, origin);
+    return values(learned, learned, {});
 }
 
 std::vector<float> FeatureStatistic::values(const Network& learned, const Network& shown,
@@ -265,7 +271,7 @@ std::vector<float> FeatureStatistic::values(const Network& learned, const Networ
     std::vector<float> result(at(shown.slot_count()), 0.0F);
     for (VertexId v = 0; v < shown.slot_count(); ++v) {
         if (!shown.alive(v)) continue;
-        const VertexId o = origin[at(v)];
+        const VertexId o = origin.empty() ? v : origin[at(v)];
         const float spread = spread_sums_[at(o)] / moments;
         const float strength =
             planes.strength(learned, o, shown.position(v), mean_edge(shown, v), mean_edge(learned, o));

@@ -14,37 +14,41 @@ namespace neuralmesh {
 
 /// The feature statistic of a network that learns without changing its connectivity.
 ///
-/// The paper's idea, that many reconstructions say more than one (section 3.1), with two statistics in place of
-/// the normal counter: the mean position of every vertex over the moments observed, and the mean over the same
-/// moments of the spread of the face normals around it. From these, at the end:
+/// The paper's idea, that many reconstructions say more than one (section 3.1), with two statistics in place
+/// of the normal counter: the mean position of every vertex over the moments observed, and the mean over the
+/// same moments of the spread of the face normals around it. From these, at the end:
 /// 1. the face normals of the mean mesh, evened by a few bilateral sweeps, whose width in angle is set by the
 ///    median angle between adjacent faces, so by the noise;
-/// 2. for every vertex the two planes that best explain the faces of its two-ring, the angle theta between them,
-///    and the distance d of the vertex from the line where they meet, in mean lengths of its edges;
+/// 2. for every vertex the two planes that best explain the faces of its two-ring, the angle theta between
+///    them, and the distance d of the vertex from the line where they meet, in mean lengths of its edges;
 /// 3. the value  kUnit x 2 sin(theta / 2) x spread^(1/4) / (1 + (2 d)^4).
 ///
-/// Values are >= 0, without dimension and comparable between models: kUnit makes 1 the best single threshold over
-/// all models and noise levels of the experiment (tests/experiments/features.py). So "above 1" reads as "a
-/// crease passes within about half an edge"; a clean right-angled edge has about 2, a plane or a smoothly curved
-/// surface that the mesh resolves stays near 0, and no value exceeds 5.
-/// Memory: 16 bytes per vertex; values() needs about 150 more per vertex while it runs.
+/// Values are without dimension, from 0 to 6, and comparable between models as they are: dividing by their
+/// mean, as eq 7 does, makes them less so, because the mean depends on how much of the model is crease. kUnit
+/// makes 1 a single threshold for all models and noise levels of tests/experiments/features.py, so
+/// that "above 1" reads as "a crease passes within about half an edge". A right-angled edge has about 2.5 on
+/// it, a plane or a smooth surface that the mesh resolves stays well below 1.
+///
+/// Memory: 16 bytes per vertex; values() needs about 200 more per vertex while it runs.
 class FeatureStatistic {
 public:
-    static constexpr float kUnit = 2.8F;
+    static constexpr float kUnit = 3.0F;
 
-    /// Adds the present positions as one moment. All moments must have the same connectivity; to start on another
-    /// one, start a new object. O(vertices x valence); called once for as many signals as there are vertices, it
-    /// takes about a twentieth of the time of those.
+    /// Adds the present positions as one moment. All moments must have the same connectivity; to start on
+    /// another one, start a new object. O(vertices x valence); called once for as many signals as there are
+    /// vertices, it takes about a tenth of the time of those.
     void observe(const Network& network);
     int moments() const { return moments_; }
 
-    /// The value of every slot of \p learned, the network observed; 0 for free slots. If no moment has been observed,
-    /// the present one is taken. Deterministic. O(vertices).
+    /// The value of every slot of \p learned, the network observed; 0 for free slots. If no moment has been
+    /// observed, the present one is taken. Deterministic. O(vertices).
     std::vector<float> values(const Network& learned) const;
-    /// The same for \p shown, which was made from \p learned by moving, flipping, and moving vertices elsewhere:
-    /// vertex v of it lies close to vertex origin[v] of \p learned. Distances are those of the places and edges in
-    /// \p shown, planes those of \p learned.
-    std::vector<float> values(const Network& learned, const Network& shown, const std::vector<VertexId>& origin) const;
+    /// The same for \p shown, which was made from \p learned by moving, flipping, and moving vertices
+    /// elsewhere: vertex v of it lies close to vertex origin[v] of \p learned. Distances are those of the
+    /// places and edges in \p shown, planes those of \p learned. An empty \p origin means every vertex its
+    /// own.
+    std::vector<float> values(const Network& learned, const Network& shown,
+                              const std::vector<VertexId>& origin) const;
 
 private:
     std::vector<vcg::Point3f> position_sums_;

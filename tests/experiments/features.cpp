@@ -2,8 +2,8 @@
 // Copyright the Neural Mesh authors
 
 // What learning knows about features, for features.py: features IN.ply OUT VERTICES UTILITY_COUNTER SETTLING
-// learns the cloud and writes OUT.learned (the mesh as learning leaves it) and OUT.fitted (after the fit): lines
-// "v x y z eq6_counter statistic" in the coordinates of the cloud, and "f a b c", from 0.
+// learns the cloud and writes OUT.learned (the mesh as learning leaves it) and OUT.fitted (after the fit):
+// lines "v x y z eq6_counter statistic" in the coordinates of the cloud, and "f a b c", from 0.
 #include <vcg/complex/complex.h>
 #include <wrap/io_trimesh/import_ply.h>
 
@@ -54,8 +54,8 @@ void write(const std::string& path, const Network& network, const Frame& frame, 
                      static_cast<double>(values[i]));
     }
     for (const Triangle& f : network.faces())
-        std::fprintf(out, "f %d %d %d\n", index[static_cast<std::size_t>(f[0])], index[static_cast<std::size_t>(f[1])],
-                     index[static_cast<std::size_t>(f[2])]);
+        std::fprintf(out, "f %d %d %d\n", index[static_cast<std::size_t>(f[0])],
+                     index[static_cast<std::size_t>(f[1])], index[static_cast<std::size_t>(f[2])]);
     std::fclose(out);
 }
 
@@ -91,8 +91,7 @@ int run(char** argv) {
     write(out + ".learned", learned, target.frame(), learner, {}, statistic.values(learned));
     Network fitted = learned;
     const FitReport fit = fit_to_points(fitted, target, FitOptions(), settings.threads, 4, progress);
-    const std::vector<float> values =
-        fit.origin.empty() ? statistic.values(learned) : statistic.values(learned, fitted, fit.origin);
+    const std::vector<float> values = statistic.values(learned, fitted, fit.origin);
     write(out + ".fitted", fitted, target.frame(), learner, fit.origin, values);
     return 0;
 }

@@ -8,9 +8,10 @@
 
 FEATURES is features.cpp, built. Prints a table (markdown) and writes OUT/features.md and OUT/features.json.
 
-Truth: the edges of the true mesh with an angle of more than 30 degrees between their faces. A vertex of the result is
-a feature if it lies within half a mean length of its own edges from one. F1 is given at the best threshold (for each
-model, noise level and measure its own, found with the truth) and, for the feature statistic, at its one default of 1.
+Truth: the edges of the true mesh with an angle of more than 30 degrees between their faces. A vertex of the
+result is a feature if it lies within half a mean length of its own edges from one. F1 is given at the best
+threshold (for each model, noise level and measure its own, found with the truth) and, for the feature statistic,
+at its one default of 1.
 """
 
 import argparse
@@ -35,15 +36,17 @@ NEIGHBOURS = (20, 40, 80)
 
 
 def half_filleted_cube(fillet=0.2):
-    """The cube [-1, 1]^3 with its four upright edges rounded by a radius of fillet and the other eight sharp."""
+    """The cube [-1, 1]^3 with the four upright edges rounded by a radius of fillet, the others sharp."""
     arc = np.linspace(0, np.pi / 2, 25)
-    outline = np.array([(sx * (1 - fillet) + fillet * np.cos(a + start), sy * (1 - fillet) + fillet * np.sin(a + start))
-                        for sx, sy, start in ((1, 1, 0), (-1, 1, np.pi / 2), (-1, -1, np.pi), (1, -1, 1.5 * np.pi))
-                        for a in arc])
+    corners = ((1, 1, 0), (-1, 1, np.pi / 2), (-1, -1, np.pi), (1, -1, 1.5 * np.pi))
+    outline = np.vstack([np.column_stack([x * (1 - fillet) + fillet * np.cos(arc + start),
+                                          y * (1 - fillet) + fillet * np.sin(arc + start)])
+                         for x, y, start in corners])
     n = len(outline)
     k, k1 = np.arange(n), (np.arange(n) + 1) % n
     v = np.vstack([np.column_stack([outline, np.full(n, z)]) for z in (-1, 1)] + [[[0, 0, -1], [0, 0, 1]]])
-    f = [(k, k1, n + k1), (k, n + k1, n + k), (np.full(n, 2 * n), k1, k), (np.full(n, 2 * n + 1), n + k, n + k1)]
+    f = [(k, k1, n + k1), (k, n + k1, n + k), (np.full(n, 2 * n), k1, k),
+         (np.full(n, 2 * n + 1), n + k, n + k1)]
     return v, np.vstack([np.column_stack(part) for part in f])
 
 
@@ -105,7 +108,8 @@ class Mesh:
         return total / np.maximum(self.valence, 1)
 
     def edge_length(self):
-        return self.of_edges(np.linalg.norm(self.positions[self.ends[:, 0]] - self.positions[self.ends[:, 1]], axis=1))
+        along = self.positions[self.ends[:, 0]] - self.positions[self.ends[:, 1]]
+        return self.of_edges(np.linalg.norm(along, axis=1))
 
     def dihedral(self):
         n = unit_normals(self.positions, self.faces)
@@ -165,7 +169,7 @@ def measures_of(mesh, cloud):
 
 
 def judge(mesh, creases, cloud):
-    """All figures of one mesh. Without creases in the truth: the share of vertices that are called features."""
+    """All figures of one mesh. Without creases in the truth: the share of vertices called features."""
     truth = creases.distance(mesh.positions) <= 0.5 * mesh.edge_length()
     if creases.tree is None:
         return {"false positives": float((mesh.statistic > DEFAULT_THRESHOLD).mean())}
@@ -185,8 +189,8 @@ def run(name, noise, utility, options):
     ply = work / f"{name}-{noise:g}.ply"
     models.save_ply(ply, cloud)
     out = work / f"{name}-{noise:g}-{utility}"
-    subprocess.run([options.program, ply, out, str(options.vertices), str(UTILITY[utility]), str(options.settling)],
-                   check=True)
+    subprocess.run([options.program, ply, out, str(options.vertices), str(UTILITY[utility]),
+                    str(options.settling)], check=True)
     creases = Creases(vertices, faces)
     rows = []
     for stage in ("learned", "fitted"):
@@ -204,8 +208,8 @@ CLOUD_MEASURES = tuple(f"cloud variation {k}" for k in NEIGHBOURS)
 
 
 def table(rows):
-    lines = ["| model | mesh | stage | noise | statistic at 1 | at its best | ROC area | eq 6 | best of the final mesh | "
-             "dihedral | spread | curvature | cloud |", "|---" * 13 + "|"]
+    lines = ["| model | mesh | stage | noise | statistic at 1 | at its best | ROC area | eq 6 | "
+             "best of the final mesh | dihedral | spread | curvature | cloud |", "|---" * 13 + "|"]
     wins = count = 0
     for row in rows:
         if "false positives" in row:
@@ -219,8 +223,8 @@ def table(rows):
                  f"{row['dihedral']['best']:.3f}", f"{row['normal spread']['best']:.3f}",
                  f"{best_of(row, CURVATURES):.3f}", f"{best_of(row, CLOUD_MEASURES):.3f}"]
         lines.append("| " + " | ".join(cells) + " |")
-    lines.append(f"\nAt the default threshold the statistic is at least as good as the best final-mesh measure at its "
-                 f"best threshold in {wins} of {count} cases.")
+    lines.append("\nAt the default threshold the statistic is at least as good as the best final-mesh measure "
+                 f"at its best threshold in {wins} of {count} cases.")
     none = [row for row in rows if "false positives" in row]
     for row in none:
         lines.append(f"{row['model']}, {row['mesh']}, {row['stage']}, noise {row['noise']:g} %: no creases, "
@@ -229,8 +233,11 @@ def table(rows):
 
 
 def parse(arguments):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    words = lambda kind: lambda text: [kind(word) for word in text.split(",") if word]
+    def words(kind):
+        return lambda text: [kind(word) for word in text.split(",") if word]
+
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", required=True, help="features.cpp, built")
     parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
     parser.add_argument("--models", type=words(str), default=["fandisk", "block", "crossed-cylinders",

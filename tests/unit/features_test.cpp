@@ -56,7 +56,8 @@ struct Learned {
     std::vector<float> values;
 };
 
-/// Distance of \p p from the nearest edge of the cube, whose edges have length 1 / sqrt(3) in the core's frame.
+/// Distance of \p p from the nearest edge of the cube, whose edges have length 1 / sqrt(3) in the core's
+/// frame.
 double distance_from_cube_edge(const vcg::Point3f& p, double half) {
     double off[3];
     for (int k = 0; k < 3; ++k) off[k] = half - std::abs(static_cast<double>(p[k]));
@@ -68,8 +69,8 @@ struct Hits {
     int edges = 0, found = 0, faces = 0, wrong = 0;
 };
 
-/// Vertices within 0.4 edge lengths of a cube's edge are to be above 1, those beyond 1.2 below; between lies the
-/// transition.
+/// Vertices within 0.4 edge lengths of a cube's edge are to be above 1, those beyond 1.2 below; between lies
+/// the transition.
 Hits hits_on_cube(const Learned& run, double half) {
     Hits hits;
     const double edge = run.mean_edge();
@@ -137,7 +138,8 @@ TEST(FeatureStatistic, IsIndifferentToScale) {
     for (std::size_t v = 0; v < a.size(); ++v) EXPECT_NEAR(a[v], b[v], 1e-4F);
 }
 
-/// Without a moment the present one counts; a shown vertex takes its planes from its origin, its place from itself.
+/// Without a moment the present one counts; a shown vertex takes its planes from its origin, its place from
+/// itself.
 TEST(FeatureStatistic, JudgesAShownVertexWhereItLies) {
     const Learned run(shapes::box_cloud(40000), 1500);
     const FeatureStatistic none;
@@ -153,8 +155,8 @@ TEST(FeatureStatistic, JudgesAShownVertexWhereItLies) {
         const vcg::Point3f p = run.network.position(v);
         // In the middle of an edge along x.
         if (std::abs(p[0]) > 0.1F || p[1] < 0 || p[2] < 0) continue;
-        if (nearest < 0 || distance_from_cube_edge(p, half) <
-                               distance_from_cube_edge(run.network.position(nearest), half))
+        if (nearest < 0 ||
+            distance_from_cube_edge(p, half) < distance_from_cube_edge(run.network.position(nearest), half))
             nearest = v;
     }
     ASSERT_GE(nearest, 0);
