@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""What the paper's table and figures share: its models or their stand-ins, runs of the core, vertex normals.
+
+The paper's own model files are not public. Of Max-Planck, Dino and Brain the data folder (NEURAL_MESH_DATA)
+has others that show the same; without it there are the models of Debian's packages.
+"""
+
+import json
+import subprocess
+
+import numpy as np
+import pymeshlab
+from scipy.spatial import cKDTree
+
+import evaluate
+import models
+
+BRAIN = "mesh/brain_aim_18k.ply"
+
+
+class RunError(RuntimeError):
+    """A program that the experiment needs failed; the message holds what it said."""
+
+
+def surface(name, data=None):
+    """Vertices and triangles of a model of models.py, or of "brain": the largest component of a scan's surface.
+
+    Throws models.ModelError when it cannot be had.
+    """
+    if name != "brain":
+        return models.load_model(name, data)
+    if not data:
+        raise models.ModelError("The brain needs a data folder: give --data or set NEURAL_MESH_DATA.")
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.load_new_mesh(f"{data}/{BRAIN}")
+    meshes.generate_splitting_by_connected_components()
+    largest = max(list(meshes)[1:], key=lambda mesh: mesh.vertex_number())
+    return largest.vertex_matrix(), largest.face_matrix()
+
+
+def can_be_had(name, data=None):
+    """True if surface() finds the model without a data folder that is not there; it may download a package."""
+    try:
+        surface(name, data)
+        return True
+    except (models.ModelError, pymeshlab.PyMeshLabException):
+        return False
+
+
+def output_of(command):
+    run = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
+    if run.returncode != 0:
+        raise RunError(f"{' '.join(map(str, command))} failed: {run.stderr.strip()}")
+    return run
+
+
+def learn(program, cloud, out, **settings):
+    """Runs the core on a PLY file; returns its report, with its warnings under "warnings"."""
+    run = output_of([program, cloud, out, *(f"{key}={value}" for key, value in settings.items())])
+    return {**json.loads(run.stdout), "warnings": run.stderr.splitlines()}
+
+
+def check(program, mesh, reference):
+    """vcglib's topology checks and Hausdorff sampler on a mesh, as check_mesh.cpp prints them."""
+    return json.loads(output_of([program, mesh, reference]).stdout)
+
+
+def vertex_normals(vertices, faces):
+    """Unit normals of the vertices, the mean over the faces weighted by their area."""
+    corners = vertices[faces]
+    weighted = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = np.zeros_like(vertices)
+    for corner in range(3):
+        np.add.at(normals, faces[:, corner], weighted)
+    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
+
+
+def samples_with_normals(vertices, faces, count, seed):
+    """Points uniform over the area, and there the vertex normals interpolated as a renderer does."""
+    points, of_face = models.sample_surface(vertices, faces, count, np.random.default_rng(seed))
+    origin, corner1, corner2 = (vertices[faces[of_face, k]] for k in range(3))
+    edges = np.stack([corner1 - origin, corner2 - origin], axis=2)
+    gram = np.einsum("nij,nik->njk", edges, edges) + 1e-300 * np.eye(2)
+    right = np.einsum("nij,ni->nj", edges, points - origin)
+    determinant = np.maximum(np.linalg.det(gram), np.finfo(float).tiny)
+    u = (gram[:, 1, 1] * right[:, 0] - gram[:, 0, 1] * right[:, 1]) / determinant
+    v = (gram[:, 0, 0] * right[:, 1] - gram[:, 0, 1] * right[:, 0]) / determinant
+    at_vertices = vertex_normals(vertices, faces)
+    weights = np.stack([1 - u - v, u, v], axis=1).clip(0, 1)
+    normals = np.einsum("nk,nkj->nj", weights, at_vertices[faces[of_face]])
+    return points, normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
+
+
+class SmoothNormals:
+    """A true surface as a judge of vertex normals."""
+
+    def __init__(self, vertices, faces, samples=evaluate.NORMAL_SAMPLES):
+        self.points, self.normals = samples_with_normals(vertices, faces, samples, 20030103)
+
+    def error(self, vertices, faces):
+        """The mean angle in degrees between the true normal and the mesh's next to it, both interpolated from
+        the vertices; the mean is over the true surface's area. A mesh that is inside out is turned over."""
+        points, normals = samples_with_normals(vertices, faces, evaluate.SAMPLES, 20030104)
+        _, nearest = cKDTree(points).query(self.points)
+        cosine = np.einsum("ij,ij->i", self.normals, normals[nearest])
+        angle = float(np.degrees(np.arccos(cosine.clip(-1, 1))).mean())
+        return min(angle, 180 - angle)
