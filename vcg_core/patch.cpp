@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace neuralmesh {
 
@@ -26,50 +27,109 @@ constexpr float kTiny = 1e-36F;
     v.z[valence + 1] = v.z[1];
 }
 
-/// One sweep for ring vertices 0 .. kWidth - 1, from \p at into \p now.
-template <int kWidth>
-[[gnu::always_inline]] inline void sweep(const Still& still, const Vectors& at, Vectors& now) {
-    for (int i = 0; i < kWidth; ++i) {
-        const float ax = at.x[i], ay = at.y[i], az = at.z[i];              // r_(i-1)
-        const float vx = at.x[i + 1], vy = at.y[i + 1], vz = at.z[i + 1];  // r_i
-        const float bx = at.x[i + 2], by = at.y[i + 2], bz = at.z[i + 2];  // r_(i+1)
-        // N = w x a + a x o_1 + (o_1 x o_2 + ..) + o_m x b + b x w: twice the star's area vector,
-        // which does not depend on r_i itself.
-        const float nx = still.area.x[i] + (ay * still.first.z[i] - az * still.first.y[i]) +
-                         (still.last.y[i] * bz - still.last.z[i] * by);
-        const float ny = still.area.y[i] + (az * still.first.x[i] - ax * still.first.z[i]) +
-                         (still.last.z[i] * bx - still.last.x[i] * bz);
-        const float nz = still.area.z[i] + (ax * still.first.y[i] - ay * still.first.x[i]) +
-                         (still.last.x[i] * by - still.last.y[i] * bx);
-        const float lx = (still.sum.x[i] + (ax + bx)) * still.inverse_valence[i] - vx;
-        const float ly = (still.sum.y[i] + (ay + by)) * still.inverse_valence[i] - vy;
-        const float lz = (still.sum.z[i] + (az + bz)) * still.inverse_valence[i] - vz;
-        const float along = (lx * nx + ly * ny + lz * nz) / (nx * nx + ny * ny + nz * nz + kTiny);
-        now.x[i + 1] = vx + still.rate[i] * (lx - along * nx);
-        now.y[i + 1] = vy + still.rate[i] * (ly - along * ny);
-        now.z[i + 1] = vz + still.rate[i] * (lz - along * nz);
-    }
+template <class T>
+struct Vector {
+    T x, y, z;
+};
+
+/// What does not change for one ring vertex, or for as many as T has lanes. See Patch::Still.
+template <class T>
+struct StillOf {
+    Vector<T> sum, area, first, last;
+    T inverse_valence, rate;
+};
+
+/// The new place of ring vertex v between a = r_(i-1) and b = r_(i+1).
+template <class T>
+[[gnu::always_inline]] inline void smooth_vertex(const StillOf<T>& s, const Vector<T>& a, Vector<T>& v,
+                                                 const Vector<T>& b) {
+    // N = w x a + a x o_1 + (o_1 x o_2 + ..) + o_m x b + b x w: twice the star's area vector, which does not depend
+    // on v itself.
+    const T nx = s.area.x + (a.y * s.first.z - a.z * s.first.y) + (s.last.y * b.z - s.last.z * b.y);
+    const T ny = s.area.y + (a.z * s.first.x - a.x * s.first.z) + (s.last.z * b.x - s.last.x * b.z);
+    const T nz = s.area.z + (a.x * s.first.y - a.y * s.first.x) + (s.last.x * b.y - s.last.y * b.x);
+    const T lx = (s.sum.x + (a.x + b.x)) * s.inverse_valence - v.x;
+    const T ly = (s.sum.y + (a.y + b.y)) * s.inverse_valence - v.y;
+    const T lz = (s.sum.z + (a.z + b.z)) * s.inverse_valence - v.z;
+    const T along = (lx * nx + ly * ny + lz * nz) / (nx * nx + ny * ny + nz * nz + kTiny);
+    v.x = v.x + s.rate * (lx - along * nx);
+    v.y = v.y + s.rate * (ly - along * ny);
+    v.z = v.z + s.rate * (lz - along * nz);
 }
 
+/// All sweeps for ring vertices 0 .. kWidth - 1, on any machine.
 template <int kWidth>
-[[gnu::always_inline]] inline void sweeps(const Still& still, Vectors& at, int valence, int count) {
+void sweep_in_memory(const Still& still, Vectors& at, int valence, int count) {
+    const auto lane = [](const Vectors& v, int i) -> Vector<float> { return {v.x[i], v.y[i], v.z[i]}; };
     Vectors other;
     Vectors* from = &at;
     Vectors* to = &other;
-    for (int s = 0; s < count; ++s) {
-        sweep<kWidth>(still, *from, *to);
+    for (int sweep = 0; sweep < count; ++sweep) {
+        for (int i = 0; i < kWidth; ++i) {
+            const StillOf<float> s{lane(still.sum, i),  lane(still.area, i),      lane(still.first, i),
+                                   lane(still.last, i), still.inverse_valence[i], still.rate[i]};
+            Vector<float> v = lane(*from, i + 1);
+            smooth_vertex(s, lane(*from, i), v, lane(*from, i + 2));
+            to->x[i + 1] = v.x;
+            to->y[i + 1] = v.y;
+            to->z[i + 1] = v.z;
+        }
         close_cycle(*to, valence);
         std::swap(from, to);
     }
     if (from != &at) at = *from;
 }
 
-NEURALMESH_MULTIVERSIONED void sweeps_of_8(const Still& still, Vectors& at, int valence, int count) {
-    sweeps<8>(still, at, valence, count);
+#ifdef NEURALMESH_HAS_AVX2
+using Eight = float __attribute__((vector_size(32)));
+
+[[gnu::target("avx2")]] inline void load(const Vectors& from, int lane, Vector<Eight>& to) {
+    std::memcpy(&to.x, from.x + lane, sizeof to.x);
+    std::memcpy(&to.y, from.y + lane, sizeof to.y);
+    std::memcpy(&to.z, from.z + lane, sizeof to.z);
 }
 
-NEURALMESH_MULTIVERSIONED void sweeps_of_16(const Still& still, Vectors& at, int valence, int count) {
-    sweeps<16>(still, at, valence, count);
+/// The same for up to 8 ring vertices that never leave the registers: a sweep waits for the one before it, and the
+/// way through memory would be half of that wait.
+[[gnu::target("avx2")]] void sweep_in_registers(const Still& still, Vectors& at, int valence, int count) {
+    alignas(32) std::int32_t before[8];
+    alignas(32) std::int32_t after[8];
+    for (int i = 0; i < 8; ++i) {
+        before[i] = i == 0 ? valence - 1 : i - 1;
+        after[i] = i + 1 < valence ? i + 1 : 0;
+    }
+    const __m256i to_before = _mm256_load_si256(reinterpret_cast<const __m256i*>(before));
+    const __m256i to_after = _mm256_load_si256(reinterpret_cast<const __m256i*>(after));
+    StillOf<Eight> s;
+    load(still.sum, 0, s.sum);
+    load(still.area, 0, s.area);
+    load(still.first, 0, s.first);
+    load(still.last, 0, s.last);
+    std::memcpy(&s.inverse_valence, still.inverse_valence, sizeof s.inverse_valence);
+    std::memcpy(&s.rate, still.rate, sizeof s.rate);
+    Vector<Eight> v;
+    load(at, 1, v);
+    for (int sweep = 0; sweep < count; ++sweep) {
+        const Vector<Eight> a{_mm256_permutevar8x32_ps(v.x, to_before), _mm256_permutevar8x32_ps(v.y, to_before),
+                              _mm256_permutevar8x32_ps(v.z, to_before)};
+        const Vector<Eight> b{_mm256_permutevar8x32_ps(v.x, to_after), _mm256_permutevar8x32_ps(v.y, to_after),
+                              _mm256_permutevar8x32_ps(v.z, to_after)};
+        smooth_vertex(s, a, v, b);
+    }
+    std::memcpy(at.x + 1, &v.x, sizeof v.x);
+    std::memcpy(at.y + 1, &v.y, sizeof v.y);
+    std::memcpy(at.z + 1, &v.z, sizeof v.z);
+    close_cycle(at, valence);
+}
+#endif
+
+void sweep_ring(const Still& still, Vectors& at, int valence, int count) {
+#ifdef NEURALMESH_HAS_AVX2
+    static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
+    if (has_avx2 && valence <= 8) return sweep_in_registers(still, at, valence, count);
+#endif
+    if (valence <= 8) return sweep_in_memory<8>(still, at, valence, count);
+    sweep_in_memory<16>(still, at, valence, count);
 }
 
 /// Unit normals of the faces (w, r_i, r_(i+1)).
@@ -181,7 +241,7 @@ void Patch::smooth(int count, float alpha_l) {
         still_.last.y[i] -= wy;
         still_.last.z[i] -= wz;
     }
-    (valence_ <= 8 ? sweeps_of_8 : sweeps_of_16)(still_, at_, valence_, count);
+    sweep_ring(still_, at_, valence_, count);
 }
 
 vcg::Point3f Patch::normal() {
