@@ -31,13 +31,13 @@ fail() {
 }
 
 as_root() {
-    if [ "$(id -u)" = 0 ]; then
-        "$@"
-    elif command -v sudo > /dev/null; then
-        sudo "$@"
-    else
-        fail "Packages are missing and there is no sudo. As root: apt-get install ${missing[*]}"
-    fi
+    if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
+}
+
+# must_be_root REASON COMMAND: ends with a sentence where nobody can be asked to run COMMAND as root.
+must_be_root() {
+    [ "$(id -u)" = 0 ] || command -v sudo > /dev/null ||
+        fail "$1, and there is no sudo here. Run this as root, then start again:"$'\n'"  $2"
 }
 
 missing_of() {
@@ -51,25 +51,33 @@ missing_of() {
 need() {
     command -v dpkg-query > /dev/null || fail "This script is for Debian 12; elsewhere build with" \
         "cmake -S . -B build -DMESHLAB_SOURCE_DIR=DIR, the sources of your MeshLab being in DIR."
+    local missing
     mapfile -t missing < <(missing_of "$@")
     [ "${#missing[@]}" -gt 0 ] || return 0
+    must_be_root "Packages are missing" \
+        "apt-get update && apt-get install --no-install-recommends ${missing[*]}"
     say "Installing ${missing[*]}"
-    export DEBIAN_FRONTEND=noninteractive
-    as_root dpkg --configure -a
-    as_root apt-get -q -q update
-    as_root apt-get -q -q install --yes --no-install-recommends "${missing[@]}"
+    install_packages "${missing[@]}" > "$build/install.log" 2>&1 ||
+        { tail -n 20 "$build/install.log" >&2; fail "The packages could not be installed; $build/install.log has it all."; }
+}
+
+# Waits for another apt to finish, and takes up what an interrupted one has left half installed.
+install_packages() {
+    local apt="env DEBIAN_FRONTEND=noninteractive apt-get -q -q -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0"
+    as_root dpkg --configure -a || true  # what lacks its dependencies yet is mended by apt-get below
+    as_root $apt update && as_root $apt install --fix-broken --yes --no-install-recommends "$@"
 }
 
 need_sources() {
     if [ -z "$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Origin: Debian')" ] &&
         ! [ -e "${XDG_CACHE_HOME:-$HOME/.cache}/neural-mesh/meshlab-2025.07/ML_VERSION" ]; then
+        must_be_root "apt does not know its mirrors' packages" "apt-get update"
         as_root apt-get -q -q update
     fi
     filter_neuralmesh/fetch_meshlab.sh
 }
 
 need_venv() {
-    need $venv_packages
     local wanted
     wanted="$(sha256sum < tests/requirements.txt)"
     [ "$(cat "$venv/complete" 2> /dev/null)" = "$wanted" ] && return 0
@@ -93,7 +101,7 @@ compile() {
 path_of() { case "$1" in /*) echo "$1" ;; *) echo "$called_from/$1" ;; esac; }
 
 build() {
-    need $compile_packages
+    need $compile_packages $venv_packages
     need_venv
     compile plugins
     say "Built:"
@@ -111,7 +119,7 @@ demo() {
 }
 
 run_tests() {
-    need $compile_packages $demo_packages $test_packages
+    need $compile_packages $demo_packages $test_packages $venv_packages
     need_venv
     compile all
     say "Unit tests"
@@ -132,7 +140,7 @@ bench() {
 }
 
 figures() {
-    need $compile_packages $demo_packages $test_packages
+    need $compile_packages $demo_packages $test_packages $venv_packages
     need_venv
     compile all
     local plugin="$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
@@ -155,7 +163,7 @@ case "$word" in
     bench) bench ;;
     figures) figures ;;
     *)
-        sed -n '6,12s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+        sed -n '5,11s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
         exit 2
         ;;
 esac
