@@ -15,6 +15,10 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "hosts"))
 sys.path.insert(0, str(ROOT / "tests" / "experiments"))
 
+# Before any OpenMP is loaded: threads that wait for work without sleeping make Poisson five times slower on a
+# machine that has other work, too.
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+
 import meshlabserver  # noqa: E402
 import models  # noqa: E402
 

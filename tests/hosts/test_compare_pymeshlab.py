@@ -94,15 +94,15 @@ def plugin():
 
 
 @pytest.fixture(scope="module")
-def compared(plugin, tmp_path_factory):
-    """Measures of both methods on a model's cloud: compared(model, noise, seed) -> (ours, peer's), each made once."""
+def measured(tmp_path_factory, plugin):
+    """measured(method, name, noise, seed): measures of one method on a model's cloud, each made once."""
     made = {}
 
-    def one(name, noise, method, seed):
-        key = (name, noise, method, seed)
+    def one(method, name, noise=0.0, seed=None):
+        key = (method, name, noise, seed)
         if key not in made:
             truth = evaluate.Truth(*models.load_model(name))
-            folder = tmp_path_factory.mktemp("compared")
+            folder = tmp_path_factory.mktemp("measured")
             models.save_ply(folder / "cloud.ply", models.make_cloud(truth.vertices, truth.faces, SAMPLES, noise))
             ours = {"plugin": plugin, "settings": {"random_seed": seed}} if method == "neural" else {}
             figures = peers.run(method, folder / "cloud.ply", folder, [VERTICES], **ours)
@@ -110,16 +110,26 @@ def compared(plugin, tmp_path_factory):
             made[key] = {**evaluate.evaluate(*mesh, truth), **figures[VERTICES]}
         return made[key]
 
-    return lambda name, noise=0.0, seed=1: (one(name, noise, "neural", seed), one(name, noise, "poisson", None))
+    return one
 
 
-def test_the_peer_has_the_vertices_asked_for(compared):
-    assert compared("bunny")[1]["vertices"] == pytest.approx(VERTICES, rel=peers.TOLERANCE)
+@pytest.fixture(scope="module")
+def learned(measured):
+    return lambda name, noise=0.0, seed=1: measured("neural", name, noise, seed)
+
+
+@pytest.fixture(scope="module")
+def peer(measured):
+    return lambda name, noise=0.0: measured("poisson", name, noise)
+
+
+def test_the_peer_has_the_vertices_asked_for(peer):
+    assert peer("bunny")["vertices"] == pytest.approx(VERTICES, rel=peers.TOLERANCE)
 
 
 @pytest.mark.parametrize("name", ["bunny", "torus", "linked-tori", "two-spheres", "cup"])
-def test_exact_closed_and_of_the_right_topology(compared, name):
-    ours, _ = compared(name)
+def test_exact_closed_and_of_the_right_topology(learned, name):
+    ours = learned(name)
     model = models.MODELS[name]
     assert ours["vertices"] == VERTICES
     assert ours["manifold"] and ours["boundary_edges"] == 0 and not ours["inside_out"]
@@ -130,13 +140,12 @@ def test_exact_closed_and_of_the_right_topology(compared, name):
 
 @pytest.mark.parametrize("name, noise, bound", [("bunny", 0, 1.2), ("torus", 0, 1.2), ("filleted-cube", 0, 1.2),
                                                 ("bunny", 0.6, 0.6), ("torus", 0.6, 0.6)])
-def test_closer_to_the_truth_than_the_peer(compared, name, noise, bound):
-    ours, peer = compared(name, noise)
-    assert ours["sum_rms"] <= bound * peer["sum_rms"]
+def test_closer_to_the_truth_than_the_peer(learned, peer, name, noise, bound):
+    assert learned(name, noise)["sum_rms"] <= bound * peer(name, noise)["sum_rms"]
 
 
-def test_the_filter_tells_the_truth_about_its_mesh(compared):
-    ours, _ = compared("linked-tori")
+def test_the_filter_tells_the_truth_about_its_mesh(learned):
+    ours = learned("linked-tori")
     told = ours["report"]
     for key in ("vertices", "faces", "genus", "components"):
         assert told[key] == ours[key], key
@@ -145,7 +154,7 @@ def test_the_filter_tells_the_truth_about_its_mesh(compared):
     assert told["rms_error"] == pytest.approx(ours["forward_rms"], rel=0.15)
 
 
-def test_seeds_change_the_mesh_and_not_its_quality(compared):
-    first, second = compared("bunny", 0, 1)[0], compared("bunny", 0, 2)[0]
+def test_seeds_change_the_mesh_and_not_its_quality(learned):
+    first, second = learned("bunny", 0, 1), learned("bunny", 0, 2)
     assert first["forward_rms"] != second["forward_rms"]
     assert first["sum_rms"] == pytest.approx(second["sum_rms"], rel=0.25)
