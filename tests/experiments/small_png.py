@@ -1,0 +1,44 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""Makes PNG pictures small enough for a repository: small_png.py [--width PIXELS] FILE.png...
+
+A palette of 256 colours, and if asked a smaller width; the files are replaced.
+"""
+
+import argparse
+from pathlib import Path
+
+from PIL import Image
+
+
+def make_small(path, width=None):
+    """Replaces the picture by one with a palette; a file that it would make larger keeps its bytes."""
+    with Image.open(path) as file:
+        image = file.convert("RGB")
+    if width and width < image.width:
+        image = image.resize((width, round(image.height * width / image.width)), Image.LANCZOS)
+    before = Path(path).stat().st_size
+    # Maximum coverage keeps rare colours, which median cut gives up for the many shades of the background.
+    palette = image.quantize(256, method=Image.Quantize.MAXCOVERAGE, kmeans=10)
+    small = image.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG)
+    scratch = Path(path).with_suffix(".small.png")
+    small.save(scratch, optimize=True)
+    if scratch.stat().st_size < before:
+        scratch.replace(path)
+    else:
+        scratch.unlink()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--width", type=int, help="greatest width in pixels")
+    parser.add_argument("files", nargs="+", metavar="FILE.png")
+    options = parser.parse_args()
+    for path in options.files:
+        make_small(path, options.width)
+
+
+if __name__ == "__main__":
+    main()
