@@ -51,8 +51,8 @@ struct FitReport {
 ///
 /// The number of vertices, components, handles and boundary loops stays. The same bytes for any \p threads (0: as
 /// many as the machine has). Stops early, with the best mesh so far, when \p progress asks for it; fractions run
-/// from 0 to 1. Exact nearest faces: O(points log faces) a round, in all about 0.5 s for 10k vertices and 200k
-/// points on two cores.
+/// from 0 to 1. Exact nearest faces: O(points log faces) a round, in all about 2.5 s of processor time for
+/// 10k vertices and 200k points.
 /// Sources: Hoppe, DeRose, Duchamp, McDonald, Stuetzle, "Mesh Optimization" (1993); the linearisation is
 /// Gauss-Newton's for distances (point to plane).
 FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOptions& options, int threads,

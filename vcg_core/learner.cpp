@@ -33,6 +33,7 @@ double voronoi_area(const Network& network, VertexId v) {
 constexpr float kFlatEnough = 0.95F;
 constexpr int kSplitCandidates = 32;  ///< tried before a split is put off
 constexpr std::size_t kDrawnAhead = 256;
+constexpr std::int64_t kLeastSettling = 60000;
 constexpr int kReportEvery = 1000;    ///< signals between two looks at the progress and at the stop criteria
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
@@ -59,6 +60,7 @@ Learner::Learner(const TargetSpace& target, const Settings& settings, Network st
 
 StopReason Learner::run(int per_vertex, Progress& progress) {
     if (!settle(per_vertex, progress)) return StopReason::cancelled;
+    feature_statistic_ = FeatureStatistic();  // growth begins: what has been observed is of another connectivity
     const std::int64_t budget = signals_ + growth_budget();
     const std::int64_t bound = signals_ + signal_bound();
     while (network_.vertex_count() < settings_.target_vertices) {
@@ -270,9 +272,16 @@ bool Learner::flip_regularises(VertexId a, VertexId b) const {
 }
 
 bool Learner::settle(int per_vertex, Progress& progress) {
-    const std::int64_t end = signals_ + std::int64_t{per_vertex} * network_.vertex_count();
+    const bool observing = settings_.feature_measure == kCreaseMeasure;
+    const std::int64_t sweep = network_.vertex_count();
+    const std::int64_t begin = signals_;
+    const std::int64_t end = begin + (per_vertex == 0 ? 0 : std::max(per_vertex * sweep, kLeastSettling));
+    feature_statistic_ = FeatureStatistic();
     while (signals_ < end) {
         basic_step(next_signal());
+        // The first fifth is still on its way from growth.
+        if (observing && (signals_ - begin) % sweep == 0 && 5 * (signals_ - begin) > end - begin)
+            feature_statistic_.observe(network_);
         if (signals_ % kReportEvery == 0 && !report("Settling", progress)) return false;
     }
     return true;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "counters.h"
+#include "features.h"
 #include "network.h"
 #include "neural_mesh.h"
 #include "patch.h"
@@ -42,8 +43,9 @@ public:
     /// Removes the vertices that existed but did not win since the last call, each along the edge whose
     /// collapse leaves the best valences. \return how many. O(n).
     int half_edge_collapse();
-    /// \p per_vertex signals a vertex without change of connectivity, so that the counters speak of the final
-    /// mesh. False if \p progress asked to stop.
+    /// \p per_vertex signals a vertex, and at least 60,000 unless that is 0, without change of connectivity, so
+    /// that the counters speak of the final mesh. If settings.feature_measure asks for it, the feature statistic
+    /// observes it. False if \p progress asked to stop.
     bool settle(int per_vertex, Progress& progress);
 
     /// Learning is cut short after this many signals of growth. Growth that has not come to its target
@@ -57,6 +59,7 @@ public:
 
     const Network& network() const { return network_; }
     const FeatureCounters& feature_counters() const { return feature_counters_; }
+    const FeatureStatistic& feature_statistic() const { return feature_statistic_; }
     const UtilityCounters& utility_counters() const { return utility_counters_; }
     std::int64_t signals() const { return signals_; }
     std::int64_t splits() const { return splits_; }
@@ -92,6 +95,7 @@ private:
     WinnerSearch search_;
     UtilityCounters utility_counters_;
     FeatureCounters feature_counters_;
+    FeatureStatistic feature_statistic_;
     WindowMean mean_delta_;
     Patch patch_;
     Random random_;

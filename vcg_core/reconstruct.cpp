@@ -101,16 +101,21 @@ void write_geometry(const Network& network, const Frame& frame, NeuralMesh& mesh
 /// \p origin: whose counter a vertex of \p network carries; empty: its own.
 void write_counters(const Learner& learner, const Network& network, const std::vector<VertexId>& origin,
                     const Settings& settings, NeuralMesh& mesh) {
+    const bool creases = settings.feature_measure == kCreaseMeasure;
+    const std::vector<float> measure =
+        creases ? learner.feature_statistic().values(learner.network(), network, origin) : std::vector<float>();
     double sum = 0;
     for (VertexId v = 0; v < network.slot_count(); ++v) {
         if (!network.alive(v)) continue;
+        const auto slot = static_cast<std::size_t>(v);
         mesh.counters.push_back(
-            learner.feature_counters().value(origin.empty() ? v : origin[static_cast<std::size_t>(v)]));
+            creases ? measure[slot] : learner.feature_counters().value(origin.empty() ? v : origin[slot]));
         sum += static_cast<double>(mesh.counters.back());
     }
     const double mean = sum / static_cast<double>(mesh.counters.size());
+    const double threshold = creases ? settings.feature_threshold : settings.feature_threshold * mean;
     for (const float n_c : mesh.counters) {
-        mesh.features.push_back(static_cast<double>(n_c) > settings.feature_threshold * mean ? 1 : 0);
+        mesh.features.push_back(static_cast<double>(n_c) > threshold ? 1 : 0);
         mesh.report.feature_vertices += mesh.features.back();
     }
     mesh.report.mean_counter = mean;
@@ -151,8 +156,11 @@ NeuralMesh reconstruct(const TargetSpace& target, const Settings& settings, Prog
 
     Network network = learner.network();
     FitReport fit;
+    FitOptions options;
+    // A mesh that is to follow the density of the cloud must not follow the error instead.
+    options.redistribute = settings.utility_counter == kNormalCounter;
     if (settings.fit_to_points && !run.stopped())
-        fit = fit_to_points(network, target, FitOptions{}, settings.threads,
+        fit = fit_to_points(network, target, options, settings.threads,
                             static_cast<std::uint64_t>(settings.random_seed) + 3, fitting);
     if (run.stopped()) mesh.report.stop_reason = StopReason::cancelled;
     network.orient_outward();

@@ -19,6 +19,12 @@ enum UtilityCounter : int {
     kSignalCounter = 1,  ///< number of wins: density of the mesh follows density of the cloud
 };
 
+/// What the quality of the result holds, and what selects features.
+enum FeatureMeasure : int {
+    kFeatureCounter = 0,  ///< the paper's normal counter of eq 6
+    kCreaseMeasure = 1,   ///< features.h: angle of the planes around a vertex, over many moments of the learning
+};
+
 /// What the learning starts from.
 enum StartShape : int {
     kShell = 0,        ///< the shell of the cloud: its components and handles are there from the start
@@ -35,6 +41,7 @@ struct Settings {
     bool selected_only = false;
     bool color_by_counter = true;
     bool select_features = false;
+    int feature_measure = kFeatureCounter;
     double feature_threshold = 1.0;  ///< C_nc, eq 7
     int random_seed = 1;
     int threads = 0;  ///< 0: as many as the machine has
@@ -48,7 +55,7 @@ struct Settings {
     double feature_decay = 0.95;           ///< alpha_fd, eq 6
     int normalization_window = 1000;       ///< C_delta, eq 3
     int min_wins_per_split = 30;           ///< maturity; 0: the paper to the letter
-    int settling_signals_per_vertex = 30;  ///< learning after the last split
+    int settling_signals_per_vertex = 60;  ///< learning after the last split
     double stop_below_mean_counter = 0.0;  ///< alpha_t, eq 8; 0: off
 
     /// Throws SettingError naming the parameter, its value, its range and the remedy. O(1).
