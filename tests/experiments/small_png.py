@@ -12,6 +12,9 @@ from pathlib import Path
 
 from PIL import Image
 
+# The white of a background, which averaging makes a little grey.
+NEARLY_WHITE = 250
+
 
 def make_small(path, width=None):
     """Replaces the picture by one with a palette; a file that it would make larger keeps its bytes."""
@@ -22,6 +25,7 @@ def make_small(path, width=None):
     before = Path(path).stat().st_size
     # Maximum coverage keeps rare colours, which median cut gives up for the many shades of the background.
     palette = image.quantize(256, method=Image.Quantize.MAXCOVERAGE, kmeans=10)
+    palette.putpalette([255 if value >= NEARLY_WHITE else value for value in palette.getpalette()])
     small = image.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG)
     scratch = Path(path).with_suffix(".small.png")
     small.save(scratch, optimize=True)
