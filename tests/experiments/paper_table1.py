@@ -54,7 +54,12 @@ def parse(arguments):
     parser.add_argument("--models", type=numbers(str), default=MODELS)
     parser.add_argument("--vertices", type=numbers(int), default=(500, 2000, 10000))
     parser.add_argument("--seeds", type=numbers(int), default=(1, 2, 3, 4, 5))
-    return parser.parse_args(arguments)
+    parser.add_argument("--variants", type=numbers(str), default=tuple(VARIANTS), help=f"of {', '.join(VARIANTS)}")
+    options = parser.parse_args(arguments)
+    unknown = [name for name in options.variants if name not in VARIANTS]
+    if unknown:
+        parser.error(f"there is no variant '{unknown[0]}': it is one of {', '.join(VARIANTS)}")
+    return options
 
 
 def measured(options, name, judge, files, variant, kind, vertices, seed):
@@ -82,7 +87,7 @@ def all_rows(options):
         files = options.out / f"table1_{name}.ply", options.out / "table1_mesh.ply"
         models.save_ply(files[0], *surface)
         judge = paper_runs.SmoothNormals(*surface)
-        for variant in VARIANTS:
+        for variant in options.variants:
             for vertices in options.vertices:
                 rows += [measured(options, name, judge, files, variant, kind, vertices, seed)
                          for kind in KINDS for seed in options.seeds]
@@ -101,7 +106,7 @@ def digits(value):
 
 def model_table(rows, name, options):
     lines = []
-    for variant in ("the paper (its Brain)", *VARIANTS):
+    for variant in ("the paper (its Brain)", *options.variants):
         for vertices in options.vertices:
             for kind in KINDS:
                 if variant not in VARIANTS:
@@ -128,7 +133,7 @@ def ratio_table(rows, options):
              for n in options.vertices]
     lines.append(["its Brain", "the paper", *(f"{value:.2f}" for value in paper), *["-"] * len(options.vertices)])
     for name in dict.fromkeys(row["model"] for row in rows):
-        for variant in VARIANTS:
+        for variant in options.variants:
             cells = []
             for measure in ("rms", "normal_error"):
                 for n in options.vertices:
@@ -144,7 +149,7 @@ def ratio_table(rows, options):
 def normals_table(rows, options):
     lines = []
     for name in dict.fromkeys(row["model"] for row in rows):
-        for variant in VARIANTS:
+        for variant in options.variants:
             lines.append([name, variant, *(
                 f"{np.mean([row['normal_error'] for row in runs_of(rows, **key, kind=kind)]):.2f}"
                 for n in options.vertices for key in [{"model": name, "variant": variant, "target": n}]
@@ -152,10 +157,10 @@ def normals_table(rows, options):
     return table(["model", "variant", *(f"{n} {kind}" for n in options.vertices for kind in KINDS)], lines)
 
 
-def letter_text(rows):
+def letter_text(rows, options):
     """What happens to the paper's rules when they are followed to the letter, in words with numbers."""
     sentences = []
-    for variant in VARIANTS:
+    for variant in options.variants:
         runs = runs_of(rows, variant=variant)
         stalled = [row for row in runs if any("stalled" in warning for warning in row["warnings"])]
         kinds = ", ".join(f"{sum(row['kind'] == kind for row in stalled)} of "
@@ -175,7 +180,7 @@ def report(rows, options):
     for name in dict.fromkeys(row["model"] for row in rows):
         cloud = "drawn from its faces" if name in DRAWN_FROM_FACES else "its vertices"
         text += [f"## {name} (cloud: {cloud})", model_table(rows, name, options), ""]
-    text += ["## Does growth stall?", letter_text(rows), "",
+    text += ["## Does growth stall?", letter_text(rows, options), "",
              "## Adaptive over non-adaptive (below 1: adaptive is better), medians over the seeds",
              ratio_table(rows, options), "",
              "## Error of the interpolated vertex normals, degrees, means over surface and seeds",
