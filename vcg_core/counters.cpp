@@ -106,7 +106,9 @@ double UtilityCounters::scaled(double key) const {
     return mantissa * power_of_two(exponent - static_cast<std::int64_t>(unit_exponent_));
 }
 
-double UtilityCounters::value(VertexId v) const { return scaled(keys_[static_cast<std::size_t>(v)]) / unit_mantissa_; }
+double UtilityCounters::value(VertexId v) const {
+    return scaled(keys_[static_cast<std::size_t>(v)]) / unit_mantissa_;
+}
 
 void UtilityCounters::win(VertexId v, double amount) {
     const auto i = static_cast<std::size_t>(v);
@@ -125,7 +127,8 @@ void UtilityCounters::share(VertexId v, VertexId u, double of_v, double of_u) {
     const double sum = of_v + of_u;
     const double part = sum > 0 ? of_v / sum : 0.5;
     const auto store = [&](VertexId w, double value) {
-        keys_[static_cast<std::size_t>(w)] = value >= std::numeric_limits<double>::min() ? key_of(value, unit_exponent_) : kZero;
+        keys_[static_cast<std::size_t>(w)] =
+            value >= std::numeric_limits<double>::min() ? key_of(value, unit_exponent_) : kZero;
         wins_[static_cast<std::size_t>(w)] = 0;
         enter(w, maturity_ == 0 ? keys_[static_cast<std::size_t>(w)] : kNone);
     };

@@ -30,10 +30,10 @@ private:
 /// The utility counter with its global decay: after every win all counters are multiplied by alpha.
 ///
 /// The decay is exact and lazy. A counter is stored relative to alpha^t, t the number of wins so far, in a
-/// number with an unbounded exponent: one double holding exponent + (mantissa - 1), which orders like the value,
-/// so that the highest is found by a tournament over those doubles. The exponent takes its share of the 52 bits:
-/// at alpha = 0.95 about 35 are left to the mantissa after a million wins, 25 after a billion. No logarithm is taken;
-/// the same bits come out on every machine.
+/// number with an unbounded exponent: one double holding exponent + (mantissa - 1), which orders like the
+/// value, so that the highest is found by a tournament over those doubles. The exponent takes its share of
+/// the 52 bits: at alpha = 0.95 about 35 are left to the mantissa after a million wins, 25 after a billion.
+/// No logarithm is taken; the same bits come out on every machine.
 class UtilityCounters {
 public:
     /// \param decay    alpha_nc, in (0, 1]
@@ -64,8 +64,8 @@ public:
     VertexId highest() const;
 
 private:
-    static constexpr double kNone = -1e300;  ///< no entry in the tournament
-    static constexpr double kZero = -1e299;  ///< the counter is 0: last, but in
+    static constexpr double kNone = -1e300;   ///< no entry in the tournament
+    static constexpr double kZero = -1e299;   ///< the counter is 0: last, but in
     static constexpr std::size_t kWidth = 8;  ///< children per node: one cache line of doubles
 
     double scaled(double key) const;

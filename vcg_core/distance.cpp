@@ -19,7 +19,8 @@ namespace {
 
 class SurfaceVertex;
 class SurfaceFace;
-struct SurfaceTypes : vcg::UsedTypes<vcg::Use<SurfaceVertex>::AsVertexType, vcg::Use<SurfaceFace>::AsFaceType> {};
+struct SurfaceTypes
+    : vcg::UsedTypes<vcg::Use<SurfaceVertex>::AsVertexType, vcg::Use<SurfaceFace>::AsFaceType> {};
 class SurfaceVertex : public vcg::Vertex<SurfaceTypes, vcg::vertex::Coord3f, vcg::vertex::BitFlags> {};
 class SurfaceFace : public vcg::Face<SurfaceTypes, vcg::face::VertexRef, vcg::face::Normal3f, vcg::face::Mark,
                                      vcg::face::BitFlags> {};
@@ -27,7 +28,8 @@ class Surface : public vcg::tri::TriMesh<std::vector<SurfaceVertex>, std::vector
 
 void fill(const Network& network, Surface& surface) {
     vcg::tri::Allocator<Surface>::AddVertices(surface, static_cast<std::size_t>(network.slot_count()));
-    for (VertexId v = 0; v < network.slot_count(); ++v) surface.vert[static_cast<std::size_t>(v)].P() = network.position(v);
+    for (VertexId v = 0; v < network.slot_count(); ++v)
+        surface.vert[static_cast<std::size_t>(v)].P() = network.position(v);
     for (const Triangle& f : network.faces())
         vcg::tri::Allocator<Surface>::AddFace(surface, &surface.vert[static_cast<std::size_t>(f[0])],
                                               &surface.vert[static_cast<std::size_t>(f[1])],

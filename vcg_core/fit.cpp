@@ -33,25 +33,25 @@ constexpr float kOutlierEdges = 0.5F;
 /// Bending weights tried in the first round; later ones try the neighbours of the last choice.
 constexpr float kFirstWeights[] = {0.01F, 0.1F, 1.0F, 8.0F, 50.0F};
 constexpr float kWeightStep = 2.5F;
-/// Least bending weight: falls by the factor from round to round, since in the first ones points may still be tied
-/// to the wrong faces.
+/// Least bending weight: falls by the factor from round to round, since in the first ones points may still be
+/// tied to the wrong faces.
 constexpr float kFirstLeastWeight = 0.3F;
 constexpr float kLeastWeightDecay = 0.25F;
 constexpr float kLastLeastWeight = 1e-3F;
-/// What an edge's gap is likely to be on surfaces of no noise, in edge lengths: the least bending weight under noise
-/// is what Bayes' rule makes of it.
+/// What an edge's gap is likely to be on surfaces of no noise, in edge lengths: the least bending weight
+/// under noise is what Bayes' rule makes of it.
 constexpr float kLikelyGap = 0.05F;
-/// The points held back from the fit were not held back from the learning, which has followed their noise: its mean
-/// squared error at them is too low by about this many noise variances x vertices / points (twice the leverage of a
-/// point, 1 without any smoothing; measured at 0.1 to 0.6 % noise).
+/// The points held back from the fit were not held back from the learning, which has followed their noise:
+/// its mean squared error at them is too low by about this many noise variances x vertices / points (twice
+/// the leverage of a point, 1 without any smoothing; measured at 0.1 to 0.6 % noise).
 constexpr double kLearnedShare = 0.8;
-/// A crumpled surface is nearer to points even along a given direction, by about the square of its slopes, which are
-/// those of noise over edges. So a mesh that learning left crumpled must not win by that.
+/// A crumpled surface is nearer to points even along a given direction, by about the square of its slopes,
+/// which are those of noise over edges. So a mesh that learning left crumpled must not win by that.
 constexpr double kCrumpling = 3;
 /// The first round with a redistribution.
 constexpr int kFirstShift = 1;
-/// A flip, or the split of an edge, has to be worth this many variances of the noise: the best of ten thousand
-/// that follow nothing but noise seem to gain about as much.
+/// A flip, or the split of an edge, has to be worth this many variances of the noise: the best of ten
+/// thousand that follow nothing but noise seem to gain about as much.
 constexpr float kFlipVariances = 6;
 constexpr float kSplitVariances = 16;
 
@@ -112,7 +112,7 @@ private:
     const FitOptions& options_;
     double learned_share_;
     int threads_;
-    float outlier_ = 0;    ///< for the judgement: fixed from the start
+    float outlier_ = 0;  ///< for the judgement: fixed from the start
     float noise_ = 0;    ///< variance
     float weight_ = 0;
     std::vector<VertexId> origin_;  ///< as FitReport::origin, of the current state
@@ -146,16 +146,16 @@ void Fit::aim(const Surface& surface) {
             const Hit hit = walk_to_nearest(surface, held.points[i], held.near[i]);
             const Triangle& f = surface.faces[index(hit.face)];
             held.near[i] = nearest_corner(surface, hit);
-            held.directions[i] = (hit.foot.weights[0] * normals[index(f[0])] +
-                                  hit.foot.weights[1] * normals[index(f[1])] +
-                                  hit.foot.weights[2] * normals[index(f[2])])
-                                     .normalized();
+            held.directions[i] =
+                (hit.foot.weights[0] * normals[index(f[0])] + hit.foot.weights[1] * normals[index(f[1])] +
+                 hit.foot.weights[2] * normals[index(f[2])])
+                    .normalized();
         }
     });
 }
 
-/// Root mean square distance of the points held back, along their directions. The nearest distance would not do:
-/// under noise a crumpled surface is nearer to every point than the true one.
+/// Root mean square distance of the points held back, along their directions. The nearest distance would not
+/// do: under noise a crumpled surface is nearer to every point than the true one.
 double Fit::held_error(const Surface& surface) const {
     constexpr int kSteps = 2;
     const Followed& held = points_.held;
@@ -188,7 +188,8 @@ double Fit::move(const FacePoints& ties, Surface& surface, int round) {
     float least = kFirstLeastWeight;
     for (int i = 0; i < round; ++i) least *= kLeastWeightDecay;
     const float gap = kLikelyGap * mean_edge(surface);
-    const float per_vertex = static_cast<float>(ties.ties.size()) / static_cast<float>(network_.vertex_count());
+    const float per_vertex =
+        static_cast<float>(ties.ties.size()) / static_cast<float>(network_.vertex_count());
     least = std::max({least, kLastLeastWeight, noise_ / (gap * gap * per_vertex)});
     for (float& weight : weights) weight = std::max(weight, least);
     weights.erase(std::unique(weights.begin(), weights.end()), weights.end());
@@ -229,8 +230,10 @@ void Fit::follow(const Surface& surface, FacePoints& ties) const {
 
 /// Moves vertices to where the error is and keeps the records. \return whether the mesh has changed
 bool Fit::shift_vertices(const Surface& surface, const FacePoints& ties, FitReport& report) {
-    const int most = std::max(1, static_cast<int>(kShiftedShare * static_cast<double>(network_.vertex_count())));
-    const Redistribution done = redistribute(network_, surface, ties, most, kSplitVariances * noise_, threads_);
+    const int most =
+        std::max(1, static_cast<int>(kShiftedShare * static_cast<double>(network_.vertex_count())));
+    const Redistribution done =
+        redistribute(network_, surface, ties, most, kSplitVariances * noise_, threads_);
     if (done.merges.empty()) return false;
     std::vector<VertexId> heir(index(network_.slot_count()));
     std::iota(heir.begin(), heir.end(), 0);
@@ -266,8 +269,7 @@ void Fit::run(FitReport& report, Progress& progress) {
             report.rms_before = report.rms_after = held_error(surface);
         }
         if (options_.redistribute && round >= kFirstShift && (round - kFirstShift) % kShiftEvery == 0 &&
-            round + kQuietRounds < rounds &&
-            shift_vertices(surface, ties, report)) {
+            round + kQuietRounds < rounds && shift_vertices(surface, ties, report)) {
             surface = Surface(network_);
             ties = tie(surface, false);
         }
@@ -282,8 +284,7 @@ void Fit::run(FitReport& report, Progress& progress) {
         }
         if (options_.flip_edges && round + 1 < rounds) {
             follow(surface, ties);
-            report.flips +=
-                flip_edges(network_, surface, ties, kFlipVariances * noise_, threads_);
+            report.flips += flip_edges(network_, surface, ties, kFlipVariances * noise_, threads_);
         }
     }
     // The verdict: both meshes along the directions of the one before.
@@ -295,8 +296,8 @@ void Fit::run(FitReport& report, Progress& progress) {
     const double edge = static_cast<double>(mean_edge(fitted));
     const double variance = static_cast<double>(noise_);
     const double optimism = variance * (learned_share_ + kCrumpling * variance / (edge * edge));
-    report.improved = report.rounds > 0 &&
-                      best_rms * best_rms < report.rms_before * report.rms_before + optimism;
+    report.improved =
+        report.rounds > 0 && best_rms * best_rms < report.rms_before * report.rms_before + optimism;
     if (!report.improved) {
         best = before;
         for (VertexId v = 0; v < before.slot_count(); ++v) report.origin[index(v)] = before.alive(v) ? v : -1;
@@ -317,9 +318,9 @@ FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOp
         options.min_points, static_cast<long long>(options.points_per_vertex) * network.vertex_count()));
     Split points = choose_points(target, wanted, random);
     if (points.fitted.points.size() < kLeastPoints || network.face_count() == 0) return report;
-    const double learned_share =
-        target.has_faces() ? 0.0
-                           : kLearnedShare * network.vertex_count() / static_cast<double>(target.positions().size());
+    const double learned_share = target.has_faces() ? 0.0
+                                                    : kLearnedShare * network.vertex_count() /
+                                                          static_cast<double>(target.positions().size());
     Fit(network, std::move(points), options, learned_share, threads).run(report, progress);
     return report;
 }

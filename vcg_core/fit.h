@@ -16,18 +16,21 @@ namespace neuralmesh {
 
 /// What the fit may do. The defaults were found by experiment.
 struct FitOptions {
-    int rounds = 0;  ///< of least squares, each with new nearest faces; 0: 20 up to 2,000 vertices, 10 from 4,000 on
+    int rounds =
+        0;  ///< of least squares, each with new nearest faces; 0: 20 up to 2,000 vertices, 10 from 4,000 on
     bool flip_edges = true;
-    /// Move vertices from where they are of little use to where the error is large (Hoppe et al. 1993). Off: every
-    /// vertex keeps its place in the mesh, for meshes whose density is to follow something else than the error.
+    /// Move vertices from where they are of little use to where the error is large (Hoppe et al. 1993). Off:
+    /// every vertex keeps its place in the mesh, for meshes whose density is to follow something else than
+    /// the error.
     bool redistribute = true;
-    /// Points used: all, or if there are more, a random choice of this many per vertex, but at least min_points.
+    /// Points used: all, or if there are more, a random choice of this many per vertex, but at least
+    /// min_points.
     int points_per_vertex = 40;
     int min_points = 50000;
 };
 
-/// Figures of a fit. Errors are root mean squares over points held back from it, in the core's frame, along smoothed
-/// normals of the mesh as it was before, every distance counted up to outlier_distance.
+/// Figures of a fit. Errors are root mean squares over points held back from it, in the core's frame, along
+/// smoothed normals of the mesh as it was before, every distance counted up to outlier_distance.
 struct FitReport {
     double rms_before = 0;  ///< too low under noise: the points were not held back from the learning
     double rms_after = 0;
@@ -42,19 +45,18 @@ struct FitReport {
     std::vector<VertexId> origin;
 };
 
-/// Moves the vertices of \p network so that its surface comes as close to the points of \p target as it can: rounds
-/// of linear least squares over the distances of the points to their nearest faces, with a bending term whose
-/// weight the points held back decide; between them edges are flipped (and vertices redistributed) where that brings
-/// the points closer. Far outliers lose their pull. No face turns over or becomes a sliver; the result is kept only
-/// if it is closer to the points held back than the mesh was before (but for what learning has followed of their
-/// noise, see rms_before).
+/// Moves the vertices of \p network so that its surface comes as close to the points of \p target as it can:
+/// rounds of linear least squares over the distances of the points to their nearest faces, with a bending
+/// term whose weight the points held back decide; between them edges are flipped (and vertices redistributed)
+/// where that brings the points closer. Far outliers lose their pull. No face turns over or becomes a sliver;
+/// the result is kept only if it is closer to the points held back than the mesh was before (but for what
+/// learning has followed of their noise, see rms_before).
 ///
-/// The number of vertices, components, handles and boundary loops stays. The same bytes for any \p threads (0: as
-/// many as the machine has). Stops early, with the best mesh so far, when \p progress asks for it; fractions run
-/// from 0 to 1. Exact nearest faces: O(points log faces) a round, in all about 2.5 s of processor time for
-/// 10k vertices and 200k points.
-/// Sources: Hoppe, DeRose, Duchamp, McDonald, Stuetzle, "Mesh Optimization" (1993); the linearisation is
-/// Gauss-Newton's for distances (point to plane).
+/// The number of vertices, components, handles and boundary loops stays. The same bytes for any \p threads
+/// (0: as many as the machine has). Stops early, with the best mesh so far, when \p progress asks for it;
+/// fractions run from 0 to 1. Exact nearest faces: O(points log faces) a round, in all about 2.5 s of
+/// processor time for 10k vertices and 200k points. Sources: Hoppe, DeRose, Duchamp, McDonald, Stuetzle,
+/// "Mesh Optimization" (1993); the linearisation is Gauss-Newton's for distances (point to plane).
 FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOptions& options, int threads,
                         std::uint64_t seed, Progress& progress);
 

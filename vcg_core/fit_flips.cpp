@@ -13,15 +13,16 @@ namespace neuralmesh {
 
 namespace {
 
-constexpr float kSliver = 0.1F;  ///< triangle_quality() that a new face must have, unless the old ones were worse
+constexpr float kSliver =
+    0.1F;  ///< triangle_quality() that a new face must have, unless the old ones were worse
 /// Cosine of the largest angle by which the normals of the new faces may differ from the mean of the old.
 constexpr float kLeastTurn = 0.5F;
 constexpr float kSharpestFold = -0.6F;  ///< cosine between the normals of neighbouring faces
-constexpr float kUnfolding = 0.3F;       ///< rise of that cosine that makes a flip worth while for itself
-constexpr float kFlat = 0.995F;         ///< cosine between normals from which the shape of the faces may decide
+constexpr float kUnfolding = 0.3F;      ///< rise of that cosine that makes a flip worth while for itself
+constexpr float kFlat = 0.995F;  ///< cosine between normals from which the shape of the faces may decide
 
-/// A new face needs this share of the points that its area should have, as the density of the old ones goes, but for
-/// kPseudoPoints; with fewer than kFewPoints the flip may not enlarge the area by more than kStretch.
+/// A new face needs this share of the points that its area should have, as the density of the old ones goes,
+/// but for kPseudoPoints; with fewer than kFewPoints the flip may not enlarge the area by more than kStretch.
 constexpr float kSupport = 0.3F;
 constexpr float kPseudoPoints = 2;
 constexpr float kFewPoints = 6;
@@ -42,7 +43,8 @@ int face_with(const Surface& surface, VertexId a, VertexId b, VertexId c) {
     for (int i = surface.first_face[index(a)]; i < surface.first_face[index(a) + 1]; ++i) {
         const Triangle& face = surface.faces[index(surface.face_of[index(i)])];
         for (std::size_t k = 0; k < 3; ++k)
-            if (face[k] == a && face[(k + 1) % 3] == b && face[(k + 2) % 3] == c) return surface.face_of[index(i)];
+            if (face[k] == a && face[(k + 1) % 3] == b && face[(k + 2) % 3] == c)
+                return surface.face_of[index(i)];
     }
     return -1;
 }
@@ -68,8 +70,10 @@ public:
         const Vec ca = normal_beyond(surface_, q.c, q.a);
         const Vec ad = normal_beyond(surface_, q.a, q.d);
         const Vec db = normal_beyond(surface_, q.d, q.b);
-        const float old_fold = std::min({old_f.dot(bc), old_f.dot(ca), old_g.dot(ad), old_g.dot(db), old_f.dot(old_g)});
-        const float new_fold = std::min({new_f.dot(bc), new_g.dot(ca), new_g.dot(ad), new_f.dot(db), new_f.dot(new_g)});
+        const float old_fold =
+            std::min({old_f.dot(bc), old_f.dot(ca), old_g.dot(ad), old_g.dot(db), old_f.dot(old_g)});
+        const float new_fold =
+            std::min({new_f.dot(bc), new_g.dot(ca), new_g.dot(ad), new_f.dot(db), new_f.dot(new_g)});
         const bool unfolds = old_fold < kSharpestFold && new_fold > old_fold + kUnfolding;
         const Vec mean = (old_f + old_g).normalized();
         if (!unfolds && !(new_f.dot(mean) > kLeastTurn && new_g.dot(mean) > kLeastTurn)) return -1;
@@ -80,7 +84,8 @@ public:
         const float drop = distance_drop(q);
         if (unfolds && drop > -std::numeric_limits<float>::max()) return std::max(drop, least_gain);
         if (drop > least_gain) return drop;
-        const bool indifferent = drop > -0.25F * least_gain && old_f.dot(old_g) > kFlat && new_f.dot(new_g) > kFlat;
+        const bool indifferent =
+            drop > -0.25F * least_gain && old_f.dot(old_g) > kFlat && new_f.dot(new_g) > kFlat;
         return indifferent && new_quality > 1.2F * old_quality ? 0.0F : -1.0F;
     }
 
@@ -106,12 +111,15 @@ private:
         const float area_f = area(q.c, q.d, q.b);
         const float area_g = area(q.d, q.c, q.a);
         const float per_area = kSupport * count / std::max(old_area, 1e-20F);
-        const bool bare = per_area * area_f > count_f + kPseudoPoints || per_area * area_g > count - count_f + kPseudoPoints;
+        const bool bare = per_area * area_f > count_f + kPseudoPoints ||
+                          per_area * area_g > count - count_f + kPseudoPoints;
         const bool stretched = count < kFewPoints && area_f + area_g > kStretch * old_area;
         return bare || stretched ? -std::numeric_limits<float>::max() : drop;
     }
 
-    float area(VertexId a, VertexId b, VertexId c) const { return (at(b) - at(a)).cross(at(c) - at(a)).norm() / 2; }
+    float area(VertexId a, VertexId b, VertexId c) const {
+        return (at(b) - at(a)).cross(at(c) - at(a)).norm() / 2;
+    }
 
     const Surface& surface_;
     const FacePoints& points_;
@@ -119,7 +127,8 @@ private:
 
 }  // namespace
 
-int flip_edges(Network& network, const Surface& surface, const FacePoints& points, float least_gain, int threads) {
+int flip_edges(Network& network, const Surface& surface, const FacePoints& points, float least_gain,
+               int threads) {
     constexpr std::size_t kChunk = 256;
     const Judge judge(surface, points);
     const auto slots = index(network.slot_count());
@@ -141,7 +150,8 @@ int flip_edges(Network& network, const Surface& surface, const FacePoints& point
     });
     std::vector<Candidate> all;
     for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
-    std::stable_sort(all.begin(), all.end(), [](const Candidate& x, const Candidate& y) { return x.gain > y.gain; });
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Candidate& x, const Candidate& y) { return x.gain > y.gain; });
     // Quads with a face in common share three vertices.
     std::vector<char> touched(slots, 0);
     int flips = 0;
@@ -150,7 +160,8 @@ int flip_edges(Network& network, const Surface& surface, const FacePoints& point
         const int i = ring.find(candidate.b);
         if (i < 0 || !network.can_flip(candidate.a, candidate.b)) continue;
         const std::array<VertexId, 4> corners{candidate.a, candidate.b, ring.next(i), ring.previous(i)};
-        if (std::count_if(corners.begin(), corners.end(), [&](VertexId v) { return touched[index(v)] != 0; }) > 2)
+        if (std::count_if(corners.begin(), corners.end(),
+                          [&](VertexId v) { return touched[index(v)] != 0; }) > 2)
             continue;
         network.flip(candidate.a, candidate.b);
         for (const VertexId v : corners) touched[index(v)] = 1;

@@ -25,7 +25,8 @@ public:
             const Ring& ring = network.ring(v);
             if (ring.valence == 0) continue;
             float length = 0;
-            for (int i = 0; i < ring.valence; ++i) length += (surface.at[index(ring[i])] - surface.at[index(v)]).norm();
+            for (int i = 0; i < ring.valence; ++i)
+                length += (surface.at[index(ring[i])] - surface.at[index(v)]).norm();
             const float bound = kLongestMove * length / static_cast<float>(ring.valence);
             const float norm = move_[index(v)].norm();
             if (norm > bound) move_[index(v)] *= bound / norm;
@@ -37,13 +38,14 @@ public:
         for (std::size_t i = 0; i < normals_.size(); ++i) {
             const Triangle& f = surface.faces[i];
             for (std::size_t k = 0; k < 3; ++k)
-                if (normals_[i].dot(normal_beyond(surface, f[k], f[(k + 1) % 3])) < kSharpestFold) folded_[i] = 1;
+                if (normals_[i].dot(normal_beyond(surface, f[k], f[(k + 1) % 3])) < kSharpestFold)
+                    folded_[i] = 1;
         }
     }
 
     std::vector<Vec> run() {
-        // Every pass sets at least one more vertex to rest once the halvings are used up, and no move at all is
-        // always allowed; so this ends.
+        // Every pass sets at least one more vertex to rest once the halvings are used up, and no move at all
+        // is always allowed; so this ends.
         for (int pass = 0;; ++pass) {
             for (std::size_t v = 0; v < moved_.size(); ++v) moved_[v] = surface_.at[v] + move_[v];
             const std::vector<char> offending = find_offending();
@@ -98,7 +100,8 @@ private:
                 for (int j = i + 1; j < surface_.first_face[index(v) + 1]; ++j) {
                     const auto g = index(surface_.face_of[index(j)]);
                     const float fold = now[f].dot(now[g]);
-                    if (fold >= kSharpestFold || fold >= normals_[f].dot(normals_[g]) || !share_edge(f, g)) continue;
+                    if (fold >= kSharpestFold || fold >= normals_[f].dot(normals_[g]) || !share_edge(f, g))
+                        continue;
                     mark(f);
                     mark(g);
                 }

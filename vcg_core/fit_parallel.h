@@ -18,15 +18,16 @@ inline int thread_count(int threads) {
     return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-/// Calls \p body(chunk, begin, end) for every chunk of \p size indices of [0, count), on up to \p threads threads.
-/// The chunks are the same for any number of threads; a body writes only what belongs to its chunk. The first
-/// exception of a body is thrown on.
+/// Calls \p body(chunk, begin, end) for every chunk of \p size indices of [0, count), on up to \p threads
+/// threads. The chunks are the same for any number of threads; a body writes only what belongs to its chunk.
+/// The first exception of a body is thrown on.
 template <class Body>
 void for_chunks(std::size_t count, std::size_t size, int threads, const Body& body) {
     const std::size_t chunks = (count + size - 1) / size;
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
-        for (std::size_t c = next++; c < chunks; c = next++) body(c, c * size, std::min(count, (c + 1) * size));
+        for (std::size_t c = next++; c < chunks; c = next++)
+            body(c, c * size, std::min(count, (c + 1) * size));
     };
     const std::size_t helpers = std::min(static_cast<std::size_t>(thread_count(threads)), chunks);
     if (helpers <= 1) {

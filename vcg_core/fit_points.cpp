@@ -28,7 +28,8 @@ float mean_edge(const Surface& surface) {
     for (std::size_t f = 0; f < surface.faces.size(); ++f)
         for (std::size_t k = 0; k < 3; ++k)
             sum += static_cast<double>(
-                (surface.corner(static_cast<int>(f), k) - surface.corner(static_cast<int>(f), (k + 1) % 3)).norm());
+                (surface.corner(static_cast<int>(f), k) - surface.corner(static_cast<int>(f), (k + 1) % 3))
+                    .norm());
     return static_cast<float>(sum / (3 * static_cast<double>(surface.faces.size())));
 }
 

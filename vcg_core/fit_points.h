@@ -22,12 +22,12 @@ std::vector<Hit> exact_hits(const Surface& surface, const Followed& followed, in
 /// The nearest faces of the points by walks from the vertices that they were last found near to. O(points)
 std::vector<Hit> walked_hits(const Surface& surface, const Followed& followed, int threads);
 
-/// Ties the points to the faces hit. Sorts them by their faces, which also brings neighbours together in memory, and
-/// notes the vertices that they are near to. Directions are not carried along.
+/// Ties the points to the faces hit. Sorts them by their faces, which also brings neighbours together in
+/// memory, and notes the vertices that they are near to. Directions are not carried along.
 FacePoints by_face(const Surface& surface, Followed& followed, const std::vector<Hit>& hits);
 
-/// Variance of the noise: the median over the faces of that of their points about a plane parallel to the face.
-/// What neighbouring points share is misfit, what they do not share is noise.
+/// Variance of the noise: the median over the faces of that of their points about a plane parallel to the
+/// face. What neighbouring points share is misfit, what they do not share is noise.
 float noise_variance(const Surface& surface, const FacePoints& points);
 
 /// Normals of the vertices, averaged over their rings twice: what noise leaves of them.

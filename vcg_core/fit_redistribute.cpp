@@ -14,17 +14,17 @@ namespace neuralmesh {
 namespace {
 
 constexpr std::size_t kChunk = 128;
-constexpr float kSliver = 0.1F;      ///< triangle_quality() that the faces of a collapse must have
-constexpr float kLeastTurn = 0.3F;   ///< cosine between the normals of a face before and after a collapse
+constexpr float kSliver = 0.1F;         ///< triangle_quality() that the faces of a collapse must have
+constexpr float kLeastTurn = 0.3F;      ///< cosine between the normals of a face before and after a collapse
 constexpr float kSharpestFold = -0.5F;  ///< cosine between the normals of neighbouring faces
-/// A new face needs this share of the points that its area should have, but for kPseudoPoints; with fewer than
-/// kFewPoints in the star its area may not grow by more than kStretch.
+/// A new face needs this share of the points that its area should have, but for kPseudoPoints; with fewer
+/// than kFewPoints in the star its area may not grow by more than kStretch.
 constexpr float kSupport = 0.3F;
 constexpr int kPseudoPoints = 2;
 constexpr int kFewPoints = 6;
 constexpr float kStretch = 1.02F;
-constexpr int kStarPoints = 64;      ///< about as many points of a star are enough to judge a collapse by
-constexpr int kTries = 3;            ///< neighbours to collapse into, the best by the quadric
+constexpr int kStarPoints = 64;         ///< about as many points of a star are enough to judge a collapse by
+constexpr int kTries = 3;               ///< neighbours to collapse into, the best by the quadric
 constexpr float kLongestOffset = 0.3F;  ///< of a new vertex from its edge, in edge lengths
 
 Vec area_vector(const Vec& a, const Vec& b, const Vec& c) { return (b - a).cross(c - a); }
@@ -87,14 +87,15 @@ private:
             const float fold = before.dot(outside);
             if (!(before.dot(after) > kLeastTurn) && !(fold < kSharpestFold)) return false;
             if (after.dot(outside) < std::min(kSharpestFold, fold)) return false;
-            if (triangle_quality(at(u), at(a), at(b)) < std::min(kSliver, triangle_quality(at(v), at(a), at(b))))
+            if (triangle_quality(at(u), at(a), at(b)) <
+                std::min(kSliver, triangle_quality(at(v), at(a), at(b))))
                 return false;
         }
         return true;
     }
 
     struct Star {
-        int count = 0;   ///< of points
+        int count = 0;  ///< of points
         float area = 0;
     };
 
@@ -103,7 +104,8 @@ private:
         for (int i = surface_.first_face[index(v)]; i < surface_.first_face[index(v) + 1]; ++i) {
             const int f = surface_.face_of[index(i)];
             result.count += points_.first[index(f) + 1] - points_.first[index(f)];
-            result.area += area_vector(surface_.corner(f, 0), surface_.corner(f, 1), surface_.corner(f, 2)).norm();
+            result.area +=
+                area_vector(surface_.corner(f, 0), surface_.corner(f, 1), surface_.corner(f, 2)).norm();
         }
         return result;
     }
@@ -218,20 +220,23 @@ std::vector<EdgeSplit> edge_splits(const Network& network, const Surface& surfac
                     if (!((x == a && y == b) || (x == b && y == a))) continue;
                     both.phi_residual += sums[index(f)][k].phi_residual;
                     both.phi_phi += sums[index(f)][k].phi_phi;
-                    normal += area_vector(at[index(face[0])], at[index(face[1])], at[index(face[2])]).normalized();
+                    normal +=
+                        area_vector(at[index(face[0])], at[index(face[1])], at[index(face[2])]).normalized();
                 }
             }
             if (!(both.phi_phi > 0)) continue;
             const float bound = kLongestOffset * (at[index(a)] - at[index(b)]).norm();
             const float offset = std::min(std::max(both.phi_residual / both.phi_phi, -bound), bound);
             const float gain = both.phi_residual * both.phi_residual / both.phi_phi;
-            splits.push_back({gain, a, b, 0.5F * (at[index(a)] + at[index(b)]) + offset * normal.normalized()});
+            splits.push_back(
+                {gain, a, b, 0.5F * (at[index(a)] + at[index(b)]) + offset * normal.normalized()});
         }
     }
     return splits;
 }
 
-/// The position in a's ring from which a split of the edge a-b takes three neighbours; -1 if it cannot be split.
+/// The position in a's ring from which a split of the edge a-b takes three neighbours; -1 if it cannot be
+/// split.
 int split_position(const Network& network, VertexId a, VertexId b) {
     const Ring& ring = network.ring(a);
     const int i = ring.find(b);
@@ -250,8 +255,10 @@ Redistribution redistribute(Network& network, const Surface& surface, const Face
         for (std::size_t v = begin; v < end; ++v) collapses[v] = judge.cheapest(static_cast<VertexId>(v));
     });
     std::vector<EdgeSplit> splits = edge_splits(network, surface, points, threads);
-    std::stable_sort(collapses.begin(), collapses.end(), [](const auto& x, const auto& y) { return x.cost < y.cost; });
-    std::stable_sort(splits.begin(), splits.end(), [](const auto& x, const auto& y) { return x.gain > y.gain; });
+    std::stable_sort(collapses.begin(), collapses.end(),
+                     [](const auto& x, const auto& y) { return x.cost < y.cost; });
+    std::stable_sort(splits.begin(), splits.end(),
+                     [](const auto& x, const auto& y) { return x.gain > y.gain; });
 
     // The splits claim their surroundings first: they are what all this is for.
     std::vector<char> touched(collapses.size(), 0);

@@ -21,8 +21,8 @@ constexpr float kTangential = 0.03F;
 constexpr float kCentring = 2e-3F;
 /// Pull of a vertex to where it is, in points per vertex.
 constexpr float kDamping = 2e-3F;
-/// A vertex lacks support if the points around it, weighted with its hat function squared, are fewer than this
-/// share of what the density of the points around allows for.
+/// A vertex lacks support if the points around it, weighted with its hat function squared, are fewer than
+/// this share of what the density of the points around allows for.
 constexpr float kSupport = 0.7F;
 /// Pull of such a vertex towards the middle of its ring, per point missing.
 constexpr float kRetreat = 8.0F;
@@ -33,7 +33,9 @@ constexpr double kTolerance = 1e-2;
 
 constexpr std::size_t kChunk = 256;
 
-Block outer(const Vec& n) { return {n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2], n[2] * n[2]}; }
+Block outer(const Vec& n) {
+    return {n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2], n[2] * n[2]};
+}
 
 double dot(const std::vector<Vec>& a, const std::vector<Vec>& b) {
     double sum = 0;
@@ -75,7 +77,8 @@ FitSystem::FitSystem(const Network& network, const Surface& surface, const FaceP
     const auto slots = index(network.slot_count());
     unit_ = static_cast<float>(points.ties.size()) / static_cast<float>(network.vertex_count());
     row_.resize(slots + 1, 0);
-    for (std::size_t v = 0; v < slots; ++v) row_[v + 1] = row_[v] + network.ring(static_cast<VertexId>(v)).valence;
+    for (std::size_t v = 0; v < slots; ++v)
+        row_[v + 1] = row_[v] + network.ring(static_cast<VertexId>(v)).valence;
     block_.resize(row_.back());
     diagonal_.resize(slots);
     force_.resize(slots, Vec::Zero());
@@ -202,7 +205,8 @@ void FitSystem::make_hinges(const Surface& surface) {
     bending_diagonal_.assign(at.size(), 0);
     if (gaps.empty()) return;
     std::vector<float> sorted = gaps;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                     sorted.end());
     const float crease = std::max(kCrease * sorted[sorted.size() / 2], 1e-9F);
     for (std::size_t h = 0; h < hinges_.size(); ++h) {
         Hinge& hinge = hinges_[h];

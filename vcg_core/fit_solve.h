@@ -50,12 +50,14 @@ struct Block {
 ///   sum over ties  w ((n.e)^2 + kTangential |e_t|^2),  e = p - sum_k b_k (x_k + u_k), n the direction of e
 /// + sum over edges  lambda c_e |gap_e(x + u)|^2       bending, see below
 /// + sum over vertices  (tangential smoothing and damping, both weak)
-/// + sum over vertices  with a star that has far fewer points than its area should have: a pull to the ring's middle
+/// + sum over vertices  with a star that has far fewer points than its area should have: a pull to the ring's
+/// middle
 ///
-/// To first order n.e is the distance of the point from the moved surface, whatever slides along it: this is what
-/// lets vertices find creases. gap is the vector between the points where the two diagonals of an edge's quad
-/// cross when the quad is unfolded into the plane: zero exactly where the surface is flat, for any shape of the
-/// triangles. c_e falls off where the gap is large among the mesh's gaps, so that creases are not rounded.
+/// To first order n.e is the distance of the point from the moved surface, whatever slides along it: this is
+/// what lets vertices find creases. gap is the vector between the points where the two diagonals of an edge's
+/// quad cross when the quad is unfolded into the plane: zero exactly where the surface is flat, for any shape
+/// of the triangles. c_e falls off where the gap is large among the mesh's gaps, so that creases are not
+/// rounded.
 class FitSystem {
 public:
     FitSystem(const Network& network, const Surface& surface, const FacePoints& points, int threads);
@@ -85,7 +87,8 @@ private:
 
     const Network& network_;
     float unit_ = 1;  ///< points per vertex
-    std::vector<float> missing_;    ///< of slot v: points that its faces should have more, as the density around goes
+    std::vector<float>
+        missing_;  ///< of slot v: points that its faces should have more, as the density around goes
     std::vector<std::size_t> row_;  ///< of slot v: block_[row_[v]] + i belongs to ring position i
     std::vector<Block> block_;
     std::vector<Block> diagonal_;
@@ -95,9 +98,9 @@ private:
     std::vector<float> bending_diagonal_;
 };
 
-/// Shortens the displacements \p u until no face turns over, folds onto its neighbour or becomes a sliver and no
-/// vertex moves further than a quarter of the way to its neighbours; adds them to the positions.
-/// \return the new positions by slot
+/// Shortens the displacements \p u until no face turns over, folds onto its neighbour or becomes a sliver and
+/// no vertex moves further than a quarter of the way to its neighbours; adds them to the positions. \return
+/// the new positions by slot
 std::vector<Vec> bounded_move(const Network& network, const Surface& surface, const std::vector<Vec>& u);
 
 }  // namespace neuralmesh

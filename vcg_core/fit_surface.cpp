@@ -48,7 +48,8 @@ Hit walk_to_nearest(const Surface& surface, const Vec& p, VertexId start) {
         const float before = best.foot.squared_distance;
         for (int i = surface.first_face[index(v)]; i < surface.first_face[index(v) + 1]; ++i) {
             const int face = surface.face_of[index(i)];
-            const Foot foot = foot_on_triangle(p, surface.corner(face, 0), surface.corner(face, 1), surface.corner(face, 2));
+            const Foot foot = foot_on_triangle(p, surface.corner(face, 0), surface.corner(face, 1),
+                                               surface.corner(face, 2));
             if (foot.squared_distance < best.foot.squared_distance) best = {face, foot};
         }
         if (!(best.foot.squared_distance < before)) return best;
@@ -82,11 +83,12 @@ int FaceTree::build(const std::vector<Vec>& centres, int begin, int end) {
     Eigen::Index axis = 0;
     (high - low).maxCoeff(&axis);
     const int middle = begin + (end - begin) / 2;
-    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int f, int g) {
-        const float x = centres[index(f)][axis];
-        const float y = centres[index(g)][axis];
-        return x < y || (x == y && f < g);
-    });
+    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+                     [&](int f, int g) {
+                         const float x = centres[index(f)][axis];
+                         const float y = centres[index(g)][axis];
+                         return x < y || (x == y && f < g);
+                     });
     build(centres, begin, middle);
     const int right = build(centres, middle, end);
     nodes_[index(node)].right = right;

@@ -96,9 +96,9 @@ struct Hit {
     Foot foot;
 };
 
-/// The nearest face of \p p that a walk finds: from the faces around the vertex \p start on to those around the
-/// corner nearest to the foot, as long as that brings it closer. Not exact across thin gaps; five times as fast as
-/// a tree if the start is near.
+/// The nearest face of \p p that a walk finds: from the faces around the vertex \p start on to those around
+/// the corner nearest to the foot, as long as that brings it closer. Not exact across thin gaps; five times
+/// as fast as a tree if the start is near.
 Hit walk_to_nearest(const Surface& surface, const Vec& p, VertexId start);
 
 /// The corner of the hit face that is nearest to the foot: where to start the walk next time.

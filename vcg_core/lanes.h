@@ -62,11 +62,11 @@ inline void transpose(const Four* p, float* x, float* y, float* z) {
 
 }  // namespace neuralmesh
 
-// A function so marked exists twice and the machine's best is chosen at load time; one inside NEURALMESH_HAS_AVX2
-// asks the machine itself. No fused multiply-add (-ffp-contract=off), so all give the same bits. Sanitizers
-// instrument the choice at load time and crash in it.
-#if defined(__x86_64__) && defined(__ELF__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
-    !defined(NEURALMESH_ONE_INSTRUCTION_SET)
+// A function so marked exists twice and the machine's best is chosen at load time; one inside
+// NEURALMESH_HAS_AVX2 asks the machine itself. No fused multiply-add (-ffp-contract=off), so all give the
+// same bits. Sanitizers instrument the choice at load time and crash in it.
+#if defined(__x86_64__) && defined(__ELF__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__) && !defined(NEURALMESH_ONE_INSTRUCTION_SET)
 #define NEURALMESH_MULTIVERSIONED __attribute__((target_clones("avx2", "default")))
 #define NEURALMESH_HAS_AVX2
 #include <immintrin.h>

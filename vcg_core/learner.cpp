@@ -34,7 +34,7 @@ constexpr float kFlatEnough = 0.95F;
 constexpr int kSplitCandidates = 32;  ///< tried before a split is put off
 constexpr std::size_t kDrawnAhead = 256;
 constexpr std::int64_t kLeastSettling = 60000;
-constexpr int kReportEvery = 1000;    ///< signals between two looks at the progress and at the stop criteria
+constexpr int kReportEvery = 1000;  ///< signals between two looks at the progress and at the stop criteria
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
 }  // namespace
@@ -60,7 +60,8 @@ Learner::Learner(const TargetSpace& target, const Settings& settings, Network st
 
 StopReason Learner::run(int per_vertex, Progress& progress) {
     if (!settle(per_vertex, progress)) return StopReason::cancelled;
-    feature_statistic_ = FeatureStatistic();  // growth begins: what has been observed is of another connectivity
+    feature_statistic_ =
+        FeatureStatistic();  // growth begins: what has been observed is of another connectivity
     const std::int64_t budget = signals_ + growth_budget();
     const std::int64_t bound = signals_ + signal_bound();
     while (network_.vertex_count() < settings_.target_vertices) {
@@ -112,7 +113,8 @@ const vcg::Point3f& Learner::next_signal() {
 void Learner::learn_counters(VertexId w, double delta) {
     mean_delta_.add(delta);
     const double m_delta = mean_delta_.mean();
-    // A mesh that has not turned at all (a plane learned by a plane) has no mean to compare with: all are equal.
+    // A mesh that has not turned at all (a plane learned by a plane) has no mean to compare with: all are
+    // equal.
     const double n_delta = m_delta > 0 ? delta / m_delta : 1;  // eq 3
     utility_counters_.win(w, settings_.utility_counter == kNormalCounter ? n_delta : 1);
     feature_counters_.win(w, n_delta);
@@ -166,8 +168,8 @@ void Learner::adopt(VertexId u, VertexId v) {
     last_active_[static_cast<std::size_t>(u)] = to_the_letter() ? 0 : signals_;
 }
 
-/// From the longest edge e both ways to e1 and e2, so that the star is halved. "Equally" leaves a choice of one
-/// edge more or less on either side: the one that leaves the most regular valences.
+/// From the longest edge e both ways to e1 and e2, so that the star is halved. "Equally" leaves a choice of
+/// one edge more or less on either side: the one that leaves the most regular valences.
 Learner::Halving Learner::halve_star(VertexId v, int longest) const {
     const Ring& ring = network_.ring(v);
     const int k = ring.valence;
@@ -179,7 +181,8 @@ Learner::Halving Learner::halve_star(VertexId v, int longest) const {
             if (std::abs(back - ahead) > 1 || std::abs(2 * (back + ahead) - std::max(k, 3)) > 1) continue;
             // An open star ends at its boundary edges.
             const int first = ring.open != 0 ? std::max(longest - back, 0) : (longest - back + k) % k;
-            const int count = ring.open != 0 ? std::min(longest + ahead, k - 1) - first + 1 : back + ahead + 1;
+            const int count =
+                ring.open != 0 ? std::min(longest + ahead, k - 1) - first + 1 : back + ahead + 1;
             if (!network_.can_split(v, first, count)) continue;
             const int cost = irregularity(count + 1) + irregularity(k - count + 3) +
                              irregularity(network_.ring(ring[first]).valence + 1) +
@@ -198,7 +201,8 @@ void Learner::force_growth() {
 }
 
 bool Learner::due_for_collapse() const {
-    return !forced_ && signals_ - last_collapse_ >= std::int64_t{vertices_at_collapse_} * settings_.signals_per_collapse;
+    return !forced_ &&
+           signals_ - last_collapse_ >= std::int64_t{vertices_at_collapse_} * settings_.signals_per_collapse;
 }
 
 int Learner::half_edge_collapse() {
@@ -220,8 +224,9 @@ int Learner::half_edge_collapse() {
     return removed;
 }
 
-/// The neighbour into which v goes at the least cost 1/3 sqrt((a + b - 10)^2 + (c - 7)^2 + (d - 7)^2): a, b the
-/// valences at the ends of the edge, c, d those opposite to it (Ivrissimtzis et al. 2003). -1: none is legal.
+/// The neighbour into which v goes at the least cost 1/3 sqrt((a + b - 10)^2 + (c - 7)^2 + (d - 7)^2): a, b
+/// the valences at the ends of the edge, c, d those opposite to it (Ivrissimtzis et al. 2003). -1: none is
+/// legal.
 VertexId Learner::best_collapse(VertexId gone) const {
     const Ring& ring = network_.ring(gone);
     VertexId best = -1;
@@ -288,7 +293,8 @@ bool Learner::settle(int per_vertex, Progress& progress) {
 }
 
 std::int64_t Learner::growth_budget() const {
-    const std::int64_t per_vertex = 4 * std::int64_t{settings_.signals_per_split} + 2 * settings_.min_wins_per_split;
+    const std::int64_t per_vertex =
+        4 * std::int64_t{settings_.signals_per_split} + 2 * settings_.min_wins_per_split;
     return per_vertex * settings_.target_vertices + 100000;
 }
 

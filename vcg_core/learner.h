@@ -30,8 +30,9 @@ public:
     Learner(const Learner&) = delete;
     Learner& operator=(const Learner&) = delete;
 
-    /// Lets the start mesh learn \p per_vertex signals a vertex, then learns until the network has settings.target_vertices vertices and has settled, the mean counter falls
-    /// below its bound (eq 8), \p progress asks to stop, or signal_bound() is reached.
+    /// Lets the start mesh learn \p per_vertex signals a vertex, then learns until the network has
+    /// settings.target_vertices vertices and has settled, the mean counter falls below its bound (eq 8), \p
+    /// progress asks to stop, or signal_bound() is reached.
     StopReason run(int per_vertex, Progress& progress);
 
     /// One signal: the winner moves towards it, its ring is smoothed, its counters learn (eq 1 to 4, 6).
@@ -43,15 +44,15 @@ public:
     /// Removes the vertices that existed but did not win since the last call, each along the edge whose
     /// collapse leaves the best valences. \return how many. O(n).
     int half_edge_collapse();
-    /// \p per_vertex signals a vertex, and at least 60,000 unless that is 0, without change of connectivity, so
-    /// that the counters speak of the final mesh. If settings.feature_measure asks for it, the feature statistic
-    /// observes it. False if \p progress asked to stop.
+    /// \p per_vertex signals a vertex, and at least 60,000 unless that is 0, without change of connectivity,
+    /// so that the counters speak of the final mesh. If settings.feature_measure asks for it, the feature
+    /// statistic observes it. False if \p progress asked to stop.
     bool settle(int per_vertex, Progress& progress);
 
     /// Learning is cut short after this many signals of growth. Growth that has not come to its target
-    /// after growth_budget() signals is forced: no more collapses, no more maturity, so that every C_vs signals
-    /// add a vertex. (It stalls where more vertices are asked for than the target space has places to win:
-    /// a handful of points, say.) So growth ends; the bound leaves twice what forcing needs.
+    /// after growth_budget() signals is forced: no more collapses, no more maturity, so that every C_vs
+    /// signals add a vertex. (It stalls where more vertices are asked for than the target space has places to
+    /// win: a handful of points, say.) So growth ends; the bound leaves twice what forcing needs.
     std::int64_t growth_budget() const;
     std::int64_t signal_bound() const;
     /// True once growth had to be forced.

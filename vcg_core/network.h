@@ -42,7 +42,8 @@ struct alignas(64) Ring {
     int position_of(VertexId v) const {
         // Entries beyond the valence may repeat a neighbour, so the first hit counts.
         unsigned hits = equal_mask(neighbours.data(), v) | equal_mask(neighbours.data() + 4, v) << 4;
-        if (hits == 0) hits = equal_mask(neighbours.data() + 8, v) << 8 | equal_mask(neighbours.data() + 11, v) << 11;
+        if (hits == 0)
+            hits = equal_mask(neighbours.data() + 8, v) << 8 | equal_mask(neighbours.data() + 11, v) << 11;
         return __builtin_ctz(hits);
     }
     VertexId operator[](int i) const { return neighbours[static_cast<std::size_t>(i)]; }
@@ -103,9 +104,9 @@ public:
     /// Half-edge collapse: removes \p gone by moving it into its neighbour \p kept, which stays where it is.
     /// \pre can_collapse(gone, kept). O(valence).
     void collapse(VertexId gone, VertexId kept);
-    /// The link condition (Dey et al. 1999: the common neighbours are exactly those opposite the edge), a boundary
-    /// vertex only along its boundary (or the boundary would move), no valence below 3 (2 on a boundary) or above
-    /// Ring::kMaxValence afterwards.
+    /// The link condition (Dey et al. 1999: the common neighbours are exactly those opposite the edge), a
+    /// boundary vertex only along its boundary (or the boundary would move), no valence below 3 (2 on a
+    /// boundary) or above Ring::kMaxValence afterwards.
     bool can_collapse(VertexId gone, VertexId kept) const;
 
     /// Edge flip: replaces the inner edge a-b by the edge between the two vertices opposite to it.
@@ -114,9 +115,8 @@ public:
     /// True if a-b is an inner edge, the new edge does not exist yet and all valences stay in range.
     bool can_flip(VertexId a, VertexId b) const;
 
-    /// Gives new ids, so that the used ones are 0 .. vertex_count() - 1, in unchanged order. Whatever holds ids, a
-    /// WinnerSearch for one, must be made anew.
-    /// \return for every old slot its new id, or -1.
+    /// Gives new ids, so that the used ones are 0 .. vertex_count() - 1, in unchanged order. Whatever holds
+    /// ids, a WinnerSearch for one, must be made anew. \return for every old slot its new id, or -1.
     std::vector<VertexId> compact();
 
     int face_count() const;

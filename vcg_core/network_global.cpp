@@ -24,7 +24,8 @@ bool chain(const Links& links, Ring& ring) {
     const auto has_predecessor = [&](VertexId v) {
         return std::any_of(links.begin(), links.end(), [&](const auto& l) { return l.second == v; });
     };
-    auto start = std::find_if(links.begin(), links.end(), [&](const auto& l) { return !has_predecessor(l.first); });
+    auto start =
+        std::find_if(links.begin(), links.end(), [&](const auto& l) { return !has_predecessor(l.first); });
     const bool open = start != links.end();
     if (!open) start = links.begin();
 
@@ -137,7 +138,8 @@ void Network::orient_outward() {
         Ring& r = rings_[v];
         if (r.valence == 0) continue;
         const auto c = static_cast<std::size_t>(component[v]);
-        if (volume[c] < 0 && open[c] == 0) std::reverse(r.neighbours.begin(), r.neighbours.begin() + r.valence);
+        if (volume[c] < 0 && open[c] == 0)
+            std::reverse(r.neighbours.begin(), r.neighbours.begin() + r.valence);
     }
 }
 
@@ -153,7 +155,9 @@ int Network::boundary_loop_count() const {
     return loops;
 }
 
-int Network::genus() const { return component_count() - (euler_characteristic() + boundary_loop_count()) / 2; }
+int Network::genus() const {
+    return component_count() - (euler_characteristic() + boundary_loop_count()) / 2;
+}
 
 std::string Network::validate() const {
     int count = 0;
@@ -166,13 +170,15 @@ std::string Network::validate() const {
             return at_vertex(v, "its valence is out of range.");
         for (int i = 0; i < r.valence; ++i) {
             const VertexId w = r[i];
-            if (w < 0 || w >= slot_count() || !alive(w) || w == v) return at_vertex(v, "a neighbour does not exist.");
+            if (w < 0 || w >= slot_count() || !alive(w) || w == v)
+                return at_vertex(v, "a neighbour does not exist.");
             if (r.find(w) != i) return at_vertex(v, "a neighbour appears twice.");
             const int back = ring(w).find(v);
             if (back < 0) return at_vertex(v, "a neighbour does not know it.");
             const bool last = r.open != 0 && i + 1 == r.valence;
             if (last) {
-                if (ring(w).open == 0 || back != 0) return at_vertex(v, "its last boundary edge has two faces.");
+                if (ring(w).open == 0 || back != 0)
+                    return at_vertex(v, "its last boundary edge has two faces.");
                 continue;
             }
             if (r.open != 0 && i == 0 && (ring(w).open == 0 || back + 1 != ring(w).valence))
@@ -184,8 +190,9 @@ std::string Network::validate() const {
                 return at_vertex(v, "a face is not seen alike from its corners.");
         }
     }
-    if (count != vertex_count_) return "The network is broken: it counts " + std::to_string(vertex_count_) +
-                                       " vertices but holds " + std::to_string(count) + ".";
+    if (count != vertex_count_)
+        return "The network is broken: it counts " + std::to_string(vertex_count_) + " vertices but holds " +
+               std::to_string(count) + ".";
     if (count + static_cast<int>(free_.size()) != slot_count())
         return "The network is broken: free and used slots do not add up.";
     return {};

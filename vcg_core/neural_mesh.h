@@ -40,10 +40,10 @@ struct Report {
 
 /// An indexed triangle mesh, counter-clockwise seen from outside, with one number per vertex.
 struct NeuralMesh {
-    std::vector<vcg::Point3d> positions;     ///< in the coordinates of the input
+    std::vector<vcg::Point3d> positions;  ///< in the coordinates of the input
     std::vector<std::array<int, 3>> faces;
-    std::vector<float> counters;             ///< per vertex what settings.feature_measure names, >= 0
-    std::vector<char> features;              ///< 1 where it passes the threshold (eq 7)
+    std::vector<float> counters;  ///< per vertex what settings.feature_measure names, >= 0
+    std::vector<char> features;   ///< 1 where it passes the threshold (eq 7)
     Report report;
 };
 

@@ -43,8 +43,8 @@ struct StillOf {
 template <class T>
 [[gnu::always_inline]] inline void smooth_vertex(const StillOf<T>& s, const Vector<T>& a, Vector<T>& v,
                                                  const Vector<T>& b) {
-    // N = w x a + a x o_1 + (o_1 x o_2 + ..) + o_m x b + b x w: twice the star's area vector, which does not depend
-    // on v itself.
+    // N = w x a + a x o_1 + (o_1 x o_2 + ..) + o_m x b + b x w: twice the star's area vector, which does not
+    // depend on v itself.
     const T nx = s.area.x + (a.y * s.first.z - a.z * s.first.y) + (s.last.y * b.z - s.last.z * b.y);
     const T ny = s.area.y + (a.z * s.first.x - a.x * s.first.z) + (s.last.z * b.x - s.last.x * b.z);
     const T nz = s.area.z + (a.x * s.first.y - a.y * s.first.x) + (s.last.x * b.y - s.last.y * b.x);
@@ -89,8 +89,8 @@ using Eight = float __attribute__((vector_size(32)));
     std::memcpy(&to.z, from.z + lane, sizeof to.z);
 }
 
-/// The same for up to 8 ring vertices that never leave the registers: a sweep waits for the one before it, and the
-/// way through memory would be half of that wait.
+/// The same for up to 8 ring vertices that never leave the registers: a sweep waits for the one before it,
+/// and the way through memory would be half of that wait.
 [[gnu::target("avx2")]] void sweep_in_registers(const Still& still, Vectors& at, int valence, int count) {
     alignas(32) std::int32_t before[8];
     alignas(32) std::int32_t after[8];
@@ -110,9 +110,11 @@ using Eight = float __attribute__((vector_size(32)));
     Vector<Eight> v;
     load(at, 1, v);
     for (int sweep = 0; sweep < count; ++sweep) {
-        const Vector<Eight> a{_mm256_permutevar8x32_ps(v.x, to_before), _mm256_permutevar8x32_ps(v.y, to_before),
+        const Vector<Eight> a{_mm256_permutevar8x32_ps(v.x, to_before),
+                              _mm256_permutevar8x32_ps(v.y, to_before),
                               _mm256_permutevar8x32_ps(v.z, to_before)};
-        const Vector<Eight> b{_mm256_permutevar8x32_ps(v.x, to_after), _mm256_permutevar8x32_ps(v.y, to_after),
+        const Vector<Eight> b{_mm256_permutevar8x32_ps(v.x, to_after),
+                              _mm256_permutevar8x32_ps(v.y, to_after),
                               _mm256_permutevar8x32_ps(v.z, to_after)};
         smooth_vertex(s, a, v, b);
     }
@@ -153,7 +155,8 @@ NEURALMESH_MULTIVERSIONED void face_normals_of_8(const Vectors& at, const vcg::P
     face_normals<8>(at, w, normals);
 }
 
-NEURALMESH_MULTIVERSIONED void face_normals_of_16(const Vectors& at, const vcg::Point3f& w, Vectors& normals) {
+NEURALMESH_MULTIVERSIONED void face_normals_of_16(const Vectors& at, const vcg::Point3f& w,
+                                                  Vectors& normals) {
     face_normals<16>(at, w, normals);
 }
 
@@ -197,13 +200,14 @@ void Patch::gather_star(const Network& network, int i) {
     const int count = k - 3;
     Four sum = {0, 0, 0, 0};
     Four area = {0, 0, 0, 0};
-    // Without outer vertices r_(i-1) and r_(i+1) follow each other: the latter, as it stands, takes their part.
+    // Without outer vertices r_(i-1) and r_(i+1) follow each other: the latter, as it stands, takes their
+    // part.
     Four first = points_[i + 1 == valence_ ? 0 : i + 1];
     Four last = first;
     if (count > 0) {
         sum = first = last = outer(0);
-        // Four at the most is by far the most frequent. The last one stands in for those that are missing: it adds
-        // no area with itself, and how many there are, which nobody can predict, needs no branch.
+        // Four at the most is by far the most frequent. The last one stands in for those that are missing: it
+        // adds no area with itself, and how many there are, which nobody can predict, needs no branch.
         for (int m = 1; m < 4; ++m) {
             const Four o = outer(m < count ? m : count - 1);
             sum += m < count ? o : Four{0, 0, 0, 0};
@@ -223,7 +227,9 @@ void Patch::gather_star(const Network& network, int i) {
     lasts_[i] = last;
 }
 
-void Patch::move_winner(const vcg::Point3f& s, float alpha_w) { winner_at_ += (s - origin_ - winner_at_) * alpha_w; }
+void Patch::move_winner(const vcg::Point3f& s, float alpha_w) {
+    winner_at_ += (s - origin_ - winner_at_) * alpha_w;
+}
 
 void Patch::smooth(int count, float alpha_l) {
     const float wx = winner_at_[0];

@@ -53,10 +53,10 @@ public:
     };
     /// What does not change during the sweeps, per ring vertex.
     struct Still {
-        Vectors sum;       ///< w + o_1 + .. + o_m
-        Vectors area;      ///< o_1 x o_2 + .. + o_(m-1) x o_m, relative to w
-        Vectors first;     ///< o_1 - w
-        Vectors last;      ///< o_m - w
+        Vectors sum;    ///< w + o_1 + .. + o_m
+        Vectors area;   ///< o_1 x o_2 + .. + o_(m-1) x o_m, relative to w
+        Vectors first;  ///< o_1 - w
+        Vectors last;   ///< o_m - w
         alignas(32) float inverse_valence[kLanes] = {};
         alignas(32) float rate[kLanes] = {};  ///< alpha_L where the vertex is smoothed, else 0
     };

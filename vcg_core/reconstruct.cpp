@@ -103,7 +103,8 @@ void write_counters(const Learner& learner, const Network& network, const std::v
                     const Settings& settings, NeuralMesh& mesh) {
     const bool creases = settings.feature_measure == kCreaseMeasure;
     const std::vector<float> measure =
-        creases ? learner.feature_statistic().values(learner.network(), network, origin) : std::vector<float>();
+        creases ? learner.feature_statistic().values(learner.network(), network, origin)
+                : std::vector<float>();
     double sum = 0;
     for (VertexId v = 0; v < network.slot_count(); ++v) {
         if (!network.alive(v)) continue;
@@ -132,7 +133,8 @@ void write_report(const Learner& learner, const Network& network, Report& report
     report.components = network.component_count();
     if (learner.forced() && report.stop_reason == StopReason::target_reached)
         report.warnings.push_back(
-            "Growth had stalled, so it was forced: more vertices were asked for than the points have places for. "
+            "Growth had stalled, so it was forced: more vertices were asked for than the points have places "
+            "for. "
             "Lower target_vertices if the mesh has slivers.");
     if (report.stop_reason == StopReason::cut_short)
         report.warnings.push_back("The mesh was cut short at " + std::to_string(report.vertices) +

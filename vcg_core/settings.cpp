@@ -85,12 +85,16 @@ std::vector<SettingInfo> common_rows() {
         row(&S::select_features, "select_features", "Select features",
             "Select the vertices of the result whose feature counter is above the feature threshold."),
         row(&S::feature_measure, "feature_measure", "Feature measure", {"Normal counter", "Crease measure"},
-            "What the vertex quality holds. Normal counter: the paper's (eq 6), the variation of the vertex's normal "
-            "during learning, about 1 on average; high where the surface bends. Crease measure: the angle between "
-            "the two planes around the vertex, over many moments of the learning; above 1 on sharp edges (2.5 at a "
+            "What the vertex quality holds. Normal counter: the paper's (eq 6), the variation of the "
+            "vertex's normal "
+            "during learning, about 1 on average; high where the surface bends. Crease measure: the angle "
+            "between "
+            "the two planes around the vertex, over many moments of the learning; above 1 on sharp edges "
+            "(2.5 at a "
             "right angle), robust against noise, comparable between models."),
         row(&S::feature_threshold, "feature_threshold", "Feature threshold", 0, 1000,
-            "C_nc of the paper (eq 7): a vertex is a feature if its normal counter is above this many times the mean "
+            "C_nc of the paper (eq 7): a vertex is a feature if its normal counter is above this many times "
+            "the mean "
             "counter. For the crease measure the threshold counts as it is."),
         row(&S::random_seed, "random_seed", "Random seed", 0, kLargestInt,
             "The same seed gives the same mesh to the last bit, on any machine and with any number of "
@@ -126,7 +130,8 @@ std::vector<SettingInfo> advanced_rows() {
             "again. 0: the paper to the letter, where growth can stall."),
         row(&S::settling_signals_per_vertex, "settling_signals_per_vertex", "Settling signals per vertex", 0,
             1e5,
-            "Learning goes on for this many signals per vertex after the last split, and at least 60,000 in all, so "
+            "Learning goes on for this many signals per vertex after the last split, and at least 60,000 in "
+            "all, so "
             "that positions and counters speak of the final mesh. 0: it does not."),
         row(&S::stop_below_mean_counter, "stop_below_mean_counter", "Stop below mean counter", 0, 1e6,
             "α_t of the paper (eq 8), as an angle in degrees: growth ends before the target when a signal "

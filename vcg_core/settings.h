@@ -22,7 +22,8 @@ enum UtilityCounter : int {
 /// What the quality of the result holds, and what selects features.
 enum FeatureMeasure : int {
     kFeatureCounter = 0,  ///< the paper's normal counter of eq 6
-    kCreaseMeasure = 1,   ///< features.h: angle of the planes around a vertex, over many moments of the learning
+    kCreaseMeasure =
+        1,  ///< features.h: angle of the planes around a vertex, over many moments of the learning
 };
 
 /// What the learning starts from.
@@ -67,11 +68,11 @@ struct SettingInfo {
     enum class Kind { boolean, integer, real, choice };
 
     Kind kind;
-    const char* id;     ///< snake_case; API: scripts key on it
-    const char* label;  ///< for a dialog
-    const char* help;   ///< for a tooltip and the reference
-    bool advanced;      ///< shown on request only
-    double low, high;   ///< closed range; booleans: 0 and 1
+    const char* id;                    ///< snake_case; API: scripts key on it
+    const char* label;                 ///< for a dialog
+    const char* help;                  ///< for a tooltip and the reference
+    bool advanced;                     ///< shown on request only
+    double low, high;                  ///< closed range; booleans: 0 and 1
     std::vector<std::string> choices;  ///< names of a choice's values, in order from 0
 
     bool Settings::*boolean_member = nullptr;

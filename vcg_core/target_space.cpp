@@ -25,7 +25,9 @@ vcg::Point3f Frame::inside(const vcg::Point3d& p) const {
     return vcg::Point3f::Construct((p - centre) / diagonal);
 }
 
-vcg::Point3d Frame::outside(const vcg::Point3f& p) const { return centre + vcg::Point3d::Construct(p) * diagonal; }
+vcg::Point3d Frame::outside(const vcg::Point3f& p) const {
+    return centre + vcg::Point3d::Construct(p) * diagonal;
+}
 
 void TargetSpace::set_frame(const vcg::Box3d& box, std::size_t not_finite, std::size_t count) {
     if (count == 0)
@@ -33,22 +35,24 @@ void TargetSpace::set_frame(const vcg::Box3d& box, std::size_t not_finite, std::
             "The layer has no points to learn: choose a layer with at least 4 distinct vertices, or clear "
             "'selected only' if nothing is selected.");
     if (not_finite > 0)
-        throw InputError(std::to_string(not_finite) + " of the " + std::to_string(count) +
-                         " vertices have coordinates that are not finite (NaN or infinite): remove them, for "
-                         "example with the filter 'Conditional Vertex Selection' and 'Delete Selected Vertices'.");
+        throw InputError(
+            std::to_string(not_finite) + " of the " + std::to_string(count) +
+            " vertices have coordinates that are not finite (NaN or infinite): remove them, for "
+            "example with the filter 'Conditional Vertex Selection' and 'Delete Selected Vertices'.");
     frame_.centre = (box.min + box.max) / 2;
     frame_.diagonal = (box.max - box.min).Norm();
     if (box.min == box.max)
         throw InputError("All points of the layer are equal: a surface needs at least 4 distinct points.");
     if (!((frame_.diagonal - frame_.diagonal) == 0 && frame_.diagonal > 1e-150))
-        throw InputError("The layer's bounding box is too large or too small for double precision: scale it first.");
+        throw InputError(
+            "The layer's bounding box is too large or too small for double precision: scale it first.");
 }
 
 void TargetSpace::check_spread() const {
     const vcg::Point3f& a = positions_.front();
-    const auto far = std::max_element(positions_.begin(), positions_.end(), [&](const auto& p, const auto& q) {
-        return (p - a).SquaredNorm() < (q - a).SquaredNorm();
-    });
+    const auto far = std::max_element(
+        positions_.begin(), positions_.end(),
+        [&](const auto& p, const auto& q) { return (p - a).SquaredNorm() < (q - a).SquaredNorm(); });
     const vcg::Point3f direction = *far - a;
     std::vector<vcg::Point3f> distinct;
     bool collinear = true;
@@ -62,7 +66,8 @@ void TargetSpace::check_spread() const {
         throw InputError("The layer has only " + std::to_string(distinct.size()) +
                          " distinct points: a surface needs at least 4.");
     throw InputError(
-        "All points of the layer lie on one straight line: a surface cannot be learned from it. Choose a layer "
+        "All points of the layer lie on one straight line: a surface cannot be learned from it. Choose a "
+        "layer "
         "whose points surround a surface.");
 }
 
@@ -76,16 +81,18 @@ void TargetSpace::accumulate_areas() {
     }
     if (!(sum > 0))
         throw InputError(
-            "The faces of the layer have no area to draw samples from: switch 'draw from faces' off to learn its "
+            "The faces of the layer have no area to draw samples from: switch 'draw from faces' off to learn "
+            "its "
             "vertices instead.");
 }
 
 vcg::Point3f TargetSpace::sample(Random& random) const {
     if (!has_faces()) return positions_[random.below(static_cast<std::uint32_t>(positions_.size()))];
     const double fraction = (random.bits() + 0.5) * 0x1p-32;
-    const auto it =
-        std::upper_bound(cumulative_area_.begin(), cumulative_area_.end(), fraction * cumulative_area_.back());
-    const auto face = static_cast<std::size_t>(std::min(it, cumulative_area_.end() - 1) - cumulative_area_.begin());
+    const auto it = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end(),
+                                     fraction * cumulative_area_.back());
+    const auto face =
+        static_cast<std::size_t>(std::min(it, cumulative_area_.end() - 1) - cumulative_area_.begin());
     float u = random.unit();
     float v = random.unit();
     if (u + v > 1) {

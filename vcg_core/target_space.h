@@ -26,12 +26,12 @@ struct Frame {
     vcg::Point3d outside(const vcg::Point3f& p) const;
 };
 
-/// Points, or triangles weighted by their area, with a uniform random sample(), O(1) for points and O(log n) for triangles.
-/// Memory: 12 bytes per point; 12 bytes per corner and 8 per triangle.
+/// Points, or triangles weighted by their area, with a uniform random sample(), O(1) for points and O(log n)
+/// for triangles. Memory: 12 bytes per point; 12 bytes per corner and 8 per triangle.
 class TargetSpace {
 public:
-    /// A cloud. \p point_at(i), i in [0, count), gives a point as vcg::Point3d; called more than once per point.
-    /// \throws InputError: no points, not finite, fewer than 4 distinct, all on a line
+    /// A cloud. \p point_at(i), i in [0, count), gives a point as vcg::Point3d; called more than once per
+    /// point. \throws InputError: no points, not finite, fewer than 4 distinct, all on a line
     template <class PointAt>
     static TargetSpace points(std::size_t count, const PointAt& point_at);
 

@@ -171,8 +171,9 @@ VertexId WinnerSearch::winner(const vcg::Point3f& s) const {
     if (best == kNobody) best = scan_box(s, 2 * edge_);
     const float reach = std::sqrt(squared_distance_of(best)) + kRounding * edge_;
     const float across = 2 * reach * inverse_edge_ + 2;
-    const bool box_is_small = across < 5 || across * across * across <
-                                                static_cast<float>(std::min(network_.slot_count(), kMostCells));
+    const bool box_is_small =
+        across < 5 ||
+        across * across * across < static_cast<float>(std::min(network_.slot_count(), kMostCells));
     return vertex_of(box_is_small ? scan_box(s, reach) : scan_all(s));
 }
 

@@ -18,8 +18,8 @@ namespace neuralmesh {
 /// Exact nearest-vertex search. Every change of the network must be told; the grid is laid out anew when
 /// the number of vertices has doubled or fallen to a third.
 ///
-/// The table has a list head per cell, found by hashing, and no keys: cells that share a head share a list. That
-/// costs a few distances to vertices elsewhere, which cannot win, and saves every comparison of keys.
+/// The table has a list head per cell, found by hashing, and no keys: cells that share a head share a list.
+/// That costs a few distances to vertices elsewhere, which cannot win, and saves every comparison of keys.
 /// Ties go to the smaller id, so that the answer is that of a linear search to the bit.
 /// Memory: 8 to 16 bytes per vertex; the list links live in the network's slots.
 class WinnerSearch {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Signals per second of the learning loop, and where the time goes: search, smoothing, normals, counters, moves,
-// topology. One thread. The cloud is 200,000 points of a bumpy torus made here.
+// Signals per second of the learning loop, and where the time goes: search, smoothing, normals, counters,
+// moves, topology. One thread. The cloud is 200,000 points of a bumpy torus made here.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -46,8 +46,9 @@ Network torus_start() {
     for (int i = 0; i < kAround; ++i)
         for (int j = 0; j < kAcross; ++j) {
             const double u = 6.283185307179586 * i / kAround, v = 6.283185307179586 * j / kAcross;
-            positions.push_back(cloud().frame().inside(
-                {(1 + 0.4 * std::cos(v)) * std::cos(u), (1 + 0.4 * std::cos(v)) * std::sin(u), 0.4 * std::sin(v)}));
+            positions.push_back(
+                cloud().frame().inside({(1 + 0.4 * std::cos(v)) * std::cos(u),
+                                        (1 + 0.4 * std::cos(v)) * std::sin(u), 0.4 * std::sin(v)}));
             faces.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
             faces.push_back({id(i, j), id(i + 1, j + 1), id(i, j + 1)});
         }
@@ -203,7 +204,8 @@ void part_topology(benchmark::State& state) {
     settings.target_vertices = 2 * static_cast<int>(state.range(0));
     for (auto _ : state) {
         state.PauseTiming();
-        auto learner = std::make_unique<Learner>(cloud(), settings, learned(static_cast<int>(state.range(0))));
+        auto learner =
+            std::make_unique<Learner>(cloud(), settings, learned(static_cast<int>(state.range(0))));
         for (const vcg::Point3f& s : signals()) learner->basic_step(s);
         state.ResumeTiming();
         while (learner->splits() < 100 && learner->vertex_split()) {
@@ -212,11 +214,14 @@ void part_topology(benchmark::State& state) {
         learner.reset();
         state.ResumeTiming();
     }
-    state.counters["ns_per_split"] = benchmark::Counter(static_cast<double>(state.iterations()) * 100 * 1e-9,
-                                                        benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["ns_per_split"] =
+        benchmark::Counter(static_cast<double>(state.iterations()) * 100 * 1e-9,
+                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-void sizes(benchmark::internal::Benchmark* b) { b->Arg(1000)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond); }
+void sizes(benchmark::internal::Benchmark* b) {
+    b->Arg(1000)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond);
+}
 
 BENCHMARK(part_search)->Apply(sizes);
 BENCHMARK(part_gather)->Apply(sizes);

@@ -21,8 +21,8 @@ namespace {
 class PlyVertex;
 class PlyFace;
 struct PlyTypes : vcg::UsedTypes<vcg::Use<PlyVertex>::AsVertexType, vcg::Use<PlyFace>::AsFaceType> {};
-class PlyVertex : public vcg::Vertex<PlyTypes, vcg::vertex::Coord3f, vcg::vertex::Normal3f, vcg::vertex::Color4b,
-                                     vcg::vertex::Qualityf, vcg::vertex::BitFlags> {};
+class PlyVertex : public vcg::Vertex<PlyTypes, vcg::vertex::Coord3f, vcg::vertex::Normal3f,
+                                     vcg::vertex::Color4b, vcg::vertex::Qualityf, vcg::vertex::BitFlags> {};
 class PlyFace : public vcg::Face<PlyTypes, vcg::face::VertexRef, vcg::face::Normal3f, vcg::face::BitFlags> {};
 class PlyMesh : public vcg::tri::TriMesh<std::vector<PlyVertex>, std::vector<PlyFace>> {};
 
@@ -53,11 +53,12 @@ int learn(int argc, char** argv) {
     vcg::tri::io::ExporterPLY<PlyMesh>::Save(out, argv[2], Mask::IOM_VERTQUALITY | Mask::IOM_VERTCOLOR, true);
     const neuralmesh::Report& r = result.report;
     for (const std::string& warning : r.warnings) std::fprintf(stderr, "%s\n", warning.c_str());
-    std::printf("{\"vertices\":%d,\"faces\":%d,\"signals\":%lld,\"splits\":%lld,\"collapses\":%lld,\"genus\":%d,"
-                "\"boundary_loops\":%d,\"components\":%d,\"feature_vertices\":%d,\"rms_error\":%.6g,"
-                "\"mean_counter\":%.6g,\"seconds\":%.4g,\"stop_reason\":%d}\n",
-                r.vertices, r.faces, r.signals, r.splits, r.collapses, r.genus, r.boundary_loops, r.components,
-                r.feature_vertices, r.rms_error, r.mean_counter, r.seconds, static_cast<int>(r.stop_reason));
+    std::printf(
+        "{\"vertices\":%d,\"faces\":%d,\"signals\":%lld,\"splits\":%lld,\"collapses\":%lld,\"genus\":%d,"
+        "\"boundary_loops\":%d,\"components\":%d,\"feature_vertices\":%d,\"rms_error\":%.6g,"
+        "\"mean_counter\":%.6g,\"seconds\":%.4g,\"stop_reason\":%d}\n",
+        r.vertices, r.faces, r.signals, r.splits, r.collapses, r.genus, r.boundary_loops, r.components,
+        r.feature_vertices, r.rms_error, r.mean_counter, r.seconds, static_cast<int>(r.stop_reason));
     return 0;
 }
 

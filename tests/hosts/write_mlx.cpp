@@ -19,14 +19,10 @@ using Kind = SettingInfo::Kind;
 
 const char* type_of(const SettingInfo& info) {
     switch (info.kind) {
-        case Kind::boolean:
-            return "RichBool";
-        case Kind::integer:
-            return "RichInt";
-        case Kind::real:
-            return "RichFloat";
-        case Kind::choice:
-            return "RichEnum";
+        case Kind::boolean: return "RichBool";
+        case Kind::integer: return "RichInt";
+        case Kind::real: return "RichFloat";
+        case Kind::choice: return "RichEnum";
     }
     return "";
 }

@@ -82,7 +82,8 @@ struct EagerCounters {
     }
 };
 
-/// Relative error after some hundred updates: mantissa and exponent share 52 bits, so that it grows with the exponent.
+/// Relative error after some hundred updates: mantissa and exponent share 52 bits, so that it grows with the
+/// exponent.
 double tolerance(double decay, int wins) {
     const double exponent = wins * -std::log2(decay) + 2;
     return 200 * exponent * 0x1p-52;
@@ -91,7 +92,8 @@ double tolerance(double decay, int wins) {
 void compare(const UtilityCounters& lazy, const EagerCounters& eager, double relative) {
     for (std::size_t v = 0; v < eager.values.size(); ++v) {
         const double expected = eager.values[v].value();
-        ASSERT_NEAR(lazy.value(static_cast<VertexId>(v)), expected, relative * expected + 1e-290) << "vertex " << v;
+        ASSERT_NEAR(lazy.value(static_cast<VertexId>(v)), expected, relative * expected + 1e-290)
+            << "vertex " << v;
         ASSERT_EQ(lazy.wins(static_cast<VertexId>(v)), eager.wins[v]) << "vertex " << v;
     }
     const long double most = eager.highest();
@@ -99,7 +101,8 @@ void compare(const UtilityCounters& lazy, const EagerCounters& eager, double rel
     if (std::isinf(most)) return;
     ASSERT_GE(top, 0);
     ASSERT_GE(eager.wins[static_cast<std::size_t>(top)], eager.maturity);
-    ASSERT_NEAR(static_cast<double>(eager.values[static_cast<std::size_t>(top)].log() - most), 0, 2 * relative);
+    ASSERT_NEAR(static_cast<double>(eager.values[static_cast<std::size_t>(top)].log() - most), 0,
+                2 * relative);
 }
 
 struct Run {
@@ -241,7 +244,8 @@ TEST(WindowMean, IsTheMeanOfTheLastValues) {
             last.push_back(static_cast<double>(random.unit()));
             if (static_cast<int>(last.size()) > window) last.pop_front();
             mean.add(last.back());
-            ASSERT_NEAR(mean.mean(), std::accumulate(last.begin(), last.end(), 0.0) / double(last.size()), 1e-12);
+            ASSERT_NEAR(mean.mean(), std::accumulate(last.begin(), last.end(), 0.0) / double(last.size()),
+                        1e-12);
         }
     }
 }

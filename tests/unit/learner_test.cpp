@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "reference_learner.h"
 #include "referee.h"
+#include "reference_learner.h"
 #include "shapes.h"
 
 namespace neuralmesh {
@@ -22,8 +22,8 @@ Network start_of(shapes::Shape shape, double scale) {
     return referee::network_of(shape);
 }
 
-/// Structure equal, positions within \p tolerance, wins equal, counters within a part in a hundred: delta is a
-/// difference of nearly equal normals, so that float leaves it few digits.
+/// Structure equal, positions within \p tolerance, wins equal, counters within a part in a hundred: delta is
+/// a difference of nearly equal normals, so that float leaves it few digits.
 void expect_alike(const Learner& learner, const reference::ReferenceLearner& expected, float tolerance) {
     ASSERT_EQ(learner.network().faces(), expected.network().faces());
     ASSERT_EQ(learner.network().slot_count(), expected.network().slot_count());
@@ -32,14 +32,17 @@ void expect_alike(const Learner& learner, const reference::ReferenceLearner& exp
         const auto i = static_cast<std::size_t>(v);
         ASSERT_LT((learner.network().position(v) - expected.network().position(v)).Norm(), tolerance) << v;
         ASSERT_EQ(learner.utility_counters().wins(v), expected.wins[i]) << v;
-        ASSERT_NEAR(learner.utility_counters().value(v), expected.utility[i], 0.01 * expected.utility[i] + 1e-3) << v;
+        ASSERT_NEAR(learner.utility_counters().value(v), expected.utility[i],
+                    0.01 * expected.utility[i] + 1e-3)
+            << v;
         ASSERT_NEAR(static_cast<double>(learner.feature_counters().value(v)), expected.feature[i],
-                    0.01 * expected.feature[i] + 1e-3) << v;
+                    0.01 * expected.feature[i] + 1e-3)
+            << v;
     }
 }
 
-/// Runs are short, and short of the moment when a crumpled mesh (its star nearly without area) makes float and
-/// double part: from there both learn, but not the same mesh.
+/// Runs are short, and short of the moment when a crumpled mesh (its star nearly without area) makes float
+/// and double part: from there both learn, but not the same mesh.
 void compare_runs(const shapes::Cloud& cloud, Network start, Settings settings, int signals) {
     settings.target_vertices = 100000;
     const TargetSpace target = target_of(cloud);
@@ -55,11 +58,13 @@ void compare_runs(const shapes::Cloud& cloud, Network start, Settings settings, 
         ++since_collapse;
         if (i % settings.signals_per_split == 0) {
             ASSERT_EQ(learner.vertex_split(), expected.vertex_split()) << "at signal " << i;
-            ASSERT_EQ(learner.network().faces(), expected.network().faces()) << "after the split at signal " << i;
+            ASSERT_EQ(learner.network().faces(), expected.network().faces())
+                << "after the split at signal " << i;
         }
         if (since_collapse >= at_collapse * settings.signals_per_collapse) {
             ASSERT_EQ(learner.half_edge_collapse(), expected.half_edge_collapse()) << "at signal " << i;
-            ASSERT_EQ(learner.network().faces(), expected.network().faces()) << "after the collapse at signal " << i;
+            ASSERT_EQ(learner.network().faces(), expected.network().faces())
+                << "after the collapse at signal " << i;
             since_collapse = 0;
             at_collapse = learner.network().vertex_count();
         }

@@ -400,9 +400,7 @@ TEST(Network, ListsEachFaceOnceFromItsSmallestVertex) {
     EXPECT_EQ(canonical(faces).size(), std::set<Triangle>(faces.begin(), faces.end()).size());
 }
 
-void expect_refused(Shape shape, const char* why) {
-    EXPECT_THROW(network_of(shape), TopologyError) << why;
-}
+void expect_refused(Shape shape, const char* why) { EXPECT_THROW(network_of(shape), TopologyError) << why; }
 
 TEST(Network, RefusesWhatIsNoOrientedManifold) {
     Shape s = shapes::tetrahedron();
@@ -437,7 +435,8 @@ TEST(Network, RefusesWhatIsNoOrientedManifold) {
     expect_refused(shapes::fan(40), "an open valence of 41");
     expect_refused({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}}, "a closed valence of 2");
 
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         s = shapes::tetrahedron();
         s.positions[2][1] = bad;
         expect_refused(s, "a position that is not finite");

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "reference_learner.h"
 #include "referee.h"
+#include "reference_learner.h"
 #include "shapes.h"
 
 namespace neuralmesh {
@@ -23,10 +23,14 @@ struct Case {
 
 /// Meshes inside the core's frame, shaken so that nothing is symmetric or flat.
 std::vector<Case> cases() {
-    std::vector<Case> result{{"icosphere", shapes::icosphere(2)},   {"torus", shapes::torus_grid(12, 8)},
-                             {"disk", shapes::grid(6, 6)},           {"tube", shapes::tube(5, 4)},
-                             {"valences 15", shapes::bipyramid(15)}, {"valences 9", shapes::bipyramid(9)},
-                             {"cube", shapes::cube()},               {"half disk", shapes::fan(14)}};
+    std::vector<Case> result{{"icosphere", shapes::icosphere(2)},
+                             {"torus", shapes::torus_grid(12, 8)},
+                             {"disk", shapes::grid(6, 6)},
+                             {"tube", shapes::tube(5, 4)},
+                             {"valences 15", shapes::bipyramid(15)},
+                             {"valences 9", shapes::bipyramid(9)},
+                             {"cube", shapes::cube()},
+                             {"half disk", shapes::fan(14)}};
     Random random(1);
     for (Case& c : result)
         for (vcg::Point3d& p : c.shape.positions) p = p * 0.28 + shapes::in_ball(random) * 0.02;
@@ -51,10 +55,12 @@ TEST(Patch, IsTheStepWalkedOverTheMesh) {
                 Settings settings;
                 settings.smoothing_steps = sweeps;
                 settings.smoothing_rate = 0.2;
-                const vcg::Point3d s = vcg::Point3d::Construct(network.position(w)) + shapes::in_ball(random) * 0.05;
+                const vcg::Point3d s =
+                    vcg::Point3d::Construct(network.position(w)) + shapes::in_ball(random) * 0.05;
                 reference::Positions expected = reference::positions_of(network);
                 patch.gather(network, w);
-                EXPECT_LT((vcg::Point3d::Construct(patch.normal()) - reference::normal(network, expected, w)).Norm(),
+                EXPECT_LT((vcg::Point3d::Construct(patch.normal()) - reference::normal(network, expected, w))
+                              .Norm(),
                           1e-5);
                 reference::basic_step(network, expected, w, s, settings);
                 patch.move_winner(vcg::Point3f::Construct(s), 0.06F);
@@ -62,14 +68,18 @@ TEST(Patch, IsTheStepWalkedOverTheMesh) {
 
                 ASSERT_EQ(patch.winner(), w);
                 ASSERT_EQ(patch.valence(), network.ring(w).valence);
-                EXPECT_LT((vcg::Point3d::Construct(patch.winner_position()) - reference::at(expected, w)).Norm(),
-                          kTolerance);
+                EXPECT_LT(
+                    (vcg::Point3d::Construct(patch.winner_position()) - reference::at(expected, w)).Norm(),
+                    kTolerance);
                 for (int i = 0; i < patch.valence(); ++i) {
                     ASSERT_EQ(patch.neighbour(i), network.ring(w)[i]);
                     EXPECT_LT((vcg::Point3d::Construct(patch.position(i)) -
-                               reference::at(expected, patch.neighbour(i))).Norm(), kTolerance);
+                               reference::at(expected, patch.neighbour(i)))
+                                  .Norm(),
+                              kTolerance);
                 }
-                EXPECT_LT((vcg::Point3d::Construct(patch.normal()) - reference::normal(network, expected, w)).Norm(),
+                EXPECT_LT((vcg::Point3d::Construct(patch.normal()) - reference::normal(network, expected, w))
+                              .Norm(),
                           1e-5);
             }
         }
@@ -89,8 +99,9 @@ TEST(Patch, SmoothsStarsOfThree) {
     patch.move_winner({0.3F, 0.1F, 0.2F}, 0.06F);
     patch.smooth(5, 0.05F);
     for (int i = 0; i < 3; ++i)
-        EXPECT_LT((vcg::Point3d::Construct(patch.position(i)) - reference::at(expected, patch.neighbour(i))).Norm(),
-                  kTolerance);
+        EXPECT_LT(
+            (vcg::Point3d::Construct(patch.position(i)) - reference::at(expected, patch.neighbour(i))).Norm(),
+            kTolerance);
 }
 
 TEST(Patch, LeavesBoundaryVerticesWhereTheyAre) {
@@ -120,7 +131,8 @@ TEST(Patch, DoesNotLeaveAPlane) {
 }
 
 TEST(Patch, StaysFiniteWhereTheMeshHasNoArea) {
-    for (shapes::Shape shape : {shapes::tetrahedron(), shapes::icosphere(1), shapes::grid(4, 4), shapes::bipyramid(15)}) {
+    for (shapes::Shape shape :
+         {shapes::tetrahedron(), shapes::icosphere(1), shapes::grid(4, 4), shapes::bipyramid(15)}) {
         for (const double scale : {0.0, 1e-30, 1e-20, 1e-12, 1e-6}) {
             for (vcg::Point3d& p : shape.positions) p = vcg::Point3d(p[0], p[1] * scale, p[2] * scale) * 0.3;
             Network network = referee::network_of(shape);
@@ -130,7 +142,8 @@ TEST(Patch, StaysFiniteWhereTheMeshHasNoArea) {
                 EXPECT_LE(patch.normal().Norm(), 1.0001F);
                 patch.move_winner({0.1F, 0, 0}, 0.06F);
                 patch.smooth(5, 0.05F);
-                for (int i = 0; i < patch.valence(); ++i) network.set_position(patch.neighbour(i), patch.position(i));
+                for (int i = 0; i < patch.valence(); ++i)
+                    network.set_position(patch.neighbour(i), patch.position(i));
                 network.set_position(w, patch.winner_position());
             }
             EXPECT_EQ(network.validate(), "");

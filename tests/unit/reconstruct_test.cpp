@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The promises of a whole run: count, manifold, orientation, progress, reasons to stop; and settings and clouds
-// chosen to break them.
+// The promises of a whole run: count, manifold, orientation, progress, reasons to stop; and settings and
+// clouds chosen to break them.
 #include "vcg_core/reconstruct.h"
 
 #include <gtest/gtest.h>
@@ -92,10 +92,12 @@ Settings with_target(int vertices, int start_mesh = kShell) {
 }
 
 TEST(Reconstruct, GivesTheExactCountAsAClosedOutwardSurface) {
-    const std::pair<const char*, Cloud> clouds[] = {
-        {"sphere", shapes::sphere_cloud(3000)},           {"noisy sphere", shapes::sphere_cloud(3000, 0.05)},
-        {"torus", shapes::torus_cloud(3000)},             {"cube", shapes::box_cloud(3000)},
-        {"slab", shapes::box_cloud(3000, {1, 0.7, 0.1})}, {"needle", shapes::box_cloud(3000, {1, 0.05, 0.05})}};
+    const std::pair<const char*, Cloud> clouds[] = {{"sphere", shapes::sphere_cloud(3000)},
+                                                    {"noisy sphere", shapes::sphere_cloud(3000, 0.05)},
+                                                    {"torus", shapes::torus_cloud(3000)},
+                                                    {"cube", shapes::box_cloud(3000)},
+                                                    {"slab", shapes::box_cloud(3000, {1, 0.7, 0.1})},
+                                                    {"needle", shapes::box_cloud(3000, {1, 0.05, 0.05})}};
     for (const auto& cloud : clouds) {
         for (const int start : {kShell, kTetrahedron}) {
             for (const int vertices : {4, 17, 100, 501}) {
@@ -155,7 +157,8 @@ TEST(Reconstruct, CanBeCancelledAtAnyTime) {
         Watch all;
         reconstruct(target, with_target(1000, start), all);
         for (const int patience : {0, 2, all.calls / 4, all.calls / 2, all.calls - 1}) {
-            SCOPED_TRACE(testing::Message() << "start " << start << ", after " << patience << " of " << all.calls);
+            SCOPED_TRACE(testing::Message()
+                         << "start " << start << ", after " << patience << " of " << all.calls);
             Watch watch(patience);
             const NeuralMesh mesh = reconstruct(target, with_target(1000, start), watch);
             EXPECT_EQ(mesh.report.stop_reason, StopReason::cancelled);
@@ -193,11 +196,13 @@ TEST(Reconstruct, FeatureThresholdSelectsByTheMean) {
     EXPECT_NEAR(sum / 300, all.report.mean_counter, 1e-4 * all.report.mean_counter);
 }
 
-// ---- inputs chosen to break a run ---------------------------------------------------------------------------
+// ---- inputs chosen to break a run
+// ---------------------------------------------------------------------------
 
 std::vector<std::pair<const char*, Cloud>> hostile_clouds() {
     Cloud two = shapes::sphere_cloud(1000);
-    for (std::size_t i = 0; i < two.size(); ++i) two[i] = two[i] * 0.001 + vcg::Point3d(i % 2 == 0 ? 1 : -1, 0, 0);
+    for (std::size_t i = 0; i < two.size(); ++i)
+        two[i] = two[i] * 0.001 + vcg::Point3d(i % 2 == 0 ? 1 : -1, 0, 0);
     Cloud outlier = shapes::sphere_cloud(1000);
     outlier.push_back({1e5, 0, 0});
     Cloud doubled = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
@@ -242,8 +247,12 @@ std::vector<std::pair<const char*, Settings>> hostile_settings() {
     add("collapse at every chance", [](Settings& s) { s.signals_per_collapse = 1; });
     add("both", [](Settings& s) { s.min_wins_per_split = 0, s.signals_per_collapse = 1; });
     add("split at every signal", [](Settings& s) { s.signals_per_split = 1; });
-    add("split and collapse at every signal", [](Settings& s) { s.signals_per_split = s.signals_per_collapse = 1; });
-    add("maturity beyond reach", [](Settings& s) { s.min_wins_per_split = 1000; s.signals_per_split = 1; });
+    add("split and collapse at every signal",
+        [](Settings& s) { s.signals_per_split = s.signals_per_collapse = 1; });
+    add("maturity beyond reach", [](Settings& s) {
+        s.min_wins_per_split = 1000;
+        s.signals_per_split = 1;
+    });
     add("no counter decay", [](Settings& s) { s.counter_decay = 1; });
     add("fastest counter decay", [](Settings& s) { s.counter_decay = 0.01; });
     add("the last signal alone", [](Settings& s) { s.normalization_window = 1; });

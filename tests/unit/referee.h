@@ -82,7 +82,8 @@ inline Census census(const std::vector<Triangle>& faces) {
             const VertexId b = f[(k + 1) % 3];
             const VertexId c = f[(k + 2) % 3];
             if (a == b) result.breach = "a face has a corner twice";
-            if (!directed.emplace(a, b).second) result.breach = "two faces run along an edge in one direction";
+            if (!directed.emplace(a, b).second)
+                result.breach = "two faces run along an edge in one direction";
             neighbours[a].insert(b);
             neighbours[b].insert(a);
             links[a][b].insert(c);
@@ -94,7 +95,8 @@ inline Census census(const std::vector<Triangle>& faces) {
     for (const auto& entry : neighbours) {
         ends += static_cast<int>(entry.second.size());
         result.valence[entry.first] = static_cast<int>(entry.second.size());
-        if (connected_parts(links[entry.first]) != 1) result.breach = "the faces at a vertex form no single fan";
+        if (connected_parts(links[entry.first]) != 1)
+            result.breach = "the faces at a vertex form no single fan";
     }
     for (const auto& edge : directed) {
         if (directed.count({edge.second, edge.first}) != 0) continue;

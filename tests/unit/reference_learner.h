@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The learning algorithm as one would first write it down: the winner by looking at every vertex, the counters
-// decayed one by one, the smoothing by walking over the mesh in double. Slow, and the measure for Learner.
+// The learning algorithm as one would first write it down: the winner by looking at every vertex, the
+// counters decayed one by one, the smoothing by walking over the mesh in double. Slow, and the measure for
+// Learner.
 #pragma once
 
 #include <cmath>
@@ -33,8 +34,8 @@ inline const vcg::Point3d& at(const Positions& positions, VertexId v) {
 inline VertexId winner(const Network& network, const Positions& positions, const vcg::Point3d& s) {
     VertexId best = -1;
     for (VertexId v = 0; v < network.slot_count(); ++v)
-        if (network.alive(v) && (best < 0 || (at(positions, v) - s).SquaredNorm() <
-                                                 (at(positions, best) - s).SquaredNorm()))
+        if (network.alive(v) &&
+            (best < 0 || (at(positions, v) - s).SquaredNorm() < (at(positions, best) - s).SquaredNorm()))
             best = v;
     return best;
 }
@@ -44,17 +45,20 @@ inline vcg::Point3d normal(const Network& network, const Positions& positions, V
     const Ring& ring = network.ring(v);
     vcg::Point3d sum(0, 0, 0);
     for (int i = 0; i < ring.face_count(); ++i) {
-        vcg::Point3d n = (at(positions, ring[i]) - at(positions, v)) ^ (at(positions, ring.next(i)) - at(positions, v));
+        vcg::Point3d n =
+            (at(positions, ring[i]) - at(positions, v)) ^ (at(positions, ring.next(i)) - at(positions, v));
         sum += n.Normalize();
     }
     return sum.Normalize();
 }
 
 /// One sweep over the ring of \p w, all its inner vertices at once: L_t = L - (L.n) n, n the direction of the
-/// area vector of the star. Of a star, the winner and its two neighbours along the winner's ring count where they
-/// are now, the others where they were \p before the sweeps: that matters where one of them is in the ring, too
-/// (three edges that bound no face), and in a star of three, whose face opposite the winner keeps one old corner.
-inline void sweep(const Network& network, Positions& positions, const Positions& before, VertexId w, double alpha_l) {
+/// area vector of the star. Of a star, the winner and its two neighbours along the winner's ring count where
+/// they are now, the others where they were \p before the sweeps: that matters where one of them is in the
+/// ring, too (three edges that bound no face), and in a star of three, whose face opposite the winner keeps
+/// one old corner.
+inline void sweep(const Network& network, Positions& positions, const Positions& before, VertexId w,
+                  double alpha_l) {
     const Positions now = positions;
     const Ring& winners = network.ring(w);
     for (int i = 0; i < winners.valence; ++i) {
@@ -71,7 +75,8 @@ inline void sweep(const Network& network, Positions& positions, const Positions&
             area += place(ring[j]) ^ place(ring.next(j));
         }
         if (ring.valence == 3) {
-            // Relative to the winner's old place, for a path that is not closed has an area vector of its own there.
+            // Relative to the winner's old place, for a path that is not closed has an area vector of its own
+            // there.
             const vcg::Point3d o = at(before, w);
             const vcg::Point3d a = at(now, winners.previous(i)) - o;
             const vcg::Point3d b = at(now, winners.next(i)) - o;
@@ -90,7 +95,8 @@ inline void basic_step(const Network& network, Positions& positions, VertexId w,
                        const Settings& settings) {
     const Positions before = positions;
     at(positions, w) += (s - at(positions, w)) * settings.learning_rate;
-    for (int i = 0; i < settings.smoothing_steps; ++i) sweep(network, positions, before, w, settings.smoothing_rate);
+    for (int i = 0; i < settings.smoothing_steps; ++i)
+        sweep(network, positions, before, w, settings.smoothing_rate);
 }
 
 /// Keeps a network of its own, whose connectivity Network's operations change; decides everything itself.
@@ -111,8 +117,10 @@ public:
 
         deltas_.push_back((normal(network_, positions_, w) - before).SquaredNorm() / 2);  // eq 2
         const auto window = static_cast<std::size_t>(settings_.normalization_window);
-        const auto from = deltas_.size() > window ? deltas_.end() - settings_.normalization_window : deltas_.begin();
-        const double mean = std::accumulate(from, deltas_.end(), 0.0) / static_cast<double>(deltas_.end() - from);
+        const auto from =
+            deltas_.size() > window ? deltas_.end() - settings_.normalization_window : deltas_.begin();
+        const double mean =
+            std::accumulate(from, deltas_.end(), 0.0) / static_cast<double>(deltas_.end() - from);
         const double n_delta = mean > 0 ? deltas_.back() / mean : 1;  // eq 3
         const auto i = static_cast<std::size_t>(w);
         utility[i] += settings_.utility_counter == kNormalCounter ? n_delta : 1;  // eq 4
@@ -129,7 +137,8 @@ public:
             VertexId best = -1;
             for (VertexId v = 0; v < network_.slot_count(); ++v) {
                 const auto i = static_cast<std::size_t>(v);
-                if (!network_.alive(v) || tried[i] || wins[i] < settings_.min_wins_per_split || wins[i] == 0) continue;
+                if (!network_.alive(v) || tried[i] || wins[i] < settings_.min_wins_per_split || wins[i] == 0)
+                    continue;
                 if (best < 0 || utility[i] > utility[static_cast<std::size_t>(best)]) best = v;
             }
             if (best < 0) return false;
@@ -174,7 +183,8 @@ private:
     double area(VertexId v) const {
         const Ring& ring = network_.ring(v);
         double l = 0;
-        for (int i = 0; i < ring.valence; ++i) l += (at(positions_, ring[i]) - at(positions_, v)).Norm() / ring.valence;
+        for (int i = 0; i < ring.valence; ++i)
+            l += (at(positions_, ring[i]) - at(positions_, v)).Norm() / ring.valence;
         return l * l;
     }
 
@@ -257,7 +267,8 @@ private:
                 const int excess = network_.ring(x).valence + change - 6;
                 return excess * excess;
             };
-            if (cost(v, -1) + cost(w, -1) + cost(c, 1) + cost(d, 1) >= cost(v, 0) + cost(w, 0) + cost(c, 0) + cost(d, 0))
+            if (cost(v, -1) + cost(w, -1) + cost(c, 1) + cost(d, 1) >=
+                cost(v, 0) + cost(w, 0) + cost(c, 0) + cost(d, 0))
                 continue;
             bool flat = true;
             for (const vcg::Point3d& old : {face_normal(v, w, c), face_normal(w, v, d)})

@@ -37,8 +37,8 @@ TEST(Settings, EveryRowIsCompleteAndItsIdUnique) {
         for (const char c : std::string(info.id)) EXPECT_TRUE((c >= 'a' && c <= 'z') || c == '_');
         EXPECT_GT(std::string(info.label).size(), 3U);
         EXPECT_EQ(std::string(info.help).back(), '.');
-        const int members = (info.boolean_member != nullptr ? 1 : 0) + (info.integer_member != nullptr ? 1 : 0) +
-                            (info.real_member != nullptr ? 1 : 0);
+        const int members = (info.boolean_member != nullptr ? 1 : 0) +
+                            (info.integer_member != nullptr ? 1 : 0) + (info.real_member != nullptr ? 1 : 0);
         EXPECT_EQ(members, 1);
         EXPECT_LT(info.low, info.high);
         EXPECT_EQ(info.kind == Kind::choice, !info.choices.empty());
@@ -77,8 +77,9 @@ TEST(Settings, BothEndsOfARangePassAndNothingBeyond) {
             EXPECT_THROW(settings.check(), SettingError);
         }
         if (!real) continue;
-        for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-                                 -std::numeric_limits<double>::infinity()}) {
+        for (const double bad :
+             {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+              -std::numeric_limits<double>::infinity()}) {
             Settings settings;
             info.store(settings, bad);
             EXPECT_THROW(settings.check(), SettingError);

@@ -81,11 +81,21 @@ inline Shape cube() {
 /// The unit sphere: an icosahedron, each face divided into four \p levels times. 10 x 4^levels + 2 vertices.
 inline Shape icosphere(int levels) {
     const double t = (1 + std::sqrt(5.0)) / 2;
-    Shape shape{{{-1, t, 0}, {1, t, 0}, {-1, -t, 0}, {1, -t, 0}, {0, -1, t}, {0, 1, t},
-                 {0, -1, -t}, {0, 1, -t}, {t, 0, -1}, {t, 0, 1}, {-t, 0, -1}, {-t, 0, 1}},
-                {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                 {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                 {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}}};
+    Shape shape{{{-1, t, 0},
+                 {1, t, 0},
+                 {-1, -t, 0},
+                 {1, -t, 0},
+                 {0, -1, t},
+                 {0, 1, t},
+                 {0, -1, -t},
+                 {0, 1, -t},
+                 {t, 0, -1},
+                 {t, 0, 1},
+                 {-t, 0, -1},
+                 {-t, 0, 1}},
+                {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                 {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                 {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
     for (vcg::Point3d& p : shape.positions) p.Normalize();
     for (int level = 0; level < levels; ++level) {
         std::map<std::pair<int, int>, int> middles;
@@ -110,7 +120,8 @@ inline Shape icosphere(int levels) {
     return shape;
 }
 
-/// A point of the torus around the z axis with radii 1 and \p tube, at u along and v across the tube, in turns.
+/// A point of the torus around the z axis with radii 1 and \p tube, at u along and v across the tube, in
+/// turns.
 inline vcg::Point3d torus_point(double u, double v, double tube) {
     const double r = 1 + tube * std::cos(2 * kPi * v);
     return {r * std::cos(2 * kPi * u), r * std::sin(2 * kPi * u), tube * std::sin(2 * kPi * v)};
@@ -120,8 +131,7 @@ inline vcg::Point3d torus_point(double u, double v, double tube) {
 inline Shape torus_grid(int m, int n) {
     Shape shape;
     for (int i = 0; i < m; ++i)
-        for (int j = 0; j < n; ++j)
-            shape.positions.push_back(torus_point(double(i) / m, double(j) / n, 0.4));
+        for (int j = 0; j < n; ++j) shape.positions.push_back(torus_point(double(i) / m, double(j) / n, 0.4));
     const auto id = [&](int i, int j) { return (i % m) * n + j % n; };
     for (int i = 0; i < m; ++i)
         for (int j = 0; j < n; ++j) {
@@ -202,7 +212,8 @@ inline Cloud torus_cloud(int count, double noise = 0, std::uint64_t seed = 1) {
 }
 
 /// Uniform on the surface of a box around the origin with the given edge lengths.
-inline Cloud box_cloud(int count, const vcg::Point3d& edges = {1, 1, 1}, double noise = 0, std::uint64_t seed = 1) {
+inline Cloud box_cloud(int count, const vcg::Point3d& edges = {1, 1, 1}, double noise = 0,
+                       std::uint64_t seed = 1) {
     Random random(seed);
     Cloud cloud;
     for (int i = 0; i < count; ++i) {

@@ -71,7 +71,7 @@ struct Place {
     Point3d offset;
     double scale;
 };
-const Place kPlaces[] = {{{0, 0, 0}, 1},         {{1e7, -1e7, 1e7}, 1},  {{0, 0, 0}, 1e-9},
+const Place kPlaces[] = {{{0, 0, 0}, 1},         {{1e7, -1e7, 1e7}, 1},   {{0, 0, 0}, 1e-9},
                          {{0, 0, 0}, 1e9},       {{1e9, 1e9, -1e9}, 1e9}, {{1, 1, 1}, 1e-6},
                          {{5e6, 4e5, 100}, 200}, {{0, 0, 0}, 1e100},      {{0, 0, 0}, 1e-100}};
 
@@ -83,7 +83,8 @@ Cloud placed(Cloud cloud, const Place& place) {
 TEST(TargetSpace, RefusesPointsOnALineWhereverItIs) {
     for (const Place& place : kPlaces) {
         SCOPED_TRACE(testing::Message() << place.offset[0] << " scale " << place.scale);
-        for (const Point3d& direction : {Point3d(1, 0, 0), Point3d(0, 0, 1), Point3d(1, 2, 3), Point3d(-3, 1e-3, 2)}) {
+        for (const Point3d& direction :
+             {Point3d(1, 0, 0), Point3d(0, 0, 1), Point3d(1, 2, 3), Point3d(-3, 1e-3, 2)}) {
             Random random(1);
             Cloud cloud;
             for (int i = 0; i < 500; ++i) cloud.push_back(direction * shapes::signed_unit(random));
@@ -138,7 +139,8 @@ TEST(TargetSpace, ReadsPointsAndTrianglesAsTheyAre) {
 /// Sum of (seen - expected)^2 / expected.
 double chi_square(const std::vector<int>& seen, const std::vector<double>& expected) {
     double sum = 0;
-    for (std::size_t i = 0; i < seen.size(); ++i) sum += (seen[i] - expected[i]) * (seen[i] - expected[i]) / expected[i];
+    for (std::size_t i = 0; i < seen.size(); ++i)
+        sum += (seen[i] - expected[i]) * (seen[i] - expected[i]) / expected[i];
     return sum;
 }
 
@@ -170,7 +172,8 @@ TEST(TargetSpace, DrawsFromFacesInProportionToArea) {
     for (int i = 0; i < 60; ++i) {
         const int a = 3 * i;
         const double height = i % 3 == 2 ? 0 : i + 1;
-        strip.positions.insert(strip.positions.end(), {{i + 0.0, 0, 0}, {i + 0.9, 0, 0}, {i + 0.3, height, 0}});
+        strip.positions.insert(strip.positions.end(),
+                               {{i + 0.0, 0, 0}, {i + 0.9, 0, 0}, {i + 0.3, height, 0}});
         strip.faces.push_back({a, a + 1, a + 2});
         area.push_back(height);
     }
@@ -180,7 +183,8 @@ TEST(TargetSpace, DrawsFromFacesInProportionToArea) {
     std::vector<int> seen(60, 0);
     const int n = 200000;
     Random random(2);
-    for (int i = 0; i < n; ++i) ++seen[static_cast<std::size_t>(target.frame().outside(target.sample(random))[0] + 1e-4)];
+    for (int i = 0; i < n; ++i)
+        ++seen[static_cast<std::size_t>(target.frame().outside(target.sample(random))[0] + 1e-4)];
     std::vector<int> counts;
     std::vector<double> expected;
     for (std::size_t i = 0; i < area.size(); ++i) {
@@ -204,11 +208,14 @@ TEST(TargetSpace, DrawsUniformlyWithinATriangle) {
     for (int i = 0; i < n; ++i) {
         const Point3d p = target.frame().outside(target.sample(random));
         ASSERT_NEAR(p[2], 0, 1e-6);
-        const auto cell = [&](double x) { return std::min(cells - 1, std::max(0, static_cast<int>(x * cells))); };
+        const auto cell = [&](double x) {
+            return std::min(cells - 1, std::max(0, static_cast<int>(x * cells)));
+        };
         ASSERT_TRUE(p[0] > -1e-6 && p[0] < 1 + 1e-6 && p[1] > -1e-6 && p[1] < 1 + 1e-6);
         ++seen[static_cast<std::size_t>(cell(p[0]) * cells + cell(p[1]))];
     }
-    EXPECT_LT(chi_square(seen, std::vector<double>(seen.size(), n / double(cells * cells))), limit(cells * cells - 1));
+    EXPECT_LT(chi_square(seen, std::vector<double>(seen.size(), n / double(cells * cells))),
+              limit(cells * cells - 1));
 }
 
 TEST(TargetSpace, RefusesFacesWithoutArea) {

@@ -74,7 +74,8 @@ void split_somewhere(Network& network, WinnerSearch& search, Random& random) {
     const int first = static_cast<int>(random.below(static_cast<std::uint32_t>(k)));
     const int count = k / 2 + 1;
     if (!network.can_split(v, first, count)) return;
-    search.add(network.split(v, first, count, (network.position(v) + network.position(network.ring(v)[first])) / 2));
+    search.add(
+        network.split(v, first, count, (network.position(v) + network.position(network.ring(v)[first])) / 2));
     search.keep_up();
 }
 
@@ -179,7 +180,8 @@ TEST(WinnerSearch, IsExactWhereAllVerticesCrowdTogetherButOne) {
 }
 
 TEST(WinnerSearch, IsExactOnTheFinestGridAndAcrossCellBorders) {
-    // Edges below the finest cell, strewn over the frame: rounding of a cell border is largest against a cell.
+    // Edges below the finest cell, strewn over the frame: rounding of a cell border is largest against a
+    // cell.
     Random random(7);
     Network network = in_frame(shapes::icosphere(4), 1e-7);
     const auto shift = [&] { return static_cast<float>(random.below(5)) * 0.2F - 0.4F; };
