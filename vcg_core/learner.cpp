@@ -302,13 +302,6 @@ std::int64_t Learner::signal_bound() const {
     return growth_budget() + 2 * std::int64_t{settings_.signals_per_split} * settings_.target_vertices;
 }
 
-double Learner::mean_counter() const {
-    double sum = 0;
-    for (VertexId v = 0; v < network_.slot_count(); ++v)
-        if (network_.alive(v)) sum += static_cast<double>(feature_counters_.value(v));
-    return sum / network_.vertex_count();
-}
-
 double Learner::mean_turn() const {
     // delta = 1 - cos(angle), which is angle^2 / 2 for the small angles in question.
     return kDegreesPerRadian * std::sqrt(2 * mean_delta_.mean());

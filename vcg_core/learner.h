@@ -65,10 +65,9 @@ public:
     std::int64_t signals() const { return signals_; }
     std::int64_t splits() const { return splits_; }
     std::int64_t collapses() const { return collapses_; }
-    /// Mean(n_c) of the feature counters. Close to 1 whatever the mesh, because of the normalisation of eq 3.
-    double mean_counter() const;
-    /// Mean(n_c) without that normalisation, as an angle in degrees: by how much the winner's normal turns in
-    /// one Basic Step, root of the mean square over the last C_delta signals. This is what eq 8 stops at.
+    /// Mean(n_c) without the normalisation of eq 3, which holds it close to 1 whatever the mesh; as an angle in
+    /// degrees: by how much the winner's normal turns in one Basic Step, root of the mean square over the last
+    /// C_delta signals. This is what eq 8 stops at.
     double mean_turn() const;
 
 private:

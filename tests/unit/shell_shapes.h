@@ -12,22 +12,13 @@
 #include <cstddef>
 #include <vector>
 
+#include "shapes.h"
 #include "vcg_core/random.h"
 
 namespace neuralmesh::shell_shapes {
 
-/// An indexed triangle mesh, counter-clockwise seen from outside.
-struct Shape {
-    std::vector<vcg::Point3d> positions;
-    std::vector<std::array<int, 3>> faces;
-};
-
-/// Adds the faces and vertices of \p part, moved by \p offset.
-inline void append(Shape& shape, const Shape& part, const vcg::Point3d& offset) {
-    const int first = static_cast<int>(shape.positions.size());
-    for (const vcg::Point3d& p : part.positions) shape.positions.push_back(p + offset);
-    for (const auto& [a, b, c] : part.faces) shape.faces.push_back({first + a, first + b, first + c});
-}
+using shapes::append;
+using shapes::Shape;
 
 /// A surface of revolution around z of the profile (radius, height), which runs counter-clockwise (outside to
 /// its right); closed: the last profile point joins the first (a ring), else both ends should lie on the
