@@ -4,39 +4,20 @@
 // What learning knows about features, for features.py: features IN.ply OUT VERTICES UTILITY_COUNTER SETTLING
 // learns the cloud and writes OUT.learned (the mesh as learning leaves it) and OUT.fitted (after the fit):
 // lines "v x y z eq6_counter statistic" in the coordinates of the cloud, and "f a b c", from 0.
-#include <vcg/complex/complex.h>
-#include <wrap/io_trimesh/import_ply.h>
-
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <string>
 
+#include "ply_mesh.h"
 #include "vcg_core/features.h"
 #include "vcg_core/fit.h"
 #include "vcg_core/learner.h"
-#include "vcg_core/mesh_io.h"
 #include "vcg_core/shell.h"
 
 namespace {
 
 using namespace neuralmesh;
-
-class PlyVertex;
-class PlyFace;
-struct PlyTypes : vcg::UsedTypes<vcg::Use<PlyVertex>::AsVertexType, vcg::Use<PlyFace>::AsFaceType> {};
-class PlyVertex : public vcg::Vertex<PlyTypes, vcg::vertex::Coord3d, vcg::vertex::BitFlags> {};
-class PlyFace : public vcg::Face<PlyTypes, vcg::face::VertexRef, vcg::face::BitFlags> {};
-class PlyMesh : public vcg::tri::TriMesh<std::vector<PlyVertex>, std::vector<PlyFace>> {};
-
-TargetSpace read_cloud(const char* path, const Settings& settings) {
-    PlyMesh mesh;
-    if (vcg::tri::io::ImporterPLY<PlyMesh>::Open(mesh, path) != 0)
-        throw InputError(std::string("Cannot read ") + path + " as PLY.");
-    vcg::Matrix44d identity;
-    identity.SetIdentity();
-    return target_space_of(mesh, identity, settings);
-}
 
 void write(const std::string& path, const Network& network, const Frame& frame, const Learner& learner,
            const std::vector<VertexId>& origin, const std::vector<float>& values) {
@@ -76,7 +57,7 @@ int run(char** argv) {
     settings.utility_counter = std::atoi(argv[4]);
     settings.settling_signals_per_vertex = 0;
     settings.check();
-    const TargetSpace target = read_cloud(argv[1], settings);
+    const TargetSpace target = target_of_ply(argv[1], settings);
     NoProgress progress;
     ShellOptions options;
     options.target_vertices = settings.target_vertices;

@@ -4,27 +4,17 @@
 // The core as a command, for experiments: learn IN.ply OUT.ply [parameter=value ...]
 // Reads and writes PLY through vcglib, takes every parameter of the settings table by its id, and prints
 // the report as one line of JSON.
-#include <vcg/complex/complex.h>
 #include <wrap/io_trimesh/export_ply.h>
-#include <wrap/io_trimesh/import_ply.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <string>
 
-#include "vcg_core/mesh_io.h"
+#include "ply_mesh.h"
 #include "vcg_core/reconstruct.h"
 
 namespace {
-
-class PlyVertex;
-class PlyFace;
-struct PlyTypes : vcg::UsedTypes<vcg::Use<PlyVertex>::AsVertexType, vcg::Use<PlyFace>::AsFaceType> {};
-class PlyVertex : public vcg::Vertex<PlyTypes, vcg::vertex::Coord3f, vcg::vertex::Normal3f,
-                                     vcg::vertex::Color4b, vcg::vertex::Qualityf, vcg::vertex::BitFlags> {};
-class PlyFace : public vcg::Face<PlyTypes, vcg::face::VertexRef, vcg::face::Normal3f, vcg::face::BitFlags> {};
-class PlyMesh : public vcg::tri::TriMesh<std::vector<PlyVertex>, std::vector<PlyFace>> {};
 
 void set(neuralmesh::Settings& settings, const std::string& argument) {
     const auto equals = argument.find('=');
@@ -39,18 +29,14 @@ void set(neuralmesh::Settings& settings, const std::string& argument) {
 int learn(int argc, char** argv) {
     neuralmesh::Settings settings;
     for (int i = 3; i < argc; ++i) set(settings, argv[i]);
-    PlyMesh in;
-    if (vcg::tri::io::ImporterPLY<PlyMesh>::Open(in, argv[1]) != 0)
-        throw neuralmesh::InputError(std::string("Cannot read ") + argv[1] + " as PLY.");
-    vcg::Matrix44d identity;
-    identity.SetIdentity();
-    const auto target = neuralmesh::target_space_of(in, identity, settings);
+    const auto target = neuralmesh::target_of_ply(argv[1], settings);
     neuralmesh::NoProgress progress;
     const neuralmesh::NeuralMesh result = neuralmesh::reconstruct(target, settings, progress);
-    PlyMesh out;
+    neuralmesh::PlyMesh out;
     neuralmesh::write_mesh(result, settings, out);
     using Mask = vcg::tri::io::Mask;
-    vcg::tri::io::ExporterPLY<PlyMesh>::Save(out, argv[2], Mask::IOM_VERTQUALITY | Mask::IOM_VERTCOLOR, true);
+    vcg::tri::io::ExporterPLY<neuralmesh::PlyMesh>::Save(out, argv[2],
+                                                        Mask::IOM_VERTQUALITY | Mask::IOM_VERTCOLOR, true);
     const neuralmesh::Report& r = result.report;
     for (const std::string& warning : r.warnings) std::fprintf(stderr, "%s\n", warning.c_str());
     std::printf(

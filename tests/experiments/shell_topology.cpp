@@ -5,9 +5,6 @@
 // Clouds of 20,000 and 200,000 points drawn from each surface and its bare vertices, with and without noise,
 // of the files given and of three shapes made in code. Prints a Markdown table, a row per cloud, and the
 // score per column.
-#include <vcg/complex/complex.h>
-#include <wrap/io_trimesh/import_ply.h>
-
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -15,19 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "ply_mesh.h"
 #include "tests/unit/shell_shapes.h"
 #include "vcg_core/shell.h"
 
 namespace {
 
 using namespace neuralmesh;
-
-class PlyVertex;
-class PlyFace;
-struct PlyTypes : vcg::UsedTypes<vcg::Use<PlyVertex>::AsVertexType, vcg::Use<PlyFace>::AsFaceType> {};
-class PlyVertex : public vcg::Vertex<PlyTypes, vcg::vertex::Coord3d, vcg::vertex::BitFlags> {};
-class PlyFace : public vcg::Face<PlyTypes, vcg::face::VertexRef, vcg::face::BitFlags> {};
-class PlyMesh : public vcg::tri::TriMesh<std::vector<PlyVertex>, std::vector<PlyFace>> {};
 
 struct Model {
     std::string name;
@@ -41,8 +32,7 @@ Model model_from(const std::string& argument) {
         throw InputError("'" + argument + "' is not FILE.ply:COMPONENTS:GENUS.");
     const std::string file = argument.substr(0, first);
     PlyMesh mesh;
-    if (vcg::tri::io::ImporterPLY<PlyMesh>::Open(mesh, file.c_str()) != 0)
-        throw InputError("Cannot read " + file + " as PLY.");
+    read_ply(file, mesh);
     Model model{file.substr(file.rfind('/') + 1),
                 std::atoi(argument.c_str() + first + 1),
                 std::atoi(argument.c_str() + last + 1),

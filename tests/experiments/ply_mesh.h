@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The mesh of the experiments' programs, and PLY files into it through vcglib.
+#pragma once
+
+#include <vcg/complex/complex.h>
+#include <wrap/io_trimesh/import_ply.h>
+
+#include <string>
+#include <vector>
+
+#include "vcg_core/error.h"
+#include "vcg_core/mesh_io.h"
+
+namespace neuralmesh {
+
+class PlyVertex;
+class PlyFace;
+struct PlyTypes : vcg::UsedTypes<vcg::Use<PlyVertex>::AsVertexType, vcg::Use<PlyFace>::AsFaceType> {};
+class PlyVertex : public vcg::Vertex<PlyTypes, vcg::vertex::Coord3d, vcg::vertex::Normal3d,
+                                     vcg::vertex::Color4b, vcg::vertex::Qualityf, vcg::vertex::BitFlags> {};
+class PlyFace : public vcg::Face<PlyTypes, vcg::face::VertexRef, vcg::face::Normal3d, vcg::face::BitFlags> {};
+class PlyMesh : public vcg::tri::TriMesh<std::vector<PlyVertex>, std::vector<PlyFace>> {};
+
+/// Reads the PLY file \p path into the empty \p mesh. \throws InputError if that fails
+inline void read_ply(const std::string& path, PlyMesh& mesh) {
+    if (vcg::tri::io::ImporterPLY<PlyMesh>::Open(mesh, path.c_str()) != 0)
+        throw InputError("Cannot read " + path + " as PLY.");
+}
+
+/// What is learned from the PLY file \p path. \throws InputError as read_ply and target_space_of do
+inline TargetSpace target_of_ply(const std::string& path, const Settings& settings) {
+    PlyMesh mesh;
+    read_ply(path, mesh);
+    vcg::Matrix44d identity;
+    identity.SetIdentity();
+    return target_space_of(mesh, identity, settings);
+}
+
+}  // namespace neuralmesh
