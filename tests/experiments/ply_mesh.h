@@ -18,8 +18,9 @@ namespace neuralmesh {
 class PlyVertex;
 class PlyFace;
 struct PlyTypes : vcg::UsedTypes<vcg::Use<PlyVertex>::AsVertexType, vcg::Use<PlyFace>::AsFaceType> {};
+/// The quality is double because vcglib's exporter declares it to be of the coordinates' type.
 class PlyVertex : public vcg::Vertex<PlyTypes, vcg::vertex::Coord3d, vcg::vertex::Normal3d,
-                                     vcg::vertex::Color4b, vcg::vertex::Qualityf, vcg::vertex::BitFlags> {};
+                                     vcg::vertex::Color4b, vcg::vertex::Qualityd, vcg::vertex::BitFlags> {};
 class PlyFace : public vcg::Face<PlyTypes, vcg::face::VertexRef, vcg::face::Normal3d, vcg::face::BitFlags> {};
 class PlyMesh : public vcg::tri::TriMesh<std::vector<PlyVertex>, std::vector<PlyFace>> {};
 
