@@ -53,6 +53,22 @@ std::ostringstream plain_stream() {
 /// The words of a progress text before its numbers.
 std::string stage_of(const std::string& text) { return text.substr(0, text.find_first_of("0123456789")); }
 
+std::string sentence_if_memory_allows() {
+    try {
+        throw;
+    } catch (const Error& error) {
+        return error.what();
+    } catch (const std::bad_alloc&) {
+        return "There is not enough memory for this mesh: lower target_vertices, or learn a smaller cloud.";
+    } catch (const std::exception& error) {
+        return std::string("The filter met an unexpected error and has changed nothing (") + error.what() +
+               "). Please report it with the layer and the parameters.";
+    } catch (...) {
+        return "The filter met an unknown error and has changed nothing. Please report it with the layer and "
+               "the parameters.";
+    }
+}
+
 }  // namespace
 
 const std::vector<Action>& all_actions() {
@@ -114,17 +130,9 @@ double from_host(double value) {
 
 std::string sentence_of_current_exception() {
     try {
-        throw;
-    } catch (const Error& error) {
-        return error.what();
+        return sentence_if_memory_allows();
     } catch (const std::bad_alloc&) {
-        return "There is not enough memory for this mesh: lower target_vertices, or learn a smaller cloud.";
-    } catch (const std::exception& error) {
-        return std::string("The filter met an unexpected error and has changed nothing (") + error.what() +
-               "). Please report it with the layer and the parameters.";
-    } catch (...) {
-        return "The filter met an unknown error and has changed nothing. Please report it with the layer and "
-               "the parameters.";
+        return "Out of memory.";  // short enough for a string to hold in itself
     }
 }
 

@@ -55,7 +55,8 @@ std::vector<std::string> log_lines(const Report& report);
 /// that rounds to it. So .06 is the same number in every host, be its parameters float or double.
 double from_host(double value);
 
-/// What an exception means to the user. Call it inside a catch block, for the exception being handled.
+/// What an exception means to the user. Call it inside a catch block, for the exception being handled. Throws
+/// nothing: where not even the sentence finds memory, it is a shorter one.
 std::string sentence_of_current_exception();
 
 /// The host's progress callback as the core's progress. At most ten calls a second beside those at a change

@@ -43,7 +43,12 @@ void for_chunks(std::size_t count, std::size_t size, int threads, const Body& bo
         }
     };
     std::vector<std::thread> pool;
-    for (std::size_t i = 1; i < helpers; ++i) pool.emplace_back(guarded, i);
+    pool.reserve(helpers - 1);
+    try {
+        for (std::size_t i = 1; i < helpers; ++i) pool.emplace_back(guarded, i);
+    } catch (const std::exception&) {
+        // The system has no memory or no thread left for one more: those there are do all the work.
+    }
     guarded(0);
     for (std::thread& t : pool) t.join();
     for (const std::exception_ptr& e : errors)

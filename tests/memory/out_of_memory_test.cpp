@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// No memory at any moment of a run: the caller gets the sentence about memory and finds all as it was,
+// nothing leaks, and the next run gives the bytes it always gives.
+#include <gtest/gtest.h>
+#include <vcg/complex/complex.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "allocations.h"
+#include "filter_neuralmesh/actions.h"
+#include "tests/unit/shapes.h"
+#include "vcg_core/fit_parallel.h"
+
+namespace neuralmesh {
+namespace {
+
+using allocations::Failure;
+
+class Vertex;
+class Face;
+struct Types : vcg::UsedTypes<vcg::Use<Vertex>::AsVertexType, vcg::Use<Face>::AsFaceType> {};
+class Vertex : public vcg::Vertex<Types, vcg::vertex::Coord3f, vcg::vertex::Qualityf, vcg::vertex::Color4b,
+                                  vcg::vertex::BitFlags> {};
+class Face : public vcg::Face<Types, vcg::face::VertexRef, vcg::face::BitFlags> {};
+class Mesh : public vcg::tri::TriMesh<std::vector<Vertex>, std::vector<Face>> {};
+
+void fill_with_sphere(Mesh& mesh) {
+    const shapes::Shape shape = shapes::icosphere(3);
+    auto vertex = vcg::tri::Allocator<Mesh>::AddVertices(mesh, shape.positions.size());
+    for (const vcg::Point3d& p : shape.positions) (vertex++)->P() = vcg::Point3f::Construct(p);
+    for (const auto& [a, b, c] : shape.faces)
+        vcg::tri::Allocator<Mesh>::AddFace(mesh, std::size_t(a), std::size_t(b), std::size_t(c));
+}
+
+/// The memory of a mesh's elements, byte by byte.
+std::string bytes_of(const Mesh& mesh) {
+    const auto raw = [](const auto& elements) {
+        return std::string(reinterpret_cast<const char*>(elements.data()),
+                           elements.size() * sizeof(elements[0]));
+    };
+    return raw(mesh.vert) + raw(mesh.face) + std::to_string(mesh.vn) + " " + std::to_string(mesh.fn);
+}
+
+vcg::Matrix44f identity() {
+    vcg::Matrix44f matrix;
+    matrix.SetIdentity();
+    return matrix;
+}
+
+/// What the filter does with a layer, but for the host's own part: learn it, write the result.
+/// \return the sentence, empty if all went well
+std::string filter(const Mesh& layer, const Settings& settings, Mesh& out) {
+    try {
+        const NeuralMesh result = run(layer, identity(), settings, nullptr);
+        write_mesh(result, settings, out);
+        log_lines(result.report);
+        return {};
+    } catch (...) {
+        return sentence_of_current_exception();
+    }
+}
+
+/// Small and quick, and through every part of a run.
+std::vector<Settings> variants() {
+    Settings shell;
+    shell.target_vertices = 60;
+    shell.settling_signals_per_vertex = 0;
+    shell.threads = 2;
+    shell.select_features = true;
+    Settings to_the_paper = shell;
+    to_the_paper.start_mesh = kTetrahedron;
+    to_the_paper.feature_measure = kCreaseMeasure;
+    to_the_paper.draw_from_faces = false;
+    return {shell, to_the_paper};
+}
+
+/// Steps through \p all allocations: each of the first hundred, then ever wider, some \p tries in all.
+std::vector<long long> sweep(long long all, int tries) {
+    std::vector<long long> result;
+    for (long long n = 0; n < all && n < 100; ++n) result.push_back(n);
+    for (int i = 0; i < tries; ++i) result.push_back(100 + i * (all - 100) / tries);
+    return result;
+}
+
+void expect_the_sentence_wherever_it_fails(const Settings& settings, Failure failure,
+                                           const std::string& words) {
+    Mesh layer;
+    fill_with_sphere(layer);
+    const std::string before = bytes_of(layer);
+    std::string expected;
+    long long all = 0;
+    {
+        Mesh out;
+        allocations::fail_at(-1);
+        ASSERT_EQ(filter(layer, settings, out), "");
+        all = allocations::count();
+        expected = bytes_of(out).substr(0, out.vert.size() * sizeof(Vertex));
+    }
+    ASSERT_GT(all, 200);
+    int refused = 0;
+    for (const long long nth : sweep(all, 25)) {
+        SCOPED_TRACE(testing::Message() << "allocation " << nth << " of " << all);
+        const long long living = allocations::living();
+        {
+            Mesh out;
+            allocations::fail_at(nth, failure);
+            const std::string sentence = filter(layer, settings, out);
+            allocations::fail_at(-1);
+            // A thread that could not be had is done without; all else is a refusal.
+            if (!sentence.empty()) {
+                ++refused;
+                EXPECT_NE(sentence.find(words), std::string::npos) << sentence;
+                EXPECT_EQ(sentence.back(), '.');
+            } else {
+                EXPECT_EQ(bytes_of(out).substr(0, out.vert.size() * sizeof(Vertex)), expected);
+            }
+        }
+        EXPECT_EQ(allocations::living(), living) << "blocks have leaked";
+        ASSERT_EQ(bytes_of(layer), before);
+        if (testing::Test::HasFailure()) return;
+    }
+    EXPECT_GT(refused, 100);
+    Mesh out;
+    EXPECT_EQ(filter(layer, settings, out), "");
+    EXPECT_EQ(bytes_of(out).substr(0, out.vert.size() * sizeof(Vertex)), expected);
+}
+
+TEST(OutOfMemory, OneFailedAllocationBecomesTheSentence) {
+    for (const Settings& settings : variants())
+        expect_the_sentence_wherever_it_fails(settings, Failure::once,
+                                              "There is not enough memory for this mesh");
+}
+
+TEST(OutOfMemory, NothingLeftAtAllIsStillSaid) {
+    for (const Settings& settings : variants())
+        expect_the_sentence_wherever_it_fails(settings, Failure::from_then_on, "Out of memory.");
+}
+
+TEST(OutOfMemory, ALoopDoesWithTheThreadsItCanHave) {
+    constexpr int kChunks = 50;
+    const auto loop = [] {
+        std::array<std::atomic<int>, kChunks> done{};
+        for_chunks(kChunks, 1, 4, [&](std::size_t chunk, std::size_t, std::size_t) { ++done[chunk]; });
+        return std::all_of(done.begin(), done.end(), [](const auto& times) { return times == 1; });
+    };
+    allocations::fail_at(-1);
+    EXPECT_TRUE(loop());
+    const long long all = allocations::count();
+    int carried_on = 0;
+    for (long long nth = 0; nth < all; ++nth) {
+        SCOPED_TRACE(nth);
+        bool whole = false;
+        bool refused = false;
+        allocations::fail_at(nth);
+        try {
+            whole = loop();
+        } catch (const std::bad_alloc&) {
+            refused = true;
+        }
+        allocations::fail_at(-1);
+        EXPECT_NE(whole, refused);
+        carried_on += whole ? 1 : 0;
+    }
+    EXPECT_GE(carried_on, 3);
+}
+
+}  // namespace
+}  // namespace neuralmesh

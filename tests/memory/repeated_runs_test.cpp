@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Many runs in one process: no block is left behind, the process does not grow, and runs at the same time in
+// two threads give the bytes they give alone.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "allocations.h"
+#include "tests/unit/soundness.h"
+
+namespace neuralmesh {
+namespace {
+
+/// The same mesh gives the same text, another one most likely another.
+std::string bytes_of(const NeuralMesh& mesh) {
+    const auto raw = [](const auto& numbers) {
+        return std::string(reinterpret_cast<const char*>(numbers.data()),
+                           numbers.size() * sizeof(numbers[0]));
+    };
+    return raw(mesh.positions) + raw(mesh.faces) + raw(mesh.counters) + raw(mesh.features) +
+           std::to_string(mesh.report.signals) + " " + std::to_string(mesh.report.rms_error);
+}
+
+std::string learn(const shapes::Cloud& cloud, const Settings& settings) {
+    NoProgress progress;
+    return bytes_of(reconstruct(soundness::target_of(cloud), settings, progress));
+}
+
+/// Pages of this process that lie in memory now, in bytes.
+long long resident_bytes() {
+    long long size = 0;
+    long long resident = 0;
+    std::ifstream("/proc/self/statm") >> size >> resident;
+    return resident * sysconf(_SC_PAGESIZE);
+}
+
+TEST(RepeatedRuns, HundredRunsLeaveNothingBehind) {
+    const shapes::Cloud cloud = shapes::torus_cloud(500);
+    Settings settings;
+    settings.target_vertices = 100;
+    settings.settling_signals_per_vertex = 0;
+    long long before = 0;
+    long long living = 0;
+    constexpr int kWarmUp = 20;
+    for (int i = 0; i < kWarmUp + 100; ++i) {
+        if (i == kWarmUp) {
+            before = resident_bytes();
+            living = allocations::living();
+        }
+        settings.start_mesh = i % 4 == 0 ? kShell : kTetrahedron;
+        settings.random_seed = i;
+        learn(cloud, settings);
+    }
+    EXPECT_EQ(allocations::living(), living);
+    const long long grown = resident_bytes() - before;
+    RecordProperty("grown_bytes", std::to_string(grown));
+    // What the C library's heap may keep for itself; a leak of one mesh a run would be as much as this.
+    EXPECT_LT(grown, 1 << 20) << "bytes in 100 runs";
+}
+
+TEST(RepeatedRuns, TwoAtOnceGiveTheBytesOfOneAlone) {
+    const shapes::Cloud clouds[] = {shapes::sphere_cloud(3000, 0.02), shapes::torus_cloud(3000)};
+    Settings settings[2];
+    settings[0].target_vertices = 300;
+    settings[1].target_vertices = 400;
+    settings[1].start_mesh = kTetrahedron;
+    settings[1].feature_measure = kCreaseMeasure;
+    const std::string alone[] = {learn(clouds[0], settings[0]), learn(clouds[1], settings[1])};
+    ASSERT_NE(alone[0], alone[1]);
+    for (int round = 0; round < 3; ++round) {
+        std::string together[2];
+        std::thread other([&] { together[0] = learn(clouds[0], settings[0]); });
+        together[1] = learn(clouds[1], settings[1]);
+        other.join();
+        EXPECT_TRUE(together[0] == alone[0]);
+        EXPECT_TRUE(together[1] == alone[1]);
+    }
+}
+
+}  // namespace
+}  // namespace neuralmesh
