@@ -62,14 +62,25 @@ inline void transpose(const Four* p, float* x, float* y, float* z) {
 
 }  // namespace neuralmesh
 
-// A function so marked exists twice and the machine's best is chosen at load time; one inside
-// NEURALMESH_HAS_AVX2 asks the machine itself. No fused multiply-add (-ffp-contract=off), so all give the
-// same bits. Sanitizers instrument the choice at load time and crash in it.
-#if defined(__x86_64__) && defined(__ELF__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__) && !defined(NEURALMESH_ONE_INSTRUCTION_SET)
-#define NEURALMESH_MULTIVERSIONED __attribute__((target_clones("avx2", "default")))
+// A function marked NEURALMESH_MULTIVERSIONED exists twice and the machine's best is chosen at load time; one
+// inside NEURALMESH_HAS_AVX2 asks the machine itself. No fused multiply-add (-ffp-contract=off), so all give
+// the same bits. Sanitizers instrument the choice at load time and crash in it.
+// NEURALMESH_ONE_INSTRUCTION_SET makes the same instructions run on every machine, to count them.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define NEURALMESH_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+#define NEURALMESH_SANITIZED
+#endif
+#endif
+
+#if defined(__x86_64__) && defined(__ELF__) && !defined(NEURALMESH_ONE_INSTRUCTION_SET)
 #define NEURALMESH_HAS_AVX2
 #include <immintrin.h>
+#endif
+
+#if defined(NEURALMESH_HAS_AVX2) && !defined(NEURALMESH_SANITIZED)
+#define NEURALMESH_MULTIVERSIONED __attribute__((target_clones("avx2", "default")))
 #else
 #define NEURALMESH_MULTIVERSIONED
 #endif

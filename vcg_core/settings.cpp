@@ -52,6 +52,13 @@ SettingInfo advanced(SettingInfo info) {
 
 constexpr double kLargestInt = std::numeric_limits<int>::max();
 
+/// What no int can hold becomes the lowest one, which no row allows.
+int nearest_int(double value) {
+    const double rounded = std::round(value);
+    constexpr int lowest = std::numeric_limits<int>::min();
+    return rounded > lowest && rounded <= kLargestInt ? static_cast<int>(rounded) : lowest;
+}
+
 std::vector<SettingInfo> common_rows() {
     using S = Settings;
     return {
@@ -152,7 +159,7 @@ void SettingInfo::store(Settings& settings, double value) const {
     if (boolean_member != nullptr) {
         settings.*boolean_member = value != 0;
     } else if (integer_member != nullptr) {
-        settings.*integer_member = static_cast<int>(std::lround(value));
+        settings.*integer_member = nearest_int(value);
     } else {
         settings.*real_member = value;
     }

@@ -87,6 +87,20 @@ TEST(Settings, BothEndsOfARangePassAndNothingBeyond) {
     }
 }
 
+TEST(Settings, AnIntegerNoIntCanHoldIsRefusedNotWrapped) {
+    const double two_to_32 = 4294967296.0;
+    for (const SettingInfo& info : setting_table()) {
+        SCOPED_TRACE(info.id);
+        if (info.integer_member == nullptr) continue;
+        for (const double beyond : {info.low + two_to_32, info.high + two_to_32, -two_to_32, 1e300, -1e300,
+                                    std::numeric_limits<double>::quiet_NaN()}) {
+            Settings settings;
+            info.store(settings, beyond);
+            EXPECT_THROW(settings.check(), SettingError) << beyond;
+        }
+    }
+}
+
 TEST(Settings, TheMessageNamesParameterValueAndRange) {
     Settings settings;
     settings.signals_per_split = 0;

@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""Runs the fuzz targets of build/fuzz in turn, from the kept corpus, and says what they found.
+
+    cmake --preset fuzz && cmake --build --preset fuzz --target fuzz_network fuzz_settings fuzz_cloud
+    tests/fuzz/fuzz.py --minutes 60
+
+What reaches new code is kept in build/fuzz/inputs/TARGET from one run to the next, inputs that break a promise in
+build/fuzz/findings. Such an input, as a line of corpus/TARGET.txt, is a test from then on (--hex FILE prints it).
+"""
+
+import argparse
+import hashlib
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+BUILD = HERE.parents[1] / "build" / "fuzz"
+TARGETS = ("network", "settings", "cloud")
+LONGEST = {"network": 1200, "settings": 120, "cloud": 1600}
+MINUTES_PER_TURN = 5
+
+
+def unpack(target):
+    """The kept inputs as the files that libFuzzer starts from."""
+    folder = BUILD / "inputs" / target
+    folder.mkdir(parents=True, exist_ok=True)
+    for line in (HERE / "corpus" / f"{target}.txt").read_text().splitlines():
+        if not line.startswith("#"):
+            data = bytes.fromhex(line)
+            (folder / hashlib.sha1(data).hexdigest()).write_bytes(data)
+    return folder
+
+
+def fuzz(target, minutes):
+    """One turn; returns the number of executions and whether a promise was broken."""
+    findings = BUILD / "findings"
+    findings.mkdir(exist_ok=True)
+    done = subprocess.run(
+        [BUILD / "tests" / f"fuzz_{target}", f"-max_total_time={round(60 * minutes)}", f"-max_len={LONGEST[target]}",
+         "-len_control=0", "-timeout=60", "-rss_limit_mb=3000", f"-artifact_prefix={findings}/{target}-",
+         "-print_final_stats=1", unpack(target)],
+        stderr=subprocess.PIPE, text=True, errors="replace", check=False)
+    executions = re.findall(r"number_of_executed_units: (\d+)", done.stderr)
+    if done.returncode != 0:
+        print("\n".join(line for line in done.stderr.splitlines() if not line.startswith("#"))[-6000:], flush=True)
+    return int(executions[-1]) if executions else 0, done.returncode != 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--minutes", type=float, default=60, help="in all; each target gets its share")
+    parser.add_argument("--targets", nargs="+", choices=TARGETS, default=TARGETS)
+    parser.add_argument("--hex", metavar="FILE", type=Path, help="print an input as a line of the corpus, and end")
+    options = parser.parse_args()
+    if options.hex:
+        print(options.hex.read_bytes().hex())
+        return 0
+    totals = {target: [0, 0.0, 0] for target in options.targets}
+    left = options.minutes
+    while left > 0:
+        turn = min(MINUTES_PER_TURN, left / len(options.targets))
+        for target in options.targets:
+            executions, broken = fuzz(target, turn)
+            totals[target][0] += executions
+            totals[target][1] += turn
+            totals[target][2] += broken
+            print(f"{target}: {executions} executions in {turn:.1f} minutes{', A FINDING' if broken else ''}",
+                  flush=True)
+        left -= turn * len(options.targets)
+    for target, (executions, minutes, broken) in totals.items():
+        print(f"{target}: {executions} executions, {minutes:.0f} minutes, {broken} findings")
+    return 1 if any(broken for _, _, broken in totals.values()) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Any sequence of splits, collapses and flips, asked for with any arguments: an operation either keeps the
+// manifold and its topology or is refused and changes nothing; can_...() foretells which.
+#include "vcg_core/network.h"
+
+#include "bytes.h"
+#include "tests/unit/referee.h"
+#include "tests/unit/shapes.h"
+
+namespace {
+
+using namespace neuralmesh;
+using fuzz::Bytes;
+using fuzz::expect;
+using fuzz::fail;
+
+constexpr int kMostVertices = 120;
+
+shapes::Shape start_of(int choice) {
+    switch (choice) {
+        case 0: return shapes::tetrahedron();
+        case 1: return shapes::bipyramid(3);
+        case 2: return shapes::bipyramid(Ring::kMaxValence);
+        case 3: return shapes::fan(1);
+        case 4: return shapes::fan(Ring::kMaxValence - 1);
+        case 5: return shapes::grid(4, 5);
+        case 6: return shapes::tube(3, 3);
+        case 7: return shapes::torus_grid(3, 3);
+        case 8: return shapes::icosphere(1);
+        default: break;
+    }
+    shapes::Shape two = shapes::cube();
+    shapes::append(two, shapes::grid(3, 3), {3, 0, 0});
+    return two;
+}
+
+/// Calls \p operation, which \p allowed says will succeed; it must do as foretold.
+template <class Operation>
+void attempt(Network& network, bool allowed, const Operation& operation) {
+    const auto before = network.faces();
+    try {
+        operation();
+        expect(allowed, "an operation succeeded that was foretold to be refused");
+    } catch (const TopologyError& error) {
+        fuzz::expect_sentence(error.what());
+        expect(!allowed, "an operation was refused that was foretold to succeed");
+        expect(network.faces() == before, "a refused operation changed the network");
+    }
+}
+
+void operate(Network& network, Bytes& bytes) {
+    const int kind = bytes.below(8);
+    // Free slots may be asked for, too: they must be refused like all else.
+    const VertexId v = bytes.below(network.slot_count());
+    const Ring ring = network.ring(v);
+    const int choice = bytes.byte();
+    const VertexId neighbour = ring.valence > 0 ? ring[choice % ring.valence] : choice % network.slot_count();
+    if (kind <= 2) {
+        const int count = bytes.below(20) - 1;
+        const int first = choice % 20 - 1;
+        const bool allowed = network.can_split(v, first, count);
+        if (network.vertex_count() < kMostVertices)
+            attempt(network, allowed, [&] { network.split(v, first, count, {0.5F, 0.25F, 0.125F}); });
+    } else if (kind <= 4) {
+        attempt(network, network.can_collapse(v, neighbour), [&] { network.collapse(v, neighbour); });
+    } else if (kind <= 5) {
+        attempt(network, network.can_flip(v, neighbour), [&] { network.flip(v, neighbour); });
+    } else if (kind == 6) {
+        const VertexId stranger = choice % network.slot_count();
+        attempt(network, network.can_collapse(v, stranger), [&] { network.collapse(v, stranger); });
+    } else {
+        network.compact();
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    Bytes bytes(data, size);
+    Network network = referee::network_of(start_of(bytes.below(10)));
+    const referee::Census topology = referee::census(network.faces());
+    while (bytes.left() > 0) {
+        operate(network, bytes);
+        const std::string breach = network.validate();
+        if (!breach.empty()) fail(breach);
+    }
+    const referee::Census census = referee::census(network.faces());
+    if (!census.breach.empty()) fail("the referee says: " + census.breach);
+    expect(census.same_topology(topology), "the topology has changed");
+    expect(network.euler_characteristic() == topology.euler(), "the Euler characteristic is miscounted");
+    expect(network.component_count() == topology.components, "the components are miscounted");
+    expect(network.boundary_loop_count() == topology.loops, "the boundary loops are miscounted");
+    return 0;
+}

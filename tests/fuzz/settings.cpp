@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Any values for all parameters: check() throws SettingError, or the learning ends as it promises, at the
+// target, within signal_bound(), or when it is told to.
+#include "vcg_core/settings.h"
+
+#include <cmath>
+
+#include "bytes.h"
+#include "tests/unit/shapes.h"
+#include "vcg_core/learner.h"
+
+namespace {
+
+using namespace neuralmesh;
+using fuzz::Bytes;
+using fuzz::expect;
+
+constexpr int kMostReports = 12;  ///< a thousand signals each; then the run is told to stop
+/// Vertices are allocated ahead, so the run itself is kept from asking for gigabytes.
+constexpr int kMostVertices = 20000;
+constexpr int kLargestWindow = 5000;
+
+double value_for(const SettingInfo& info, Bytes& bytes) {
+    switch (bytes.below(8)) {
+        case 0: return bytes.raw<double>();
+        case 1: return info.low;
+        case 2: return info.high;
+        case 3:
+            return bytes.flag() ? std::nextafter(info.low, -HUGE_VAL) : std::nextafter(info.high, HUGE_VAL);
+        case 4: return bytes.raw<std::int32_t>();
+        case 5: return info.low + (info.high - info.low) * bytes.byte() / 255;
+        default: return info.low + bytes.byte();
+    }
+}
+
+/// True if \p value is one the table allows for \p info; what is stored is rounded first where it is whole.
+bool in_range(const SettingInfo& info, double value) {
+    if (info.kind == SettingInfo::Kind::boolean) return true;
+    const double stored = info.kind == SettingInfo::Kind::real ? value : std::round(value);
+    return stored >= info.low && stored <= info.high;
+}
+
+Settings settings_of(Bytes& bytes, bool& sound) {
+    Settings settings;
+    settings.target_vertices = 20;
+    settings.signals_per_split = 10;
+    settings.min_wins_per_split = 3;
+    settings.normalization_window = 100;
+    settings.settling_signals_per_vertex = 0;
+    while (bytes.left() > 0) {
+        const SettingInfo& info =
+            setting_table()[static_cast<std::size_t>(bytes.below(static_cast<int>(setting_table().size())))];
+        const double value = value_for(info, bytes);
+        info.store(settings, value);
+        // A bad value is not mended by a later good one, so that the verdict below is simple.
+        if (in_range(info, value)) continue;
+        sound = false;
+        break;
+    }
+    return settings;
+}
+
+class Impatient : public Progress {
+public:
+    bool operator()(double fraction, const char* text) override {
+        expect(fraction >= 0 && fraction <= 1 && text != nullptr, "progress is no fraction");
+        expect(!stopped, "progress was asked again after it had said stop");
+        stopped = ++reports_ >= kMostReports;
+        return !stopped;
+    }
+    bool stopped = false;
+
+private:
+    int reports_ = 0;
+};
+
+void run(const Settings& settings) {
+    static const TargetSpace target = [] {
+        const shapes::Cloud cloud = shapes::sphere_cloud(300, 0.02);
+        return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+    }();
+    constexpr float a = 0.1F;
+    Learner learner(target, settings,
+                    Network({{a, a, a}, {-a, -a, a}, {-a, a, -a}, {a, -a, -a}},
+                            {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}));
+    Impatient progress;
+    const StopReason reason = learner.run(0, progress);
+    const Network& network = learner.network();
+    const std::string breach = network.validate();
+    if (!breach.empty()) fuzz::fail(breach);
+    expect((reason == StopReason::cancelled) == progress.stopped, "stopped for another reason than told");
+    expect(reason != StopReason::target_reached || network.vertex_count() == settings.target_vertices,
+           "another number of vertices than asked for");
+    expect(reason != StopReason::converged || settings.stop_below_mean_counter > 0, "converged to nothing");
+    expect(network.vertex_count() <= settings.target_vertices, "more vertices than asked for");
+    const std::int64_t settling = settings.settling_signals_per_vertex == 0 ? 0 : 60000;
+    expect(learner.signals() <=
+               learner.signal_bound() + settling +
+                   std::int64_t{settings.settling_signals_per_vertex} * settings.target_vertices,
+           "more signals than the bound");
+    for (VertexId v = 0; v < network.slot_count(); ++v)
+        expect(!network.alive(v) || learner.feature_counters().value(v) >= 0, "a counter is below 0 or NaN");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    Bytes bytes(data, size);
+    bool sound = true;
+    Settings settings = settings_of(bytes, sound);
+    try {
+        settings.check();
+        expect(sound, "check() let a value pass that is out of its range");
+    } catch (const SettingError& error) {
+        fuzz::expect_sentence(error.what());
+        expect(!sound, "check() refused values that are all in their ranges");
+        return 0;
+    }
+    settings.target_vertices = std::min(settings.target_vertices, kMostVertices);
+    settings.normalization_window = std::min(settings.normalization_window, kLargestWindow);
+    run(settings);
+    return 0;
+}
