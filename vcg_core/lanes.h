@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Four floats at once, and functions compiled for more than one instruction set. GCC's and clang's vector
-// extensions, so that the code says what happens and not which instruction does it.
+// Four and eight floats at once, and functions compiled for more than one instruction set. GCC's and clang's
+// vector extensions, so that the code says what happens and not which instruction does it.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -16,6 +17,15 @@ namespace neuralmesh {
 
 using Four = float __attribute__((vector_size(16)));
 using FourInts = std::int32_t __attribute__((vector_size(16)));
+using Eight = float __attribute__((vector_size(32), aligned(32)));
+using EightInts = std::int32_t __attribute__((vector_size(32), aligned(32)));
+
+/// 16 aligned bytes as they are.
+inline Four load_raw(const void* from) {
+    Four v;
+    std::memcpy(&v, __builtin_assume_aligned(from, 16), sizeof v);
+    return v;
+}
 
 /// x, y and z of 16 aligned bytes whose last word is no float; 0 in its place.
 inline Four load_xyz(const void* from) {
@@ -25,6 +35,16 @@ inline Four load_xyz(const void* from) {
     Four v;
     std::memcpy(&v, &bits, sizeof v);
     return v;
+}
+
+/// Stores x, y and z there; the last word keeps what it holds.
+inline void store_xyz(void* to, Four v) {
+    FourInts bits;
+    FourInts old;
+    std::memcpy(&bits, &v, sizeof bits);
+    std::memcpy(&old, __builtin_assume_aligned(to, 16), sizeof old);
+    bits = (bits & FourInts{-1, -1, -1, 0}) | (old & FourInts{0, 0, 0, -1});
+    std::memcpy(__builtin_assume_aligned(to, 16), &bits, sizeof bits);
 }
 
 /// Bit i is set where word i of four equals v.
@@ -39,33 +59,105 @@ inline unsigned equal_mask(const std::int32_t* words, std::int32_t v) {
 #endif
 }
 
-inline Four cross(Four a, Four b) {
-    const Four a_yzx = __builtin_shufflevector(a, a, 1, 2, 0, 3);
-    const Four b_yzx = __builtin_shufflevector(b, b, 1, 2, 0, 3);
-    const Four c = a * b_yzx - a_yzx * b;  // z, x, y of the product
-    return __builtin_shufflevector(c, c, 1, 2, 0, 3);
+/// Eight points or vectors side by side.
+struct alignas(32) EightVectors {
+    Eight x, y, z;
+};
+
+// What follows is inlined into functions compiled for several instruction sets, so that no vector of eight
+// is ever handed over in registers that one of them does not have.
+
+[[gnu::always_inline]] inline void add(EightVectors& a, const EightVectors& b) {
+    a.x += b.x;
+    a.y += b.y;
+    a.z += b.z;
 }
 
-/// Four points into the x, y and z of four lanes.
-inline void transpose(const Four* p, float* x, float* y, float* z) {
-    const Four low01 = __builtin_shufflevector(p[0], p[1], 0, 4, 1, 5);
-    const Four low23 = __builtin_shufflevector(p[2], p[3], 0, 4, 1, 5);
-    const Four high01 = __builtin_shufflevector(p[0], p[1], 2, 6, 3, 7);
-    const Four high23 = __builtin_shufflevector(p[2], p[3], 2, 6, 3, 7);
-    const Four px = __builtin_shufflevector(low01, low23, 0, 1, 4, 5);
-    const Four py = __builtin_shufflevector(low01, low23, 2, 3, 6, 7);
-    const Four pz = __builtin_shufflevector(high01, high23, 0, 1, 4, 5);
-    std::memcpy(x, &px, sizeof px);
-    std::memcpy(y, &py, sizeof py);
-    std::memcpy(z, &pz, sizeof pz);
+[[gnu::always_inline]] inline void subtract(EightVectors& a, const EightVectors& b) {
+    a.x -= b.x;
+    a.y -= b.y;
+    a.z -= b.z;
+}
+
+/// sum += a x b.
+[[gnu::always_inline]] inline void add_cross(EightVectors& sum, const EightVectors& a,
+                                             const EightVectors& b) {
+    sum.x += a.y * b.z - a.z * b.y;
+    sum.y += a.z * b.x - a.x * b.z;
+    sum.z += a.x * b.y - a.y * b.x;
+}
+
+/// v where mask is -1, 0 where it is 0.
+[[gnu::always_inline]] inline void keep_where(const EightInts& mask, Eight& v) {
+    EightInts bits;
+    std::memcpy(&bits, &v, sizeof bits);
+    bits &= mask;
+    std::memcpy(&v, &bits, sizeof v);
+}
+
+[[gnu::always_inline]] inline void keep_where(const EightInts& mask, EightVectors& v) {
+    keep_where(mask, v.x);
+    keep_where(mask, v.y);
+    keep_where(mask, v.z);
+}
+
+/// v = a where mask is -1, b where it is 0.
+[[gnu::always_inline]] inline void choose(const EightInts& mask, const EightVectors& a, const EightVectors& b,
+                                          EightVectors& v) {
+    v.x = mask ? a.x : b.x;
+    v.y = mask ? a.y : b.y;
+    v.z = mask ? a.z : b.z;
+}
+
+/// The square root of every lane: a loop that compiles to one instruction.
+[[gnu::always_inline]] inline void square_root(Eight& v) {
+    float lanes[8];
+    std::memcpy(lanes, &v, sizeof lanes);
+    for (float& lane : lanes) lane = std::sqrt(lane);
+    std::memcpy(&v, lanes, sizeof v);
+}
+
+/// x, y, z of eight points of one word each, side by side; the points' last words are dropped.
+[[gnu::always_inline]] inline void transpose(const Four* p, EightVectors& v) {
+    const auto pair = [](const Four& low, const Four& high, Eight& both) {
+        both = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+    };
+    Eight a, b, c, d;
+    pair(p[0], p[4], a);
+    pair(p[1], p[5], b);
+    pair(p[2], p[6], c);
+    pair(p[3], p[7], d);
+    const Eight xy01 = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+    const Eight xy23 = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
+    const Eight z01 = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+    const Eight z23 = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+    v.x = __builtin_shufflevector(xy01, xy23, 0, 1, 8, 9, 4, 5, 12, 13);
+    v.y = __builtin_shufflevector(xy01, xy23, 2, 3, 10, 11, 6, 7, 14, 15);
+    v.z = __builtin_shufflevector(z01, z23, 0, 1, 8, 9, 4, 5, 12, 13);
+}
+
+/// The way back: to[i] gets x, y, z of lane i, and 0.
+[[gnu::always_inline]] inline void transpose(const EightVectors& v, Four* to) {
+    const Eight zero = {0, 0, 0, 0, 0, 0, 0, 0};
+    const Eight xy_low = __builtin_shufflevector(v.x, v.y, 0, 8, 1, 9, 4, 12, 5, 13);
+    const Eight xy_high = __builtin_shufflevector(v.x, v.y, 2, 10, 3, 11, 6, 14, 7, 15);
+    const Eight z_low = __builtin_shufflevector(v.z, zero, 0, 8, 1, 9, 4, 12, 5, 13);
+    const Eight z_high = __builtin_shufflevector(v.z, zero, 2, 10, 3, 11, 6, 14, 7, 15);
+    to[0] = __builtin_shufflevector(xy_low, z_low, 0, 1, 8, 9);
+    to[1] = __builtin_shufflevector(xy_low, z_low, 2, 3, 10, 11);
+    to[2] = __builtin_shufflevector(xy_high, z_high, 0, 1, 8, 9);
+    to[3] = __builtin_shufflevector(xy_high, z_high, 2, 3, 10, 11);
+    to[4] = __builtin_shufflevector(xy_low, z_low, 4, 5, 12, 13);
+    to[5] = __builtin_shufflevector(xy_low, z_low, 6, 7, 14, 15);
+    to[6] = __builtin_shufflevector(xy_high, z_high, 4, 5, 12, 13);
+    to[7] = __builtin_shufflevector(xy_high, z_high, 6, 7, 14, 15);
 }
 
 }  // namespace neuralmesh
 
-// A function marked NEURALMESH_MULTIVERSIONED exists twice and the machine's best is chosen at load time; one
-// inside NEURALMESH_HAS_AVX2 asks the machine itself. No fused multiply-add (-ffp-contract=off), so all give
-// the same bits. Sanitizers instrument the choice at load time and crash in it.
-// NEURALMESH_ONE_INSTRUCTION_SET makes the same instructions run on every machine, to count them.
+// A function so marked exists twice and the machine's best is chosen at load time. No fused multiply-add
+// (-ffp-contract=off), so both give the same bits. Sanitizers instrument the choice at load time and crash in
+// it. NEURALMESH_ONE_INSTRUCTION_SET makes the same instructions run on every machine, to count them.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define NEURALMESH_SANITIZED
 #elif defined(__has_feature)
@@ -74,12 +166,8 @@ inline void transpose(const Four* p, float* x, float* y, float* z) {
 #endif
 #endif
 
-#if defined(__x86_64__) && defined(__ELF__) && !defined(NEURALMESH_ONE_INSTRUCTION_SET)
-#define NEURALMESH_HAS_AVX2
-#include <immintrin.h>
-#endif
-
-#if defined(NEURALMESH_HAS_AVX2) && !defined(NEURALMESH_SANITIZED)
+#if defined(__x86_64__) && defined(__ELF__) && !defined(NEURALMESH_ONE_INSTRUCTION_SET) && \
+    !defined(NEURALMESH_SANITIZED)
 #define NEURALMESH_MULTIVERSIONED __attribute__((target_clones("avx2", "default")))
 #else
 #define NEURALMESH_MULTIVERSIONED

@@ -14,11 +14,6 @@ namespace neuralmesh {
 
 namespace {
 
-/// delta of eq 2, 1 - n.n', written so that it keeps its digits where the normals are nearly equal.
-double normal_variation(const vcg::Point3f& n, const vcg::Point3f& n_after) {
-    return 0.5 * static_cast<double>((n_after - n).SquaredNorm());
-}
-
 /// F_v = (l_v)^2 with l_v the mean length of the edges at v (eq 5).
 double voronoi_area(const Network& network, VertexId v) {
     const Ring& ring = network.ring(v);
@@ -32,8 +27,8 @@ double voronoi_area(const Network& network, VertexId v) {
 /// Cosine between the faces before and after a flip: above it the flip is one in the surface, not of it.
 constexpr float kFlatEnough = 0.95F;
 constexpr int kSplitCandidates = 32;  ///< tried before a split is put off
-constexpr std::size_t kDrawnAhead = 256;
 constexpr std::int64_t kLeastSettling = 60000;
+constexpr int kMostAtOnce = 2048;   ///< a batch that stays in the cache
 constexpr int kReportEvery = 1000;  ///< signals between two looks at the progress and at the stop criteria
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
@@ -47,6 +42,7 @@ Learner::Learner(const TargetSpace& target, const Settings& settings, Network st
       utility_counters_(settings.counter_decay, settings.min_wins_per_split),
       feature_counters_(settings.feature_decay),
       mean_delta_(settings.normalization_window),
+      steps_(settings.threads),
       random_(static_cast<std::uint64_t>(settings.random_seed)),
       last_active_(static_cast<std::size_t>(network_.slot_count()), 0),
       vertices_at_collapse_(network_.vertex_count()) {
@@ -65,13 +61,17 @@ StopReason Learner::run(int per_vertex, Progress& progress) {
     const std::int64_t budget = signals_ + growth_budget();
     const std::int64_t bound = signals_ + signal_bound();
     while (network_.vertex_count() < settings_.target_vertices) {
-        basic_step(next_signal());
-        if (signals_ % settings_.signals_per_split == 0) vertex_split();
+        const int count = batch_size();
+        basic_steps(draw(count), count);
+        for (int i = 0; i < count; ++i) {
+            learn_counters(i);
+            if (signals_ % settings_.signals_per_split == 0) vertex_split();
+        }
         if (due_for_collapse()) half_edge_collapse();
 
-        if (signals_ == budget) force_growth();
+        if (!forced_ && signals_ >= budget) force_growth();
         if (signals_ >= bound) return StopReason::cut_short;
-        if (signals_ % kReportEvery != 0) continue;
+        if (!due_for_report()) continue;
         if (!report("Learning", progress)) return StopReason::cancelled;
         if (mean_turn() < settings_.stop_below_mean_counter) return StopReason::converged;  // eq 8
     }
@@ -86,31 +86,31 @@ bool Learner::report(const char* doing, Progress& progress) const {
     return progress(static_cast<double>(network_.vertex_count()) / settings_.target_vertices, text);
 }
 
-void Learner::basic_step(const vcg::Point3f& s) {
-    const VertexId w = search_.winner(s);
-    patch_.gather(network_, w);
-    const vcg::Point3f n = patch_.normal();
-    patch_.move_winner(s, static_cast<float>(settings_.learning_rate));
-    patch_.smooth(settings_.smoothing_steps, static_cast<float>(settings_.smoothing_rate));
-    learn_counters(w, normal_variation(n, patch_.normal()));
-
-    search_.move(w, patch_.winner_position());
-    for (int i = 0; i < patch_.valence(); ++i) search_.move(patch_.neighbour(i), patch_.position(i));
-    last_active_[static_cast<std::size_t>(w)] = ++signals_;
+bool Learner::due_for_report() {
+    if (signals_ - last_report_ < kReportEvery) return false;
+    last_report_ = signals_;
+    return true;
 }
 
-const vcg::Point3f& Learner::next_signal() {
-    if (next_drawn_ == drawn_.size()) {
-        drawn_.resize(kDrawnAhead);
-        for (vcg::Point3f& s : drawn_) s = target_.sample(random_);
-        next_drawn_ = 0;
-    }
-    // Two signals ahead: late enough to stay in the cache, early enough to arrive.
-    if (next_drawn_ + 2 < drawn_.size()) search_.prefetch(drawn_[next_drawn_ + 2]);
-    return drawn_[next_drawn_++];
+int Learner::batch_size() const {
+    return to_the_letter() ? 1 : std::clamp(network_.vertex_count() / kVerticesPerSignal, 1, kMostAtOnce);
 }
 
-void Learner::learn_counters(VertexId w, double delta) {
+const vcg::Point3f* Learner::draw(int count) {
+    drawn_.resize(static_cast<std::size_t>(count));
+    for (vcg::Point3f& s : drawn_) s = target_.sample(random_);
+    return drawn_.data();
+}
+
+void Learner::basic_steps(const vcg::Point3f* signals, int count) {
+    const StepRates rates{static_cast<float>(settings_.learning_rate),
+                          static_cast<float>(settings_.smoothing_rate), settings_.smoothing_steps};
+    steps_.take(signals, count, rates, network_, search_);
+}
+
+void Learner::learn_counters(int i) {
+    const VertexId w = steps_.winner(i);
+    const double delta = steps_.delta(i);  // eq 2
     mean_delta_.add(delta);
     const double m_delta = mean_delta_.mean();
     // A mesh that has not turned at all (a plane learned by a plane) has no mean to compare with: all are
@@ -118,9 +118,11 @@ void Learner::learn_counters(VertexId w, double delta) {
     const double n_delta = m_delta > 0 ? delta / m_delta : 1;  // eq 3
     utility_counters_.win(w, settings_.utility_counter == kNormalCounter ? n_delta : 1);
     feature_counters_.win(w, n_delta);
+    last_active_[static_cast<std::size_t>(w)] = ++signals_;
 }
 
 bool Learner::vertex_split() {
+    if (network_.vertex_count() >= settings_.target_vertices) return false;
     for (int candidate = 0; candidate < kSplitCandidates; ++candidate) {
         const VertexId v = utility_counters_.highest();
         if (v < 0) return false;
@@ -278,16 +280,21 @@ bool Learner::flip_regularises(VertexId a, VertexId b) const {
 
 bool Learner::settle(int per_vertex, Progress& progress) {
     const bool observing = settings_.feature_measure == kCreaseMeasure;
-    const std::int64_t sweep = network_.vertex_count();
     const std::int64_t begin = signals_;
-    const std::int64_t end = begin + (per_vertex == 0 ? 0 : std::max(per_vertex * sweep, kLeastSettling));
+    const std::int64_t end =
+        begin +
+        (per_vertex == 0 ? 0 : std::max(std::int64_t{per_vertex} * network_.vertex_count(), kLeastSettling));
+    std::int64_t next_moment = begin + (end - begin) / 5;  // until then it is still on its way from growth
     feature_statistic_ = FeatureStatistic();
     while (signals_ < end) {
-        basic_step(next_signal());
-        // The first fifth is still on its way from growth.
-        if (observing && (signals_ - begin) % sweep == 0 && 5 * (signals_ - begin) > end - begin)
+        const int count = static_cast<int>(std::min<std::int64_t>(batch_size(), end - signals_));
+        basic_steps(draw(count), count);
+        for (int i = 0; i < count; ++i) learn_counters(i);
+        if (observing && signals_ >= next_moment) {
             feature_statistic_.observe(network_);
-        if (signals_ % kReportEvery == 0 && !report("Settling", progress)) return false;
+            next_moment += network_.vertex_count();
+        }
+        if (due_for_report() && !report("Settling", progress)) return false;
     }
     return true;
 }

@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "basic_steps.h"
 #include "counters.h"
 #include "features.h"
 #include "network.h"
 #include "neural_mesh.h"
-#include "patch.h"
 #include "progress.h"
 #include "random.h"
 #include "settings.h"
@@ -35,9 +35,21 @@ public:
     /// progress asks to stop, or signal_bound() is reached.
     StopReason run(int per_vertex, Progress& progress);
 
-    /// One signal: the winner moves towards it, its ring is smoothed, its counters learn (eq 1 to 4, 6).
-    /// O(1) expected.
-    void basic_step(const vcg::Point3f& s);
+    /// The winners of \p count signals (1 to BasicSteps::kMostSignals) move towards them and their rings are
+    /// smoothed (eq 1), all from the network as it is; learn_counters() is to follow for each. O(count)
+    /// expected.
+    void basic_steps(const vcg::Point3f* signals, int count);
+    /// What signal \p i of these steps does to the counters (eq 2 to 4, 6). Amortised O(1).
+    void learn_counters(int i);
+    /// One signal whole.
+    void basic_step(const vcg::Point3f& s) {
+        basic_steps(&s, 1);
+        learn_counters(0);
+    }
+    /// Signals that run() takes from one state of the network: one for every kVerticesPerSignal vertices, so
+    /// that they seldom meet; one by one to the letter of the paper.
+    int batch_size() const;
+    static constexpr int kVerticesPerSignal = 32;
     /// Splits the mature vertex with the highest utility counter along its longest edge, halving its star;
     /// the twins share the counter (eq 5). False if no vertex is mature or can be split. O(log n).
     bool vertex_split();
@@ -65,9 +77,9 @@ public:
     std::int64_t signals() const { return signals_; }
     std::int64_t splits() const { return splits_; }
     std::int64_t collapses() const { return collapses_; }
-    /// Mean(n_c) without the normalisation of eq 3, which holds it close to 1 whatever the mesh; as an angle in
-    /// degrees: by how much the winner's normal turns in one Basic Step, root of the mean square over the last
-    /// C_delta signals. This is what eq 8 stops at.
+    /// Mean(n_c) without the normalisation of eq 3, which holds it close to 1 whatever the mesh; as an angle
+    /// in degrees: by how much the winner's normal turns in one Basic Step, root of the mean square over the
+    /// last C_delta signals. This is what eq 8 stops at.
     double mean_turn() const;
 
 private:
@@ -77,7 +89,8 @@ private:
     };
 
     bool to_the_letter() const { return settings_.min_wins_per_split == 0; }
-    const vcg::Point3f& next_signal();
+    const vcg::Point3f* draw(int count);
+    bool due_for_report();
     bool report(const char* doing, Progress& progress) const;
     bool due_for_collapse() const;
     void force_growth();
@@ -87,7 +100,6 @@ private:
     void regularise(VertexId v);
     bool flip_regularises(VertexId a, VertexId b) const;
     void adopt(VertexId u, VertexId v);
-    void learn_counters(VertexId w, double delta);
 
     const TargetSpace& target_;
     const Settings& settings_;
@@ -97,16 +109,16 @@ private:
     FeatureCounters feature_counters_;
     FeatureStatistic feature_statistic_;
     WindowMean mean_delta_;
-    Patch patch_;
+    BasicSteps steps_;
     Random random_;
-    std::vector<vcg::Point3f> drawn_;  ///< signals drawn ahead, so that their places are in the cache in time
-    std::size_t next_drawn_ = 0;
+    std::vector<vcg::Point3f> drawn_;
     /// Per vertex the signal of its last win, or of its birth.
     std::vector<std::int64_t> last_active_;
     std::int64_t signals_ = 0;
     std::int64_t splits_ = 0;
     std::int64_t collapses_ = 0;
     std::int64_t last_collapse_ = 0;
+    std::int64_t last_report_ = 0;
     int vertices_at_collapse_ = 0;
     bool forced_ = false;
 };

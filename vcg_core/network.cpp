@@ -18,6 +18,7 @@ void insert(Ring& ring, int i, VertexId v) {
     std::copy_backward(at(ring, i), at(ring, ring.valence), at(ring, ring.valence + 1));
     *at(ring, i) = v;
     ++ring.valence;
+    ring.repeat();
 }
 
 void insert_before(Ring& ring, VertexId where, VertexId v) { insert(ring, ring.find(where), v); }
@@ -27,9 +28,13 @@ void erase(Ring& ring, VertexId v) {
     const int i = ring.find(v);
     std::copy(at(ring, i + 1), at(ring, ring.valence), at(ring, i));
     --ring.valence;
+    ring.repeat();
 }
 
-void replace(Ring& ring, VertexId old, VertexId now) { *at(ring, ring.find(old)) = now; }
+void replace(Ring& ring, VertexId old, VertexId now) {
+    *at(ring, ring.find(old)) = now;
+    ring.repeat();
+}
 
 void replace(Ring& ring, VertexId old, const VertexId* now, int count) {
     const int i = ring.find(old);
@@ -38,10 +43,14 @@ void replace(Ring& ring, VertexId old, const VertexId* now, int count) {
     const auto end = std::copy(at(ring, i + 1), at(ring, ring.valence), tail.begin());
     std::copy(tail.begin(), end, std::copy(now, now + count, at(ring, i)));
     ring.valence = static_cast<std::uint8_t>(grown);
+    ring.repeat();
 }
 
 /// Starts the cycle of a closed ring at position i.
-void rotate(Ring& ring, int i) { std::rotate(at(ring, 0), at(ring, i), at(ring, ring.valence)); }
+void rotate(Ring& ring, int i) {
+    std::rotate(at(ring, 0), at(ring, i), at(ring, ring.valence));
+    ring.repeat();
+}
 
 int least_valence(const Ring& ring) { return ring.open != 0 ? 2 : 3; }
 
@@ -223,6 +232,7 @@ std::vector<VertexId> Network::compact() {
         slots_[to] = slots_[static_cast<std::size_t>(v)];
         Ring& r = rings_[to];
         for (int i = 0; i < r.valence; ++i) *at(r, i) = moved[static_cast<std::size_t>(r[i])];
+        r.repeat();
     }
     rings_.resize(static_cast<std::size_t>(next));
     slots_.resize(static_cast<std::size_t>(next));

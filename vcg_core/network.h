@@ -28,6 +28,7 @@ using Triangle = std::array<VertexId, 3>;
 struct alignas(64) Ring {
     static constexpr int kMaxValence = 15;
 
+    /// From the valence on they repeat from the start, so that who walks around need not look for the end.
     std::array<VertexId, kMaxValence> neighbours;
     std::uint8_t valence;  ///< 0: the slot is free
     std::uint8_t open;     ///< 1: boundary vertex
@@ -40,7 +41,7 @@ struct alignas(64) Ring {
     }
     /// find() of a neighbour that is there, without a branch that cannot be predicted.
     int position_of(VertexId v) const {
-        // Entries beyond the valence may repeat a neighbour, so the first hit counts.
+        // Entries beyond the valence repeat the ring, so the first hit counts.
         unsigned hits = equal_mask(neighbours.data(), v) | equal_mask(neighbours.data() + 4, v) << 4;
         if (hits == 0)
             hits = equal_mask(neighbours.data() + 8, v) << 8 | equal_mask(neighbours.data() + 11, v) << 11;
@@ -51,6 +52,11 @@ struct alignas(64) Ring {
     VertexId next(int i) const { return (*this)[i + 1 == valence ? 0 : i + 1]; }
     VertexId previous(int i) const { return (*this)[i == 0 ? valence - 1 : i - 1]; }
     int face_count() const { return valence - open; }
+    /// Fills the entries beyond the valence; to be called after every change.
+    void repeat() {
+        for (std::size_t i = valence; i < neighbours.size() && valence > 0; ++i)
+            neighbours[i] = neighbours[i - valence];
+    }
 };
 static_assert(sizeof(Ring) == 64);
 

@@ -41,6 +41,7 @@ bool chain(const Links& links, Ring& ring) {
         v = link->second;
     }
     ring.open = open ? 1 : 0;
+    ring.repeat();
     return ring.valence == valence && (open || v == ring[0]);
 }
 
@@ -138,8 +139,9 @@ void Network::orient_outward() {
         Ring& r = rings_[v];
         if (r.valence == 0) continue;
         const auto c = static_cast<std::size_t>(component[v]);
-        if (volume[c] < 0 && open[c] == 0)
-            std::reverse(r.neighbours.begin(), r.neighbours.begin() + r.valence);
+        if (volume[c] >= 0 || open[c] != 0) continue;
+        std::reverse(r.neighbours.begin(), r.neighbours.begin() + r.valence);
+        r.repeat();
     }
 }
 
@@ -168,6 +170,8 @@ std::string Network::validate() const {
         if (!finite(position(v))) return at_vertex(v, "its position is not finite.");
         if (r.valence < (r.open != 0 ? 2 : 3) || r.valence > Ring::kMaxValence)
             return at_vertex(v, "its valence is out of range.");
+        for (int i = r.valence; i < Ring::kMaxValence; ++i)
+            if (r[i] != r[i - r.valence]) return at_vertex(v, "its ring does not repeat.");
         for (int i = 0; i < r.valence; ++i) {
             const VertexId w = r[i];
             if (w < 0 || w >= slot_count() || !alive(w) || w == v)

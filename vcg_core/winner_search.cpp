@@ -96,17 +96,9 @@ void WinnerSearch::add(VertexId v) { link(v, bucket_of(cell_of(load_xyz(&network
 
 void WinnerSearch::remove(VertexId v) { unlink(v, bucket_of(cell_of(load_xyz(&network_.slots()[v])))); }
 
-void WinnerSearch::move(VertexId v, const vcg::Point3f& where) {
-    Slot& slot = network_.slots()[v];
-    const FourInts from = cell_of(load_xyz(&slot));
-    const FourInts to = cell_of(where);
-    if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) == 0) {
-        network_.set_position(v, where);
-        return;
-    }
-    unlink(v, bucket_of(from));
-    network_.set_position(v, where);
-    link(v, bucket_of(to));
+void WinnerSearch::relink(VertexId v, std::size_t from, std::size_t to) {
+    unlink(v, from);
+    link(v, to);
 }
 
 void WinnerSearch::prefetch(const vcg::Point3f& s) const {

@@ -36,8 +36,16 @@ public:
     void add(VertexId v);
     /// \p v is about to be removed. O(1) expected.
     void remove(VertexId v);
-    /// Moves \p v to \p where, in the network and in the grid. O(1) expected.
-    void move(VertexId v, const vcg::Point3f& where);
+    /// Moves \p v to \p where (x, y, z, 0), in the network and in the grid. O(1) expected.
+    void move(VertexId v, Four where) {
+        Slot* slot = &network_.slots()[v];
+        const FourInts from = cell_of(load_xyz(slot));
+        const FourInts to = cell_of(where);
+        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0)
+            relink(v, bucket_of(from), bucket_of(to));
+        store_xyz(slot, where);
+    }
+    void move(VertexId v, const vcg::Point3f& where) { move(v, Four{where[0], where[1], where[2], 0}); }
     /// Lays the grid out anew if the network has outgrown it.
     void keep_up();
 
@@ -62,6 +70,7 @@ private:
     std::size_t bucket_of(FourInts cell) const { return bucket_of(cell[0], cell[1], cell[2]); }
     void link(VertexId v, std::size_t bucket);
     void unlink(VertexId v, std::size_t bucket);
+    void relink(VertexId v, std::size_t from, std::size_t to);
     void lay_out();
     std::uint64_t scan_nearest_cells(const vcg::Point3f& s) const;
     std::uint64_t scan_box(const vcg::Point3f& s, float reach) const;

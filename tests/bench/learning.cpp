@@ -5,6 +5,7 @@
 // moves, topology. One thread. The cloud is 200,000 points of a bumpy torus made here.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -12,7 +13,7 @@
 
 #include "vcg_core/counters.h"
 #include "vcg_core/learner.h"
-#include "vcg_core/patch.h"
+#include "vcg_core/patches.h"
 #include "vcg_core/winner_search.h"
 
 namespace {
@@ -85,18 +86,31 @@ void per_signal(benchmark::State& state) {
                            benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-/// Whole Basic Steps on a mesh that does not grow; arguments: vertices, C_L.
-void basic_step(benchmark::State& state) {
+void learn(Learner& learner, const std::vector<vcg::Point3f>& drawn) {
+    const int size = static_cast<int>(drawn.size());
+    for (int from = 0; from < size;) {
+        const int count = std::min(learner.batch_size(), size - from);
+        learner.basic_steps(&drawn[static_cast<std::size_t>(from)], count);
+        for (int i = 0; i < count; ++i) learner.learn_counters(i);
+        from += count;
+    }
+}
+
+/// Whole Basic Steps on a mesh that does not grow; arguments: vertices, C_L, threads.
+void basic_steps(benchmark::State& state) {
     Settings settings;
     settings.target_vertices = static_cast<int>(state.range(0));
     settings.smoothing_steps = static_cast<int>(state.range(1));
+    settings.threads = static_cast<int>(state.range(2));
     Learner learner(cloud(), settings, learned(settings.target_vertices));
     const auto drawn = signals();
-    for (auto _ : state)
-        for (const vcg::Point3f& s : drawn) learner.basic_step(s);
+    for (auto _ : state) learn(learner, drawn);
     per_signal(state);
 }
-BENCHMARK(basic_step)->ArgsProduct({{1000, 10000, 100000}, {5, 0}})->Unit(benchmark::kMillisecond);
+BENCHMARK(basic_steps)
+    ->ArgsProduct({{1000, 10000, 100000}, {5, 0}, {1, 2}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 /// From the start mesh to so many vertices, splits and collapses included; argument: vertices.
 void growth(benchmark::State& state) {
@@ -130,41 +144,63 @@ std::vector<VertexId> winners(Network& network) {
     return result;
 }
 
-void part_gather(benchmark::State& state) {
+/// Groups of eight winners of one valence, as the learner makes them.
+std::vector<std::vector<VertexId>> groups(Network& network) {
+    std::map<int, std::vector<VertexId>> of_valence;
+    std::vector<std::vector<VertexId>> result;
+    for (const VertexId w : winners(network)) {
+        auto& group = of_valence[network.ring(w).valence];
+        group.push_back(w);
+        if (group.size() < Patches::kLanes) continue;
+        result.push_back(group);
+        group.clear();
+    }
+    return result;
+}
+
+template <class Part>
+void per_group(benchmark::State& state, const Part& part) {
     Network network = learned(static_cast<int>(state.range(0)));
-    const auto who = winners(network);
-    Patch patch;
+    const auto all = groups(network);
+    Patches patches;
+    patches.gather(network, all.front().data(), Patches::kLanes);
     for (auto _ : state)
-        for (const VertexId w : who) {
-            patch.gather(network, w);
-            benchmark::DoNotOptimize(patch);
+        for (const auto& group : all) {
+            part(network, group, patches);
+            benchmark::DoNotOptimize(patches);
         }
     per_signal(state);
 }
 
-/// Smoothing and the two normals, on what has been gathered.
+void part_gather(benchmark::State& state) {
+    per_group(state, [](const Network& network, const std::vector<VertexId>& group, Patches& patches) {
+        patches.gather(network, group.data(), Patches::kLanes);
+    });
+}
+
+/// Five sweeps, on what has been gathered.
 void part_smoothing(benchmark::State& state) {
-    const Network& network = learned(static_cast<int>(state.range(0)));
-    Patch patch;
-    patch.gather(network, 0);
-    for (auto _ : state)
-        for (int i = 0; i < kSignals; ++i) {
-            patch.smooth(5, 0.05F);
-            benchmark::DoNotOptimize(patch);
-        }
-    per_signal(state);
+    per_group(state, [](const Network&, const std::vector<VertexId>&, Patches& patches) {
+        patches.smooth(5, 0.05F);
+    });
 }
 
+/// The normals before and after.
 void part_normals(benchmark::State& state) {
-    const Network& network = learned(static_cast<int>(state.range(0)));
-    Patch patch;
-    patch.gather(network, 0);
-    for (auto _ : state)
-        for (int i = 0; i < kSignals; ++i) {
-            benchmark::DoNotOptimize(patch.normal());
-            benchmark::DoNotOptimize(patch.normal());
-        }
-    per_signal(state);
+    per_group(state, [](const Network&, const std::vector<VertexId>&, Patches& patches) {
+        EightVectors n;
+        patches.take_normals(n);
+        patches.take_normals(n);
+        benchmark::DoNotOptimize(n);
+    });
+}
+
+void part_displacements(benchmark::State& state) {
+    per_group(state, [](const Network&, const std::vector<VertexId>&, Patches& patches) {
+        Four moved[Patches::kLanes * 16];
+        patches.displacements(moved, 16);
+        benchmark::DoNotOptimize(moved);
+    });
 }
 
 void part_counters(benchmark::State& state) {
@@ -206,7 +242,7 @@ void part_topology(benchmark::State& state) {
         state.PauseTiming();
         auto learner =
             std::make_unique<Learner>(cloud(), settings, learned(static_cast<int>(state.range(0))));
-        for (const vcg::Point3f& s : signals()) learner->basic_step(s);
+        learn(*learner, signals());
         state.ResumeTiming();
         while (learner->splits() < 100 && learner->vertex_split()) {
         }
@@ -227,6 +263,7 @@ BENCHMARK(part_search)->Apply(sizes);
 BENCHMARK(part_gather)->Apply(sizes);
 BENCHMARK(part_smoothing)->Arg(10000)->Unit(benchmark::kMillisecond);
 BENCHMARK(part_normals)->Arg(10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(part_displacements)->Arg(10000)->Unit(benchmark::kMillisecond);
 BENCHMARK(part_counters)->Apply(sizes);
 BENCHMARK(part_moves)->Apply(sizes);
 BENCHMARK(part_topology)->Arg(1000)->Iterations(20)->Unit(benchmark::kMillisecond);

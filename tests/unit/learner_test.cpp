@@ -43,32 +43,35 @@ void expect_alike(const Learner& learner, const reference::ReferenceLearner& exp
 
 /// Runs are short, and short of the moment when a crumpled mesh (its star nearly without area) makes float
 /// and double part: from there both learn, but not the same mesh.
-void compare_runs(const shapes::Cloud& cloud, Network start, Settings settings, int signals) {
+void compare_runs(const shapes::Cloud& cloud, Network start, Settings settings, int signals, int batch = 1) {
     settings.target_vertices = 100000;
     const TargetSpace target = target_of(cloud);
     Learner learner(target, settings, start);
     reference::ReferenceLearner expected(start, settings);
     Random random(3);
-    int since_collapse = 0;
+    int last_collapse = 0;
     int at_collapse = start.vertex_count();
-    for (int i = 1; i <= signals; ++i) {
-        const vcg::Point3f s = target.sample(random);
-        learner.basic_step(s);
-        expected.basic_step(s);
-        ++since_collapse;
-        if (i % settings.signals_per_split == 0) {
+    for (int i = 0; i < signals;) {
+        std::vector<vcg::Point3f> drawn;
+        while (static_cast<int>(drawn.size()) < batch) drawn.push_back(target.sample(random));
+        learner.basic_steps(drawn.data(), batch);
+        expected.basic_steps(drawn);
+        for (int step = 0; step < batch; ++step) {
+            learner.learn_counters(step);
+            expected.learn_counters(static_cast<std::size_t>(step));
+            if (++i % settings.signals_per_split != 0) continue;
             ASSERT_EQ(learner.vertex_split(), expected.vertex_split()) << "at signal " << i;
             ASSERT_EQ(learner.network().faces(), expected.network().faces())
                 << "after the split at signal " << i;
         }
-        if (since_collapse >= at_collapse * settings.signals_per_collapse) {
+        if (i - last_collapse >= at_collapse * settings.signals_per_collapse) {
             ASSERT_EQ(learner.half_edge_collapse(), expected.half_edge_collapse()) << "at signal " << i;
             ASSERT_EQ(learner.network().faces(), expected.network().faces())
                 << "after the collapse at signal " << i;
-            since_collapse = 0;
+            last_collapse = i;
             at_collapse = learner.network().vertex_count();
         }
-        if (i % 100 == 1) expect_alike(learner, expected, 2e-5F);
+        if (i % 100 < batch) expect_alike(learner, expected, 2e-5F);
         if (testing::Test::HasFatalFailure()) FAIL() << "at signal " << i;
     }
     EXPECT_EQ(learner.signals(), signals);
@@ -101,6 +104,27 @@ TEST(Learner, IsTheReferenceFromATetrahedron) {
     Settings settings;
     settings.utility_counter = kSignalCounter;
     compare_runs(shapes::sphere_cloud(2000, 0.01), start_of(shapes::tetrahedron(), 0.1), settings, 1500);
+}
+
+TEST(Learner, IsTheReferenceInBatches) {
+    Settings settings;
+    settings.signals_per_split = 40;
+    settings.min_wins_per_split = 5;
+    for (const int threads : {1, 3}) {
+        settings.threads = threads;
+        compare_runs(shapes::sphere_cloud(2000), start_of(shapes::icosphere(1), 0.25), settings, 2600, 13);
+        compare_runs(shapes::torus_cloud(2000, 0.02), start_of(shapes::torus_grid(20, 12), 0.3), settings,
+                     1600, 160);
+    }
+}
+
+TEST(Learner, TakesSignalsOneByOneToTheLetter) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(100));
+    Settings settings;
+    const Network start = start_of(shapes::icosphere(3), 0.25);
+    EXPECT_EQ(Learner(target, settings, start).batch_size(), 642 / Learner::kVerticesPerSignal);
+    settings.min_wins_per_split = 0;
+    EXPECT_EQ(Learner(target, settings, start).batch_size(), 1);
 }
 
 TEST(Learner, RefusesAStartLargerThanTheTarget) {

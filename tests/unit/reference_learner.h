@@ -107,15 +107,27 @@ public:
         grow();
     }
 
-    VertexId basic_step(const vcg::Point3f& signal) {
-        const auto s = vcg::Point3d::Construct(signal);
-        const VertexId w = reference::winner(network_, positions_, s);
-        const vcg::Point3d before = normal(network_, positions_, w);
-        reference::basic_step(network_, positions_, w, s, settings_);
+    /// All from one state of the network, one after the other on a copy of it; what they move is summed.
+    void basic_steps(const std::vector<vcg::Point3f>& signals) {
+        steps_.clear();
+        Positions sum = positions_;
+        for (const vcg::Point3f& signal : signals) {
+            const auto s = vcg::Point3d::Construct(signal);
+            const VertexId w = reference::winner(network_, positions_, s);
+            Positions after = positions_;
+            reference::basic_step(network_, after, w, s, settings_);
+            const vcg::Point3d turn = normal(network_, after, w) - normal(network_, positions_, w);
+            steps_.emplace_back(w, turn.SquaredNorm() / 2);  // eq 2
+            for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += after[v] - positions_[v];
+        }
+        positions_ = sum;
         for (VertexId v = 0; v < network_.slot_count(); ++v)
             network_.set_position(v, vcg::Point3f::Construct(at(positions_, v)));
+    }
 
-        deltas_.push_back((normal(network_, positions_, w) - before).SquaredNorm() / 2);  // eq 2
+    void learn_counters(std::size_t step) {
+        const VertexId w = steps_[step].first;
+        deltas_.push_back(steps_[step].second);
         const auto window = static_cast<std::size_t>(settings_.normalization_window);
         const auto from =
             deltas_.size() > window ? deltas_.end() - settings_.normalization_window : deltas_.begin();
@@ -128,7 +140,6 @@ public:
         feature[i] = settings_.feature_decay * feature[i] + (1 - settings_.feature_decay) * n_delta;  // eq 6
         ++wins[i];
         won_since_collapse_[i] = true;
-        return w;
     }
 
     bool vertex_split() {
@@ -282,6 +293,7 @@ private:
     Settings settings_;
     Positions positions_;
     std::vector<double> deltas_;
+    std::vector<std::pair<VertexId, double>> steps_;  ///< of the last batch: winner, delta
     std::vector<bool> won_since_collapse_;
 };
 

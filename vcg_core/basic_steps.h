@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Several Basic Steps (the paper's section 2) from one state of the network: computed side by side, in lanes
+// and threads, and then added to the network in the order of their signals.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "network.h"
+#include "patches.h"
+#include "team.h"
+#include "winner_search.h"
+
+namespace neuralmesh {
+
+/// The constants of a Basic Step.
+struct StepRates {
+    float learning;   ///< alpha_w, eq 1
+    float smoothing;  ///< alpha_L
+    int sweeps;       ///< C_L
+};
+
+/// A batch of Basic Steps. Every signal finds its winner, and every winner and ring its displacement, in the
+/// network as it is when the batch begins; the displacements are then summed. A batch of one is the paper's
+/// step. Results do not depend on how many threads compute them.
+class BasicSteps {
+public:
+    static constexpr int kMostSignals = 4096;
+
+    /// \p threads as in Settings.
+    explicit BasicSteps(int threads);
+
+    /// Takes \p count (1 to kMostSignals) steps. O(count) expected.
+    void take(const vcg::Point3f* signals, int count, const StepRates& rates, Network& network,
+              WinnerSearch& search);
+
+    /// Of the last batch, per signal: its winner, and delta of eq 2, with the normal before and after the
+    /// whole step.
+    VertexId winner(int signal) const { return winners_[static_cast<std::size_t>(signal)]; }
+    double delta(int signal) const { return static_cast<double>(deltas_[static_cast<std::size_t>(signal)]); }
+
+private:
+    /// What a thread needs for itself.
+    struct Scratch {
+        Patches patches;
+        std::vector<int> order;
+    };
+
+    void compute(const vcg::Point3f* signals, int begin, int end, const StepRates& rates,
+                 const Network& network, const WinnerSearch& search, Scratch& scratch);
+    void sort_by_valence(int begin, int end, const Network& network, std::vector<int>& order) const;
+    void step_group(const vcg::Point3f* signals, const int* group, int count, const StepRates& rates,
+                    const Network& network, Patches& patches);
+    void apply(int count, const Network& network, WinnerSearch& search) const;
+
+    /// The winner's displacement, then those of its ring.
+    static constexpr int kStride = 1 + Ring::kMaxValence;
+
+    Team team_;
+    std::vector<Scratch> scratch_;  ///< one per member of the team
+    std::vector<VertexId> winners_;
+    std::vector<float> deltas_;
+    std::vector<Four> displacements_;
+};
+
+}  // namespace neuralmesh
