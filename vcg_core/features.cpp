@@ -25,6 +25,8 @@ constexpr float kReach = 1.5F;  ///< at this many edge lengths a face counts hal
 constexpr int kPlaneRounds = 2;
 constexpr float kOpposite = -0.9F;  ///< cosine below which two normals belong to the two sides of a thin part
 constexpr float kTiny = 1e-30F;
+constexpr float kUnit = 3;       ///< makes 1 the threshold
+constexpr float kLeast = 0.125F;  ///< how fast a strength up to 1 falls with the distance
 
 std::size_t at(VertexId i) { return static_cast<std::size_t>(i); }
 
@@ -60,7 +62,14 @@ float mean_edge(const Network& network, VertexId v) {
     return sum / static_cast<float>(ring.valence);
 }
 
-/// The faces of the mean mesh, and which of them lie around each vertex.
+std::vector<Point3f> positions_of(const Network& network) {
+    std::vector<Point3f> positions(at(network.slot_count()), Point3f(0, 0, 0));
+    for (VertexId v = 0; v < network.slot_count(); ++v)
+        if (network.alive(v)) positions[at(v)] = network.position(v);
+    return positions;
+}
+
+/// The faces of a mesh with evened normals, and which of them lie around each vertex.
 class MeanFaces {
 public:
     MeanFaces(const Network& network, const std::vector<Point3f>& positions) : faces_(network.faces()) {
@@ -78,8 +87,18 @@ public:
             normals_.push_back(unit(n));
             centres_.push_back((positions[at(a)] + positions[at(b)] + positions[at(c)]) / 3);
         }
+        even();
     }
 
+    int begin(VertexId v) const { return starts_[at(v)]; }
+    int end(VertexId v) const { return starts_[at(v) + 1]; }
+    int face_at(int i) const { return around_[at(i)]; }
+    std::size_t size() const { return faces_.size(); }
+    const Point3f& normal(int f) const { return normals_[at(f)]; }
+    const Point3f& centre(int f) const { return centres_[at(f)]; }
+    float area(int f) const { return areas_[at(f)]; }
+
+private:
     /// Bilateral filter: each normal becomes the mean of those of the faces around its corners, by area and
     /// similarity; a face across an edge counts twice, itself three times. (Zheng et al., "Bilateral normal
     /// filtering for mesh denoising", 2011.)
@@ -101,15 +120,6 @@ public:
         }
     }
 
-    int begin(VertexId v) const { return starts_[at(v)]; }
-    int end(VertexId v) const { return starts_[at(v) + 1]; }
-    int face_at(int i) const { return around_[at(i)]; }
-    std::size_t size() const { return faces_.size(); }
-    const Point3f& normal(int f) const { return normals_[at(f)]; }
-    const Point3f& centre(int f) const { return centres_[at(f)]; }
-    float area(int f) const { return areas_[at(f)]; }
-
-private:
     bool holds(std::size_t f, VertexId v) const {
         return faces_[f][0] == v || faces_[f][1] == v || faces_[f][2] == v;
     }
@@ -141,26 +151,31 @@ private:
     std::vector<float> areas_;
 };
 
+/// What two planes say of a place.
+struct Crease {
+    float turn = 0;              ///< 2 - 2 cos(theta), theta the angle between them
+    float squared_distance = 0;  ///< of the place from the line where they meet, in its edges
+};
+
 /// The two planes around a place.
 class TwoPlanes {
 public:
     explicit TwoPlanes(const MeanFaces& faces) : faces_(faces), seen_(faces.size(), -1) {}
 
-    /// 2 sin(theta / 2) / (1 + (2 d)^4) for a vertex at \p x with edges of \p edge, close to vertex \p v of
-    /// \p network, where edges have \p mean_edge.
-    float strength(const Network& network, VertexId v, const Point3f& x, float edge, float mean_edge) {
+    /// For a vertex at \p x with edges of \p edge, close to vertex \p v of \p network, where edges have
+    /// \p mean_edge.
+    Crease crease(const Network& network, VertexId v, const Point3f& x, float edge, float mean_edge) {
         gather(network, v, x, mean_edge);
-        if (!seed()) return 0;
+        if (!seed()) return {};
         for (int round = 0; round < kPlaneRounds; ++round)
-            if (!refine()) return 0;
+            if (!refine()) return {};
         const float e1 = normals_[0] * (x - points_[0]);
         const float e2 = normals_[1] * (x - points_[1]);
         const float cosine = normals_[0] * normals_[1];
         const float squared_sine = std::max(1 - cosine * cosine, cosine < 0 ? 1 - squared(kOpposite) : 1e-9F);
         const float squared_distance =
             std::max(0.0F, e1 * e1 + e2 * e2 - 2 * e1 * e2 * cosine) / squared_sine;
-        const float d = 4 * squared_distance / (edge * edge + kTiny);
-        return std::sqrt(std::max(0.0F, 2 - 2 * cosine)) / (1 + d * d);
+        return {std::max(0.0F, 2 - 2 * cosine), squared_distance / (edge * edge + kTiny)};
     }
 
 private:
@@ -238,6 +253,26 @@ private:
     Point3f points_[2];
 };
 
+VertexId own_or(const std::vector<VertexId>& origin, VertexId v) { return origin.empty() ? v : origin[at(v)]; }
+
+/// f of every vertex of \p shown from the planes of \p positions, those of the network \p base, which has the
+/// vertex origin[v] close to v. \p spreads are those of the vertices of \p shown.
+std::vector<float> fadings(const Network& base, const std::vector<Point3f>& positions, const Network& shown,
+                           const std::vector<VertexId>& origin, const std::vector<float>& spreads) {
+    const MeanFaces faces(base, positions);
+    TwoPlanes planes(faces);
+    std::vector<float> result(at(shown.slot_count()), 0.0F);
+    for (VertexId v = 0; v < shown.slot_count(); ++v) {
+        if (!shown.alive(v)) continue;
+        const VertexId o = own_or(origin, v);
+        const Crease crease =
+            planes.crease(base, o, shown.position(v), mean_edge(shown, v), mean_edge(base, o));
+        const float strength = kUnit * crease.turn * std::sqrt(std::sqrt(spreads[at(v)]));
+        result[at(v)] = strength / (1 + std::max(kLeast, strength - 1) * 4 * crease.squared_distance);
+    }
+    return result;
+}
+
 }  // namespace
 
 void FeatureStatistic::observe(const Network& network) {
@@ -265,18 +300,17 @@ std::vector<float> FeatureStatistic::values(const Network& learned, const Networ
     const auto moments = static_cast<float>(moments_);
     std::vector<Point3f> means = position_sums_;
     for (Point3f& p : means) p /= moments;
-    MeanFaces faces(learned, means);
-    faces.even();
-    TwoPlanes planes(faces);
-    std::vector<float> result(at(shown.slot_count()), 0.0F);
-    for (VertexId v = 0; v < shown.slot_count(); ++v) {
-        if (!shown.alive(v)) continue;
-        const VertexId o = origin.empty() ? v : origin[at(v)];
-        const float spread = spread_sums_[at(o)] / moments;
-        const float strength =
-            planes.strength(learned, o, shown.position(v), mean_edge(shown, v), mean_edge(learned, o));
-        result[at(v)] = kUnit * strength * std::sqrt(std::sqrt(spread));
+    std::vector<float> spreads(at(shown.slot_count()), 0.0F);
+    for (VertexId v = 0; v < shown.slot_count(); ++v)
+        if (shown.alive(v)) spreads[at(v)] = spread_sums_[at(own_or(origin, v))] / moments;
+
+    std::vector<float> result = fadings(learned, means, shown, origin, spreads);
+    if (!origin.empty()) {
+        const std::vector<float> of_shown = fadings(shown, positions_of(shown), shown, {}, spreads);
+        for (std::size_t v = 0; v < result.size(); ++v)
+            result[v] = std::sqrt(result[v] * std::sqrt(result[v] * of_shown[v]));
     }
+    for (float& value : result) value = std::sqrt(value);
     return result;
 }
 

@@ -21,19 +21,21 @@ namespace neuralmesh {
 ///    median angle between adjacent faces, so by the noise;
 /// 2. for every vertex the two planes that best explain the faces of its two-ring, the angle theta between
 ///    them, and the distance d of the vertex from the line where they meet, in mean lengths of its edges;
-/// 3. the value  kUnit x 2 sin(theta / 2) x spread^(1/4) / (1 + (2 d)^4).
+/// 3. the strength  s = 3 (2 sin(theta / 2))^2 spread^(1/4)  and  f = s / (1 + max(s - 1, 1/8) (2 d)^2),
+///    which is 1 at half an edge from the line whatever s is, if it is above 1;
+/// 4. where another mesh is shown than was learned, the same from the planes of that: g. It is the sharper of
+///    the two on clean clouds, and the less certain under noise;
+/// 5. the value  sqrt(f^(3/4) g^(1/4)).
 ///
-/// Values are without dimension, from 0 to 6, and comparable between models as they are: dividing by their
-/// mean, as eq 7 does, makes them less so, because the mean depends on how much of the model is crease. kUnit
-/// makes 1 a single threshold for all models and noise levels of tests/experiments/features.py, so
-/// that "above 1" reads as "a crease passes within about half an edge". A right-angled edge has about 2.5 on
-/// it, a plane or a smooth surface that the mesh resolves stays well below 1.
+/// Values are without dimension, from 0 to 3.5, and comparable between models as they are: dividing by their
+/// mean, as eq 7 does, makes them less so, because the mean depends on how much of the model is crease. 1 is a
+/// single threshold for all models and noise levels of tests/experiments/features.py: "above 1" reads as "a
+/// crease passes within half an edge". A right-angled edge has about 2 on it, a plane or a smooth surface that
+/// the mesh resolves stays well below 1.
 ///
-/// Memory: 16 bytes per vertex; values() needs about 200 more per vertex while it runs.
+/// Memory: 16 bytes per vertex; values() needs about 400 more per vertex while it runs.
 class FeatureStatistic {
 public:
-    static constexpr float kUnit = 3.0F;
-
     /// Adds the present positions as one moment. All moments must have the same connectivity; to start on
     /// another one, start a new object. O(vertices x valence); called once for as many signals as there are
     /// vertices, it takes about a tenth of the time of those.
@@ -45,8 +47,7 @@ public:
     std::vector<float> values(const Network& learned) const;
     /// The same for \p shown, which was made from \p learned by moving, flipping, and moving vertices
     /// elsewhere: vertex v of it lies close to vertex origin[v] of \p learned. Distances are those of the
-    /// places and edges in \p shown, planes those of \p learned. An empty \p origin means every vertex its
-    /// own.
+    /// places and edges in \p shown. An empty \p origin: \p shown is \p learned, perhaps a moment later.
     std::vector<float> values(const Network& learned, const Network& shown,
                               const std::vector<VertexId>& origin) const;
 

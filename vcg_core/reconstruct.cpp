@@ -167,7 +167,8 @@ NeuralMesh reconstruct(const TargetSpace& target, const Settings& settings, Prog
     if (run.stopped()) mesh.report.stop_reason = StopReason::cancelled;
     network.orient_outward();
     write_geometry(network, target.frame(), mesh);
-    write_counters(learner, network, fit.origin, settings, mesh);
+    // A fit that was taken back leaves the network of the learning.
+    write_counters(learner, network, fit.improved ? fit.origin : std::vector<VertexId>(), settings, mesh);
     write_report(learner, network, mesh.report);
     Random random(static_cast<std::uint64_t>(settings.random_seed) + 1);
     mesh.report.rms_error = 100 * rms_distance(target, network, kDistanceSamples, random);

@@ -93,12 +93,10 @@ std::vector<SettingInfo> common_rows() {
             "Select the vertices of the result whose feature counter is above the feature threshold."),
         row(&S::feature_measure, "feature_measure", "Feature measure", {"Normal counter", "Crease measure"},
             "What the vertex quality holds. Normal counter: the paper's (eq 6), the variation of the "
-            "vertex's normal "
-            "during learning, about 1 on average; high where the surface bends. Crease measure: the angle "
-            "between "
-            "the two planes around the vertex, over many moments of the learning; above 1 on sharp edges "
-            "(2.5 at a "
-            "right angle), robust against noise, comparable between models."),
+            "vertex's normal during learning, about 1 on average; high where the surface bends. Crease "
+            "measure: the angle between the two planes around the vertex, over many moments of the "
+            "learning, fading with its distance from where they meet; above 1 on sharp edges (about 2 at "
+            "a right angle), robust against noise, comparable between models."),
         row(&S::feature_threshold, "feature_threshold", "Feature threshold", 0, 1000,
             "C_nc of the paper (eq 7): a vertex is a feature if its normal counter is above this many times "
             "the mean "

@@ -4,21 +4,24 @@
 
 """Feature detection: what learning knows against every analysis of the final mesh and of the cloud.
 
-    features.py --program FEATURES [--data FOLDER] [--out FOLDER]
+    features.py --learn build/tests/learn [--data FOLDER] [--out FOLDER]
 
-FEATURES is features.cpp, built. Prints a table (markdown) and writes OUT/features.md and OUT/features.json.
+Prints a table (markdown) and writes OUT/features.md and OUT/features.json. A run that was interrupted goes on where
+it stopped (OUT/features/rows.jsonl).
 
 Truth: the edges of the true mesh with an angle of more than 30 degrees between their faces. A vertex of the
 result is a feature if it lies within half a mean length of its own edges from one. F1 is given at the best
-threshold (for each model, noise level and measure its own, found with the truth) and, for the feature statistic,
-at its one default of 1.
+threshold (for each model, noise level and measure its own, found with the truth) and, for the crease measure,
+at its one default of 1. Two columns say how far that truth can be found at all: the *oracle* knows the true normals
+of 400,000 points of the true surface and takes, for every vertex, the largest angle between two within half an edge;
+the *oracle mesh* knows the true normals of the mesh's faces, as the best analysis of a final mesh could.
 """
 
 import argparse
 import json
 import os
-import subprocess
 import sys
+from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
@@ -27,10 +30,14 @@ from scipy.spatial import cKDTree
 from scipy.stats import rankdata
 
 import models
+import paper_runs
+from compare_accuracy import numbers, table
 
 CREASE_DEGREES = 30
 DEFAULT_THRESHOLD = 1.0
 UTILITY = {"even": 1, "adaptive": 0}
+STAGES = {"learned": False, "fitted": True}  # the parameter fit_to_points
+MODELS = ("fandisk", "block", "crossed-cylinders", "half-filleted-cube", "filleted-cube")
 CURVATURES = ("Mean Curvature", "RMS Curvature", "ABS Curvature")
 NEIGHBOURS = (20, 40, 80)
 
@@ -92,15 +99,21 @@ class Creases:
 
 
 class Mesh:
-    """A result as features.cpp writes it, and what can be said of its vertices from it alone."""
+    """A result with its two counters, and what can be said of its vertices from it alone."""
 
-    def __init__(self, path):
-        rows = [line.split() for line in Path(path).read_text().splitlines()]
-        table = np.array([row[1:] for row in rows if row[0] == "v"], dtype=float)
-        self.positions, self.eq6, self.statistic = table[:, :3], table[:, 3], table[:, 4]
-        self.faces = np.array([row[1:] for row in rows if row[0] == "f"], dtype=int)
+    def __init__(self, paths):
+        """paths: the same mesh twice, with the normal counter and with the crease measure as its quality."""
+        meshes = pymeshlab.MeshSet(verbose=False)
+        for path in paths:
+            meshes.load_new_mesh(str(path))
+        one, other = meshes
+        self.positions, self.faces = one.vertex_matrix(), one.face_matrix()
+        if not np.array_equal(self.positions, other.vertex_matrix()):
+            raise paper_runs.RunError(f"{paths[0]} and {paths[1]} are different meshes: the feature measure changed more "
+                                      "than the quality.")
+        self.eq6, self.measure = one.vertex_scalar_array(), other.vertex_scalar_array()
         self.ends, self.sides = inner_edges(self.faces)
-        self.valence = np.bincount(self.ends.ravel(), minlength=len(table))
+        self.valence = np.bincount(self.ends.ravel(), minlength=len(self.positions))
 
     def of_edges(self, values):
         """Mean over the edges at each vertex."""
@@ -111,8 +124,9 @@ class Mesh:
         along = self.positions[self.ends[:, 0]] - self.positions[self.ends[:, 1]]
         return self.of_edges(np.linalg.norm(along, axis=1))
 
-    def dihedral(self):
-        n = unit_normals(self.positions, self.faces)
+    def dihedral(self, normals=None):
+        """The largest angle at any edge, as 1 - cosine, of the faces or of other normals given for them."""
+        n = unit_normals(self.positions, self.faces) if normals is None else normals
         bend = 1 - (n[self.sides[:, 0]] * n[self.sides[:, 1]]).sum(axis=1)
         most = np.zeros(len(self.positions))
         for k in (0, 1):
@@ -143,6 +157,25 @@ def surface_variation(points, places, neighbours):
     return values[:, 0] / values.sum(axis=1)
 
 
+class Oracle:
+    """The true normals everywhere."""
+
+    def __init__(self, vertices, faces, samples=400_000):
+        points, of_face = models.sample_surface(vertices, faces, samples, np.random.default_rng(20030105))
+        self.tree, self.normals = cKDTree(points), unit_normals(vertices, faces)[of_face]
+
+    def around(self, mesh):
+        """For every vertex the largest 1 - cosine between the normal at one place and those within half an edge."""
+        turn = np.zeros(len(mesh.positions))
+        for i, near in enumerate(self.tree.query_ball_point(mesh.positions, 0.5 * mesh.edge_length())):
+            if near:
+                turn[i] = 1 - (self.normals[near] @ self.normals[near[0]]).min()
+        return turn
+
+    def of_faces(self, mesh):
+        return mesh.dihedral(self.normals[self.tree.query(mesh.positions[mesh.faces].mean(axis=1))[1]])
+
+
 def best_f1(x, truth):
     order = np.argsort(-x, kind="stable")
     f1 = 2 * np.cumsum(truth[order]) / (np.arange(1, len(x) + 1) + truth.sum())
@@ -159,43 +192,85 @@ def roc_area(x, truth):
     return float((rankdata(x)[truth].sum() - positives * (positives + 1) / 2) / max(1, positives * negatives))
 
 
-def measures_of(mesh, cloud):
+def measures_of(mesh, cloud, oracle):
     yield "eq 6 counter", mesh.eq6
     yield "dihedral", mesh.dihedral()
     yield "normal spread", mesh.spread()
     yield from mesh.curvatures()
     for k in NEIGHBOURS:
         yield f"cloud variation {k}", surface_variation(cloud, mesh.positions, k)
+    yield "oracle", oracle.around(mesh)
+    yield "oracle mesh", oracle.of_faces(mesh)
 
 
-def judge(mesh, creases, cloud):
+def judged(x, truth):
+    return {"best": best_f1(x, truth), "roc": roc_area(x, truth)}
+
+
+def judge(mesh, creases, cloud, oracle):
     """All figures of one mesh. Without creases in the truth: the share of vertices called features."""
-    truth = creases.distance(mesh.positions) <= 0.5 * mesh.edge_length()
     if creases.tree is None:
-        return {"false positives": float((mesh.statistic > DEFAULT_THRESHOLD).mean())}
+        return {"false positives": float((mesh.measure > DEFAULT_THRESHOLD).mean())}
+    distance = creases.distance(mesh.positions)
+    truth = distance <= 0.5 * mesh.edge_length()
     figures = {"features": float(truth.mean()),
-               "statistic": {"default": f1_at(mesh.statistic, truth, DEFAULT_THRESHOLD),
-                             "best": best_f1(mesh.statistic, truth), "roc": roc_area(mesh.statistic, truth)}}
-    for name, x in measures_of(mesh, cloud):
-        figures[name] = {"best": best_f1(x, truth), "roc": roc_area(x, truth)}
+               "crease measure": {"default": f1_at(mesh.measure, truth, DEFAULT_THRESHOLD),
+                                  **judged(mesh.measure, truth)}}
+    for name, x in measures_of(mesh, cloud, oracle):
+        figures[name] = judged(x, truth)
+    # The other reading of "half an edge": of the mesh's mean edge, the same for all vertices.
+    even = distance <= 0.5 * mesh.edge_length().mean()
+    figures["by mean edge"] = {"default": f1_at(mesh.measure, even, DEFAULT_THRESHOLD),
+                               "best": best_f1(mesh.measure, even), "dihedral": best_f1(mesh.dihedral(), even)}
     return figures
 
 
-def run(name, noise, utility, options):
-    work = options.out / "features"
-    work.mkdir(parents=True, exist_ok=True)
-    vertices, faces = load(name, options.data)
-    cloud = models.make_cloud(vertices, faces, options.samples, noise)
-    ply = work / f"{name}-{noise:g}.ply"
-    models.save_ply(ply, cloud)
-    out = work / f"{name}-{noise:g}-{utility}"
-    subprocess.run([options.program, ply, out, str(options.vertices), str(UTILITY[utility]),
-                    str(options.settling)], check=True)
-    creases = Creases(vertices, faces)
+class Case:
+    """One model under one noise: its cloud and its truth, made when they are needed."""
+
+    def __init__(self, name, noise, options):
+        self.name, self.noise, self.options = name, noise, options
+        self.folder = options.out / "features"
+
+    @cached_property
+    def surface(self):
+        return load(self.name, self.options.data)
+
+    @cached_property
+    def cloud(self):
+        points = models.make_cloud(*self.surface, self.options.samples, self.noise)
+        models.save_ply(self.folder / "cloud.ply", points)
+        return points
+
+    @cached_property
+    def truth(self):
+        return Creases(*self.surface), self.cloud, Oracle(*self.surface)
+
+    def row(self, utility, fit):
+        """Learns twice, for the two counters, and judges."""
+        truth = self.truth
+        paths = [self.folder / f"mesh{measure}.ply" for measure in (0, 1)]
+        for measure, path in enumerate(paths):
+            paper_runs.learn(self.options.learn, self.folder / "cloud.ply", path, feature_measure=measure,
+                             target_vertices=self.options.vertices, utility_counter=UTILITY[utility],
+                             fit_to_points=int(STAGES[fit]))
+        return {"model": self.name, "noise": self.noise, "mesh": utility, "stage": fit, **judge(Mesh(paths), *truth)}
+
+
+def all_rows(options):
+    kept = paper_runs.Kept(options.out / "features" / "rows.jsonl", options.learn)
     rows = []
-    for stage in ("learned", "fitted"):
-        figures = judge(Mesh(f"{out}.{stage}"), creases, cloud)
-        rows.append({"model": name, "noise": noise, "mesh": utility, "stage": stage, **figures})
+    for name in options.models:
+        for noise in options.noise:
+            case = Case(name, noise, options)
+            try:
+                key = {"name": name, "noise": noise, "samples": options.samples, "vertices": options.vertices,
+                       "surface": paper_runs.digest(case.surface[0].tobytes())}
+                rows += [kept.row(partial(case.row, utility, fit), utility=utility, fit=fit, **key)
+                         for utility in UTILITY for fit in STAGES]
+            except models.ModelError as error:
+                print(error, file=sys.stderr)
+        print(f"{name}: done", file=sys.stderr, flush=True)
     return rows
 
 
@@ -207,65 +282,57 @@ MESH_MEASURES = ("dihedral", "normal spread", *CURVATURES)
 CLOUD_MEASURES = tuple(f"cloud variation {k}" for k in NEIGHBOURS)
 
 
-def table(rows):
-    lines = ["| model | mesh | stage | noise | statistic at 1 | at its best | ROC area | eq 6 | "
-             "best of the final mesh | dihedral | spread | curvature | cloud |", "|---" * 13 + "|"]
-    wins = count = 0
+def line_of(row):
+    ours, final = row["crease measure"], best_of(row, MESH_MEASURES)
+    mark = "" if ours["default"] >= final else " (short)"
+    figures = [final, row["dihedral"]["best"], row["normal spread"]["best"], best_of(row, CURVATURES),
+               best_of(row, CLOUD_MEASURES), row["oracle"]["best"], row["oracle mesh"]["best"],
+               row["by mean edge"]["default"], row["by mean edge"]["dihedral"]]
+    return [row["model"], row["mesh"], row["stage"], f"{row['noise']:g}", f"{ours['default']:.3f}{mark}",
+            f"{ours['best']:.3f}", f"{ours['roc']:.3f}", f"{row['eq 6 counter']['best']:.3f}",
+            *(f"{figure:.3f}" for figure in figures)]
+
+
+def report(rows):
+    judged_rows = [row for row in rows if "crease measure" in row]
+    text = [table(["model", "mesh", "stage", "noise %", "crease measure at 1", "at its best", "ROC area", "eq 6",
+                   "best of the final mesh", "dihedral", "spread", "curvature", "cloud", "oracle", "oracle mesh",
+                   "mean edge: at 1", "mean edge: dihedral"], map(line_of, judged_rows)), ""]
+    for stage in STAGES:
+        of_stage = [row for row in judged_rows if row["stage"] == stage]
+        wins = sum(row["crease measure"]["default"] >= best_of(row, MESH_MEASURES) for row in of_stage)
+        text.append(f"{stage}: at its threshold of 1 the crease measure is at least as good as the best final-mesh measure "
+                    f"at its best threshold in {wins} of {len(of_stage)} cases.")
     for row in rows:
         if "false positives" in row:
-            continue
-        s, final = row["statistic"], best_of(row, MESH_MEASURES)
-        count += 1
-        wins += s["default"] >= final
-        mark = "" if s["default"] >= final else " (short)"
-        cells = [row["model"], row["mesh"], row["stage"], f"{row['noise']:g} %", f"{s['default']:.3f}{mark}",
-                 f"{s['best']:.3f}", f"{s['roc']:.3f}", f"{row['eq 6 counter']['best']:.3f}", f"{final:.3f}",
-                 f"{row['dihedral']['best']:.3f}", f"{row['normal spread']['best']:.3f}",
-                 f"{best_of(row, CURVATURES):.3f}", f"{best_of(row, CLOUD_MEASURES):.3f}"]
-        lines.append("| " + " | ".join(cells) + " |")
-    lines.append("\nAt the default threshold the statistic is at least as good as the best final-mesh measure "
-                 f"at its best threshold in {wins} of {count} cases.")
-    none = [row for row in rows if "false positives" in row]
-    for row in none:
-        lines.append(f"{row['model']}, {row['mesh']}, {row['stage']}, noise {row['noise']:g} %: no creases, "
-                     f"{100 * row['false positives']:.2f} % of the vertices above 1.")
-    return "\n".join(lines)
+            text.append(f"{row['model']}, {row['mesh']}, {row['stage']}, noise {row['noise']:g} %: no creases, "
+                        f"{100 * row['false positives']:.2f} % of the vertices above 1.")
+    return "\n".join(text)
 
 
 def parse(arguments):
-    def words(kind):
-        return lambda text: [kind(word) for word in text.split(",") if word]
-
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True, help="features.cpp, built")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--learn", required=True, help="the core as a program (target learn)")
     parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
-    parser.add_argument("--models", type=words(str), default=["fandisk", "block", "crossed-cylinders",
-                                                               "half-filleted-cube", "filleted-cube"])
-    parser.add_argument("--noise", type=words(float), default=[0, 0.1, 0.3, 0.6], help="%% of the diagonal")
+    parser.add_argument("--models", type=numbers(str), default=MODELS)
+    parser.add_argument("--noise", type=numbers(float), default=(0, 0.1, 0.3, 0.6), help="%% of the diagonal")
     parser.add_argument("--samples", type=int, default=200_000)
     parser.add_argument("--vertices", type=int, default=5000)
-    parser.add_argument("--settling", type=int, default=60, help="signals per vertex after growth")
-    parser.add_argument("--out", type=Path, default=Path("build/experiments"))
+    parser.add_argument("--out", type=Path, default=Path("out/figures"))
     return parser.parse_args(arguments)
 
 
 def main(arguments=None):
     options = parse(arguments)
-    rows = []
-    for name in options.models:
-        for utility in UTILITY:
-            for noise in options.noise:
-                try:
-                    rows += run(name, noise, utility, options)
-                except models.ModelError as error:
-                    print(error, file=sys.stderr)
-    text = table(rows)
+    try:
+        rows = all_rows(options)
+    except paper_runs.RunError as error:
+        sys.exit(str(error))
+    text = report(rows)
     (options.out / "features.md").write_text(text + "\n")
     (options.out / "features.json").write_text(json.dumps(rows, indent=1))
     print(text)
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

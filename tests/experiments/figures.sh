@@ -37,3 +37,5 @@ if [ -e "$roots/trixie.complete" ]; then screenshots gui_2022_02.sh 2022.02; fi
 if [ -e "$roots/sid.complete" ]; then screenshots gui_2025_07.sh 2025.07; fi
 say "Table 1 of the paper"
 "$python" "$here/paper_table1.py" --learn "$build/tests/learn" --check "$build/tests/check_mesh" --out "$out"
+say "Features against every analysis of the final mesh and of the cloud"
+"$python" "$here/features.py" --learn "$build/tests/learn" --out "$out"

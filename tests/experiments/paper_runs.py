@@ -7,8 +7,10 @@ The paper's own model files are not public. Of Max-Planck, Dino and Brain the da
 has others that show the same; without it there are the models of Debian's packages.
 """
 
+import hashlib
 import json
 import subprocess
+from pathlib import Path
 
 import numpy as np
 import pymeshlab
@@ -107,3 +109,36 @@ class SmoothNormals:
         cosine = np.einsum("ij,ij->i", self.normals, normals[nearest])
         angle = float(np.degrees(np.arccos(cosine.clip(-1, 1))).mean())
         return min(angle, 180 - angle)
+
+
+def digest(data):
+    return hashlib.sha256(data).hexdigest()[:16]
+
+
+class Kept:
+    """The rows of an experiment on disk, so that an interrupted run goes on where it stopped.
+
+    Rows that another build of the program made, or from another cloud or other settings, are not taken again: all
+    that is part of the key. One JSON object a line; a line that was being written when the run ended is left out.
+    """
+
+    def __init__(self, path, program):
+        self.path = path
+        self.program = digest(Path(program).read_bytes())
+        self.rows = {}
+        path.parent.mkdir(parents=True, exist_ok=True)
+        for line in path.read_text().splitlines() if path.exists() else ():
+            try:
+                found = json.loads(line)
+            except json.JSONDecodeError:
+                continue
+            self.rows[found["key"]] = found["row"]
+
+    def row(self, make, **key):
+        """The row under the key, made by make() if it is not there."""
+        word = json.dumps({**key, "program": self.program}, sort_keys=True)
+        if word not in self.rows:
+            self.rows[word] = make()
+            with self.path.open("a") as file:
+                file.write("\n" + json.dumps({"key": word, "row": self.rows[word]}))
+        return self.rows[word]
