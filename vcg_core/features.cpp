@@ -25,7 +25,7 @@ constexpr float kReach = 1.5F;  ///< at this many edge lengths a face counts hal
 constexpr int kPlaneRounds = 2;
 constexpr float kOpposite = -0.9F;  ///< cosine below which two normals belong to the two sides of a thin part
 constexpr float kTiny = 1e-30F;
-constexpr float kUnit = 3;       ///< makes 1 the threshold
+constexpr float kUnit = 3;        ///< makes 1 the threshold
 constexpr float kLeast = 0.125F;  ///< how fast a strength up to 1 falls with the distance
 
 std::size_t at(VertexId i) { return static_cast<std::size_t>(i); }
@@ -253,7 +253,9 @@ private:
     Point3f points_[2];
 };
 
-VertexId own_or(const std::vector<VertexId>& origin, VertexId v) { return origin.empty() ? v : origin[at(v)]; }
+VertexId own_or(const std::vector<VertexId>& origin, VertexId v) {
+    return origin.empty() ? v : origin[at(v)];
+}
 
 /// f of every vertex of \p shown from the planes of \p positions, those of the network \p base, which has the
 /// vertex origin[v] close to v. \p spreads are those of the vertices of \p shown.

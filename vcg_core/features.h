@@ -28,10 +28,10 @@ namespace neuralmesh {
 /// 5. the value  sqrt(f^(3/4) g^(1/4)).
 ///
 /// Values are without dimension, from 0 to 3.5, and comparable between models as they are: dividing by their
-/// mean, as eq 7 does, makes them less so, because the mean depends on how much of the model is crease. 1 is a
-/// single threshold for all models and noise levels of tests/experiments/features.py: "above 1" reads as "a
-/// crease passes within half an edge". A right-angled edge has about 2 on it, a plane or a smooth surface that
-/// the mesh resolves stays well below 1.
+/// mean, as eq 7 does, makes them less so, because the mean depends on how much of the model is crease. 1 is
+/// a single threshold for all models and noise levels of tests/experiments/features.py: "above 1" reads as "a
+/// crease passes within half an edge". A right-angled edge has about 2 on it, a plane or a smooth surface
+/// that the mesh resolves stays well below 1.
 ///
 /// Memory: 16 bytes per vertex; values() needs about 400 more per vertex while it runs.
 class FeatureStatistic {
