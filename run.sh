@@ -20,7 +20,7 @@ compile_packages="ca-certificates cmake g++ libeigen3-dev libglew-dev libqt5open
     qtbase5-dev xz-utils"
 venv_packages="python3-venv"
 demo_packages="glmark2-data libgl1-mesa-dri python3-numpy python3-pil xauth xdotool xvfb"
-test_packages="binutils libbenchmark-dev libgtest-dev parallel"
+test_packages="binutils libbenchmark-dev libgtest-dev parallel valgrind"
 python=/usr/bin/python3
 
 say() { printf '== %s\n' "$*"; }
@@ -84,7 +84,8 @@ need_venv() {
     say "Installing pymeshlab and the tools of the tests into $venv"
     rm -rf "$venv"
     "$python" -m venv "$venv"
-    "$venv/bin/pip" install --quiet --disable-pip-version-check --requirement tests/requirements.txt
+    "$venv/bin/pip" install --quiet --disable-pip-version-check --only-binary :all: \
+        --require-hashes --requirement tests/requirements.txt
     echo "$wanted" > "$venv/complete"
 }
 

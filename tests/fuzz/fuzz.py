@@ -14,6 +14,7 @@ build/fuzz/findings. Such an input, as a line of corpus/TARGET.txt, is a test fr
 import argparse
 import hashlib
 import re
+import resource
 import subprocess
 import sys
 from pathlib import Path
@@ -37,23 +38,25 @@ def unpack(target):
 
 
 def fuzz(target, minutes):
-    """One turn; returns the number of executions and whether a promise was broken."""
+    """One turn; returns the executions, the minutes of processor time, and whether a promise was broken."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     findings = BUILD / "findings"
     findings.mkdir(exist_ok=True)
     done = subprocess.run(
         [BUILD / "tests" / f"fuzz_{target}", f"-max_total_time={round(60 * minutes)}", f"-max_len={LONGEST[target]}",
-         "-len_control=0", "-timeout=60", "-rss_limit_mb=3000", f"-artifact_prefix={findings}/{target}-",
+         "-len_control=0", "-timeout=600", "-rss_limit_mb=3000", f"-artifact_prefix={findings}/{target}-",
          "-print_final_stats=1", unpack(target)],
         stderr=subprocess.PIPE, text=True, errors="replace", check=False)
     executions = re.findall(r"number_of_executed_units: (\d+)", done.stderr)
     if done.returncode != 0:
         print("\n".join(line for line in done.stderr.splitlines() if not line.startswith("#"))[-6000:], flush=True)
-    return int(executions[-1]) if executions else 0, done.returncode != 0
+    worked = (resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before) / 60
+    return int(executions[-1]) if executions else 0, worked, done.returncode != 0
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--minutes", type=float, default=60, help="in all; each target gets its share")
+    parser.add_argument("--minutes", type=float, default=60, help="of the clock, in all; each target gets its share")
     parser.add_argument("--targets", nargs="+", choices=TARGETS, default=TARGETS)
     parser.add_argument("--hex", metavar="FILE", type=Path, help="print an input as a line of the corpus, and end")
     options = parser.parse_args()
@@ -65,15 +68,15 @@ def main():
     while left > 0:
         turn = min(MINUTES_PER_TURN, left / len(options.targets))
         for target in options.targets:
-            executions, broken = fuzz(target, turn)
+            executions, worked, broken = fuzz(target, turn)
             totals[target][0] += executions
-            totals[target][1] += turn
+            totals[target][1] += worked
             totals[target][2] += broken
-            print(f"{target}: {executions} executions in {turn:.1f} minutes{', A FINDING' if broken else ''}",
-                  flush=True)
+            print(f"{target}: {executions} executions in {worked:.1f} minutes of processor time"
+                  f"{', A FINDING' if broken else ''}", flush=True)
         left -= turn * len(options.targets)
-    for target, (executions, minutes, broken) in totals.items():
-        print(f"{target}: {executions} executions, {minutes:.0f} minutes, {broken} findings")
+    for target, (executions, worked, broken) in totals.items():
+        print(f"{target}: {executions} executions, {worked:.1f} minutes of processor time, {broken} findings")
     return 1 if any(broken for _, _, broken in totals.values()) else 0
 
 

@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""Counts the instructions per signal of the learning loop with callgrind and holds them against the recorded figure.
+
+    count.py build/tests/learning_loop            fails when a signal costs over 5 % more than recorded
+    count.py --record build/tests/learning_loop   makes the present figure the recorded one
+
+Instructions, unlike seconds, are the same on a busy machine. The program is compiled for one instruction set, so
+that they are the same on any machine, too; only what Learner::run() calls is counted. The figure belongs to Debian
+12's compiler: record it anew when that, or the work that a signal is meant to do, changes.
+"""
+
+import argparse
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+RECORDED = Path(__file__).resolve().parent / "recorded.txt"
+MOST_ABOVE = 0.05
+
+
+def instructions_per_signal(program):
+    with tempfile.TemporaryDirectory() as folder:
+        counts = Path(folder) / "counts"
+        done = subprocess.run(
+            ["valgrind", "--tool=callgrind", "--toggle-collect=neuralmesh::Learner::run(*",
+             f"--callgrind-out-file={counts}", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            check=False)
+        if done.returncode != 0:
+            sys.exit(f"{program} under callgrind ended with {done.returncode}:\n{done.stderr}")
+        total = int(re.search(r"^(?:totals|summary): (\d+)", counts.read_text(), re.MULTILINE).group(1))
+    signals = int(done.stdout)
+    # Next to nothing counted means that the toggle has missed the loop, not that it has become cheap.
+    if total < 100 * signals:
+        sys.exit(f"callgrind has counted only {total} instructions for {signals} signals: is Learner::run() inlined?")
+    return total / signals
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--record", action="store_true", help="write the figure instead of comparing with it")
+    parser.add_argument("program")
+    options = parser.parse_args()
+    now = instructions_per_signal(options.program)
+    if options.record:
+        RECORDED.write_text(f"{now:.0f}\n")
+        print(f"Recorded: {now:.0f} instructions per signal")
+        return 0
+    recorded = float(RECORDED.read_text())
+    print(f"{now:.0f} instructions per signal, recorded {recorded:.0f}: {100 * (now / recorded - 1):+.1f} %")
+    if now > recorded * (1 + MOST_ABOVE):
+        print("The learning loop has become dearer by more than 5 %. Where it should be, record the new figure:\n"
+              f"  {Path(__file__).name} --record {options.program}")
+        return 1
+    if now < recorded * (1 - MOST_ABOVE):
+        print("It has become cheaper; record the new figure, so that it stays so.")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
