@@ -18,6 +18,7 @@ int main() {
     Settings settings;
     settings.target_vertices = 2800;
     settings.settling_signals_per_vertex = 1;
+    settings.threads = 1;  // how threads wait for each other is no matter of instructions
     Learner learner(target, settings, referee::network_of(sphere));
     NoProgress progress;
     learner.run(0, progress);
