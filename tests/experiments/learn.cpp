@@ -7,7 +7,6 @@
 #include <wrap/io_trimesh/export_ply.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <string>
 
@@ -16,19 +15,9 @@
 
 namespace {
 
-void set(neuralmesh::Settings& settings, const std::string& argument) {
-    const auto equals = argument.find('=');
-    for (const neuralmesh::SettingInfo& info : neuralmesh::setting_table()) {
-        if (equals == std::string::npos || argument.substr(0, equals) != info.id) continue;
-        info.store(settings, std::atof(argument.c_str() + equals + 1));
-        return;
-    }
-    throw neuralmesh::SettingError("'" + argument + "' is not parameter=value with a known parameter.");
-}
-
 int learn(int argc, char** argv) {
     neuralmesh::Settings settings;
-    for (int i = 3; i < argc; ++i) set(settings, argv[i]);
+    for (int i = 3; i < argc; ++i) neuralmesh::set_parameter(settings, argv[i]);
     const auto target = neuralmesh::target_of_ply(argv[1], settings);
     neuralmesh::NoProgress progress;
     const neuralmesh::NeuralMesh result = neuralmesh::reconstruct(target, settings, progress);
@@ -36,7 +25,7 @@ int learn(int argc, char** argv) {
     neuralmesh::write_mesh(result, settings, out);
     using Mask = vcg::tri::io::Mask;
     vcg::tri::io::ExporterPLY<neuralmesh::PlyMesh>::Save(out, argv[2],
-                                                        Mask::IOM_VERTQUALITY | Mask::IOM_VERTCOLOR, true);
+                                                         Mask::IOM_VERTQUALITY | Mask::IOM_VERTCOLOR, true);
     const neuralmesh::Report& r = result.report;
     for (const std::string& warning : r.warnings) std::fprintf(stderr, "%s\n", warning.c_str());
     std::printf(

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The mesh of the experiments' programs, and PLY files into it through vcglib.
+// What the experiments' programs share: PLY files through vcglib, and parameters as words.
 #pragma once
 
 #include <vcg/complex/complex.h>
 #include <wrap/io_trimesh/import_ply.h>
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include "vcg_core/error.h"
 #include "vcg_core/mesh_io.h"
+#include "vcg_core/settings.h"
 
 namespace neuralmesh {
 
@@ -37,6 +39,18 @@ inline TargetSpace target_of_ply(const std::string& path, const Settings& settin
     vcg::Matrix44d identity;
     identity.SetIdentity();
     return target_space_of(mesh, identity, settings);
+}
+
+/// Stores \p word, parameter=value with any parameter of the settings table. \throws SettingError if it is
+/// not
+inline void set_parameter(Settings& settings, const std::string& word) {
+    const auto equals = word.find('=');
+    for (const SettingInfo& info : setting_table()) {
+        if (equals == std::string::npos || word.substr(0, equals) != info.id) continue;
+        info.store(settings, std::atof(word.c_str() + equals + 1));
+        return;
+    }
+    throw SettingError("'" + word + "' is not parameter=value with a known parameter.");
 }
 
 }  // namespace neuralmesh
