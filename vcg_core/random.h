@@ -38,7 +38,8 @@ public:
 
     /// Uniform in [0, n), n > 0. The bias is below n / 2^32: invisible for any cloud that fits a machine.
     std::uint32_t below(std::uint32_t n) {
-        return static_cast<std::uint32_t>((std::uint64_t{bits()} * n) >> 32);
+        const std::uint64_t product = std::uint64_t{bits()} * n;
+        return static_cast<std::uint32_t>(product >> 32);
     }
 
     /// Uniform in [0, 1), a multiple of 2^-24: exact in float.
@@ -47,7 +48,7 @@ public:
 private:
     static std::uint32_t rotated(std::uint32_t x, int k) { return (x << k) | (x >> (32 - k)); }
 
-    std::uint32_t state_[4];
+    std::uint32_t state_[4] = {};
 };
 
 }  // namespace neuralmesh

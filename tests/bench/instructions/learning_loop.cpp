@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A small fixed run of the learning loop, for callgrind to count its instructions: a sphere's cloud made without
-// any transcendental function, 2,562 vertices that grow to 2,800 and settle. Prints the number of signals.
+// A small fixed run of the learning loop, for callgrind to count its instructions: a sphere's cloud made
+// without any transcendental function, 2,562 vertices that grow to 2,800 and settle. Prints the number of
+// signals.
 #include <iostream>
 
 #include "tests/unit/referee.h"
