@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "network.h"
+#include "shell_grow.h"
 #include "shell_mesh.h"
 #include "shell_region.h"
 #include "shell_vote.h"
@@ -20,11 +21,12 @@ namespace {
 using vcg::Box3f;
 using vcg::Point3f;
 
-constexpr std::size_t kLeastResolutions = 2,
-                      kResolutions = 5;  // lattices that vote; more if they cannot decide
+constexpr std::size_t kResolutions = 5;  // lattices that vote at most
 constexpr float kCoarser = 1.4F;
-constexpr double kLowConfidence = 0.5;   // of the votes
-constexpr double kWideOpeningSteps = 4;  // in lattice steps; gaps between points are narrower
+constexpr double kLowConfidence = 0.5, kHighConfidence = 0.9;  // of the votes
+// A closer look takes more nodes, if the cloud is dense enough for them.
+constexpr double kCloserLook = 8, kDensePoints = 2;  // times the nodes, times the points per node
+constexpr double kWideOpeningSteps = 4;              // in lattice steps; gaps between points are narrower
 
 float longest_side(const Box3f& box) { return std::max({box.DimX(), box.DimY(), box.DimZ()}); }
 
@@ -52,13 +54,14 @@ Box3f main_box(const std::vector<Point3f>& points) {
 }
 
 /// The step of the finest lattice the options allow on which the cloud still looks like a surface.
-float step_for(const std::vector<Point3f>& points, const Box3f& box, const ShellOptions& options) {
+float step_for(const std::vector<Point3f>& points, const Box3f& box, const ShellOptions& options,
+               double max_nodes, double points_per_node) {
     const float side = longest_side(box);
     float step = side / static_cast<float>(options.max_nodes_per_side - 2 * Region::kMargin);
-    while (static_cast<double>(Lattice(box, step, Region::kMargin).size()) > options.max_nodes) step *= 1.05F;
+    while (static_cast<double>(Lattice(box, step, Region::kMargin).size()) > max_nodes) step *= 1.05F;
     for (; step < side / 8; step *= 1.12F) {
         const Lattice lattice(box, step, Region::kMargin);
-        if (points_per_occupied_node(count_points(lattice, points)) >= options.points_per_node) break;
+        if (points_per_occupied_node(count_points(lattice, points)) >= points_per_node) break;
     }
     return step;
 }
@@ -102,31 +105,119 @@ struct Closed {
     long long held = 0;  ///< points in it
 };
 
-Closed close_at(const Region& region, int level, int stride) {
-    Closed closed;
-    closed.level = level;
-    const std::vector<std::uint8_t> solid =
-        solid_of(region.lattice, region.clearance, region.counts, level, region.enough, closed.held);
-    const IndexedMesh mesh = mesh_with_stride(region.lattice, signed_values(region, level, solid), stride);
-    if (!mesh.faces.empty()) closed.network = Network(mesh.positions, mesh.faces);
-    return closed;
+/// A solid and where it comes from.
+struct Solid {
+    int level = 0;
+    long long held = 0;         ///< points in it
+    std::vector<float> values;  ///< for marching tetrahedra
+};
+
+/// \p grown: to twice the radius, see shell_grow.h.
+Solid solid_at(const Region& region, int level, bool grown) {
+    Solid solid;
+    solid.level = grown ? grown_level(level) : level;
+    solid.values = signed_values(
+        region, solid.level,
+        grown ? grown_solid(region, level, solid.held)
+              : solid_of(region.lattice, region.clearance, region.counts, level, region.enough, solid.held));
+    return solid;
+}
+
+Closed close_solid(const Region& region, const Solid& solid, int stride) {
+    const IndexedMesh mesh = mesh_with_stride(region.lattice, solid.values, stride);
+    return {mesh.faces.empty() ? Network() : Network(mesh.positions, mesh.faces), solid.level, solid.held};
 }
 
 /// A mesh of the verdict's topology at one of the radii of its run, the smallest if possible, because the
-/// mesh lies that far outside the cloud; on every third or second node if that has the topology, because it
-/// is faster, else on every node, where the solid has it by count.
+/// mesh lies that far outside the cloud; without growth if that has the topology, too; on every third or
+/// second node if those keep it, because it is faster, else on every node, where it is kept by count.
 Closed close(const Region& region, const Verdict& verdict) {
     const std::vector<int>& levels = verdict.levels;
-    // Smallest radius, about the geometric mean, largest radius.
-    const std::vector<int> tried = {levels.front(), levels[levels.size() / 3], levels.back()};
-    for (const int level : tried)
+    const auto right = [&](int components, int genus) {
+        return components == verdict.components && genus == verdict.genus;
+    };
+    Solid solid;
+    const auto on_some_nodes = [&](int level, bool grown, Closed& closed) {
+        solid = solid_at(region, level, grown);
         for (const int stride : {3, 2}) {
-            Closed closed = close_at(region, level, stride);
-            if (closed.network.component_count() == verdict.components &&
-                closed.network.genus() == verdict.genus)
-                return closed;
+            closed = close_solid(region, solid, stride);
+            if (right(closed.network.component_count(), closed.network.genus())) return true;
         }
-    return close_at(region, levels.front(), 1);
+        return false;
+    };
+    Closed closed;
+    // Smallest radius, about the geometric mean, largest radius.
+    for (const int level : {levels.front(), levels[levels.size() / 3], levels.back()}) {
+        const LevelTopology& plain = region.topologies[static_cast<std::size_t>(level)];
+        if (right(plain.components, plain.genus) && on_some_nodes(level, false, closed)) return closed;
+    }
+    if (on_some_nodes(levels.front(), verdict.grown, closed)) return closed;
+    return close_solid(region, solid, 1);
+}
+
+/// The lattices looked at, finest first, and what they say.
+struct Inquiry {
+    std::vector<Region> regions;
+    std::vector<std::vector<TopologyAt>> topologies;
+    Verdict verdict;
+    float step = 0;  ///< of the lattice it began with
+
+    void vote(bool grown) {
+        std::vector<const std::vector<TopologyAt>*> lists;
+        std::vector<double> steps;
+        for (std::size_t i = 0; i < regions.size(); ++i) {
+            lists.push_back(&topologies[i]);
+            steps.push_back(static_cast<double>(regions[i].lattice.step));
+        }
+        verdict = persistent_topology(lists, steps);
+        verdict.grown = grown;
+    }
+};
+
+/// Every level of the region, but for the points alone.
+std::vector<TopologyAt> plain_topologies(const Region& region) {
+    std::vector<TopologyAt> result;
+    for (std::size_t l = 1; l < region.topologies.size(); ++l)
+        if (region.topologies[l].components > 0)
+            result.push_back(
+                {static_cast<int>(l), region.topologies[l].components, region.topologies[l].genus});
+    return result;
+}
+
+/// Asks ever closer, because most clouds are plain: the solids of two lattices; what persists of them as they
+/// grow; the same on coarser lattices, for clouds with noise and gaps; on a finer one, for parts that are
+/// close.
+Inquiry inquire(const std::vector<Point3f>& points, const Box3f& box, const ShellOptions& options) {
+    Inquiry inquiry;
+    const float step = inquiry.step =
+        step_for(points, box, options, options.max_nodes, options.points_per_node);
+    const auto look = [&](float at) {
+        return examine(points, box, at, options.component_share, ShellOptions::kSpeckPoints);
+    };
+    for (const float at : {step, kCoarser * step}) {
+        inquiry.regions.push_back(look(at));
+        inquiry.topologies.push_back(plain_topologies(inquiry.regions.back()));
+    }
+    inquiry.vote(false);
+    if (inquiry.verdict.confidence >= kHighConfidence) return inquiry;
+    for (std::size_t i = 0; i < inquiry.regions.size(); ++i)
+        inquiry.topologies[i] = grown_topologies(inquiry.regions[i]);
+    inquiry.vote(true);
+    const float finer = step_for(points, box, options, kCloserLook * options.max_nodes,
+                                 kDensePoints * options.points_per_node);
+    if (inquiry.verdict.confidence < kHighConfidence && finer * kCoarser <= step) {
+        inquiry.regions.insert(inquiry.regions.begin(), look(finer));
+        inquiry.topologies.insert(inquiry.topologies.begin(), grown_topologies(inquiry.regions.front()));
+        inquiry.vote(true);
+    }
+    for (float at = step * kCoarser * kCoarser;
+         inquiry.verdict.confidence < kLowConfidence && inquiry.regions.size() < kResolutions;
+         at *= kCoarser) {
+        inquiry.regions.push_back(look(at));
+        inquiry.topologies.push_back(grown_topologies(inquiry.regions.back()));
+        inquiry.vote(true);
+    }
+    return inquiry;
 }
 
 std::string percent(double value) {
@@ -134,8 +225,8 @@ std::string percent(double value) {
     return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " %";
 }
 
-void add_warnings(const Verdict& verdict, long long total, StartMesh& result) {
-    if (verdict.lattice > 0)
+void add_warnings(const Verdict& verdict, bool coarser, long long total, StartMesh& result) {
+    if (coarser)
         result.warnings.push_back(
             "The cloud is too sparse or too noisy for its finest shell: a coarser one was taken, which may "
             "miss thin "
@@ -192,22 +283,13 @@ StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Rando
     const Box3f box = main_box(points);
 
     progress(0.2, "Start mesh: counting components and handles");
-    std::vector<Region> regions;
-    Verdict verdict;
-    for (float step = step_for(points, box, options); regions.size() < kResolutions; step *= kCoarser) {
-        regions.push_back(examine(points, box, step, options.component_share, ShellOptions::kSpeckPoints));
-        std::vector<const std::vector<LevelTopology>*> topologies;
-        std::vector<double> steps;
-        for (const Region& region : regions) {
-            topologies.push_back(&region.topologies);
-            steps.push_back(static_cast<double>(region.lattice.step));
-        }
-        verdict = persistent_topology(topologies, steps);
-        if (verdict.found && regions.size() >= kLeastResolutions) break;
-    }
+    Inquiry inquiry = inquire(points, box, options);
+    std::vector<Region>& regions = inquiry.regions;
+    Verdict& verdict = inquiry.verdict;
     if (!verdict.found) {  // whatever the largest ball closes
         verdict.lattice = static_cast<int>(regions.size()) - 1;
         verdict.levels = {Region::kReach * Region::kReach};
+        verdict.grown = false;
     }
 
     progress(0.7, "Start mesh: building the mesh");
@@ -235,7 +317,7 @@ StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Rando
     result.widest_opening = region.widest_opening;
     result.encloses_space = region.encloses_space;
     result.ignored_points = static_cast<long long>(points.size()) - region.fringe_points - closed.held;
-    add_warnings(verdict, static_cast<long long>(points.size()), result);
+    add_warnings(verdict, region.lattice.step > inquiry.step, static_cast<long long>(points.size()), result);
     progress(1.0, "Start mesh: done");
     return result;
 }

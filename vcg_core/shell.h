@@ -7,8 +7,14 @@
 // How: on a lattice as fine as the cloud is dense, the solid at radius r is everything a ball of radius r
 // cannot get to from outside without touching a point. Spaces much wider than the way into them are sealed:
 // they are the inside of a surface with gaps between its points. Components and genus of the solid are
-// counted for all radii at once, and those that persist over radii are believed. The winner is meshed by
-// marching tetrahedra and reduced by half-edge collapses, which keep its topology.
+// counted for all radii at once, and those that persist over radii are believed. Where they do not agree,
+// the solids are grown without bridging gaps (shell_grow.h), which tells handles from holes between points
+// and from parts that nearly touch, on more lattices. The winner is meshed by marching tetrahedra and reduced
+// by half-edge collapses, which keep its topology.
+//
+// Outliers make no component of their own: a group of points that is isolated at the radius chosen counts
+// only if it holds at least 1 % of the points (component_share) and kSpeckPoints of them. The others are left
+// out of the start mesh, and a warning says how many. So of 200,000 points a clump of 1,999 is an outlier.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -64,7 +70,8 @@ struct StartMesh {
 /// random is drawn from only if the target has faces. Nested surfaces come as the outermost one.
 ///
 /// \p progress gets fractions of this step from 0 to 1; a wish to stop is not answered (the step takes about
-/// 0.2 s, and 0.1 s more for each million points). Memory: about 30 bytes per lattice node.
+/// 0.2 s, 0.1 s more for each million points, and up to 3 s where parts nearly touch). Memory: about 30 bytes
+/// per lattice node, of which there are up to eight times max_nodes where parts nearly touch.
 /// \throws SettingError for options out of range, InputError if no part of the cloud holds enough points
 StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Random& random,
                    Progress& progress);

@@ -264,4 +264,12 @@ std::vector<LevelTopology> topology_of_levels(const Lattice& lattice, const std:
     return result;
 }
 
+int euler_characteristic(const Lattice& lattice, const std::vector<std::uint8_t>& solid) {
+    std::vector<Level> level(solid.size());
+    for (std::size_t i = 0; i < solid.size(); ++i) level[i] = solid[i] != 0 ? 0 : 1;
+    std::vector<int> changes(2, 0);
+    add_euler_changes(lattice, level, changes);
+    return changes[0];
+}
+
 }  // namespace neuralmesh

@@ -112,4 +112,7 @@ std::vector<LevelTopology> topology_of_levels(const Lattice& lattice, const std:
                                               const std::vector<std::uint32_t>& counts, int reach,
                                               long long enough);
 
+/// Of the subcomplex that the nodes with solid != 0 span: components - handles + cavities. O(nodes).
+int euler_characteristic(const Lattice& lattice, const std::vector<std::uint8_t>& solid);
+
 }  // namespace neuralmesh

@@ -27,7 +27,7 @@ struct Region {
     bool encloses_space = false;
     double widest_opening = 0;  ///< radius of the widest hole that was sealed, same unit as the points
     long long enough = 0;       ///< points that make a component
-    std::vector<LevelTopology> topologies;
+    std::vector<LevelTopology> topologies;  ///< of every level
 };
 
 /// Examines \p points on a lattice over \p box with nodes \p step apart. Two scales of space are sealed: any

@@ -13,22 +13,31 @@
 
 namespace neuralmesh {
 
+/// The topology of the solid at a level, as it is or grown from there (shell_grow.h).
+struct TopologyAt {
+    int level = 0;
+    int components = 0;
+    int genus = 0;
+};
+
 /// The chosen topology and where it was found.
 struct Verdict {
-    bool found = false;  ///< false: no topology holds for two different radii
+    bool found = false;  ///< false: there is no solid anywhere
     int components = 0;
     int genus = 0;
     double confidence = 0;    ///< share of the votes, in [0, 1]
     double persistence = 1;   ///< largest through smallest radius of the run with most votes
+    bool grown = false;       ///< of grown solids
     int lattice = 0;          ///< which of the lattices has that run
     std::vector<int> levels;  ///< the levels of that run, smallest radius first, up to twice that radius
 };
 
 /// Votes among the topologies found on several lattices, finest first; lattice i has steps of steps[i].
-/// A run is a range of radii a to b on one lattice with one and the same topology; it has 1/a - 1/b votes, if
-/// it covers at least two different distances. So persistence counts, and the finer of two equally persistent
-/// (in proportion) topologies wins: large radii only close handles and gaps. O(levels).
-Verdict persistent_topology(const std::vector<const std::vector<LevelTopology>*>& topologies,
+/// A run is a range of radii a to b on one lattice with one and the same topology; it has 1/a - 1/b votes,
+/// shared with the other lattices that vote on the same radii. So persistence counts, and the finer of two
+/// equally persistent (in proportion) topologies wins: large radii only close handles and gaps. \p
+/// topologies: rising levels each. O(levels).
+Verdict persistent_topology(const std::vector<const std::vector<TopologyAt>*>& topologies,
                             const std::vector<double>& steps);
 
 /// The nodes of the solid at \p level, without the components of fewer than \p enough points.

@@ -104,6 +104,11 @@ TEST(Shell, NoiseDoesNotMakeHandles) {
         expect_topology(shell_of_samples(shell_shapes::torus(1, 0.3), 20000, noise * diagonal), 1, 1);
 }
 
+TEST(Shell, NoiseDoesNotJoinLinks) {
+    const shell_shapes::Shape chain = shell_shapes::chain(4, 1, 0.2, 1.3);
+    expect_topology(shell_of_samples(chain, 200000, 0.001 * 6.9), 4, 4);
+}
+
 TEST(Shell, OutliersAreIgnoredAndReported) {
     Random random(3);
     std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
