@@ -12,6 +12,7 @@
 #include <common/mlapplication.h>
 #include <dlfcn.h>
 
+#include <new>
 #include <string>
 #include <type_traits>
 
@@ -86,8 +87,12 @@ bool FilterNeuralMeshPlugin::applyFilter(QAction* /*action*/, MeshDocument& docu
     } catch (...) {
         const std::string sentence = sentence_of_current_exception();
         errorMessage = QString::fromStdString(sentence);
-        // meshlabserver prints the log only.
-        Log(GLLogStream::WARNING, sentence);
+        try {
+            // meshlabserver prints the log only.
+            Log(GLLogStream::WARNING, sentence);
+        } catch (const std::bad_alloc&) {
+            // The log has no memory for it; the window shows the message.
+        }
         return false;
     }
 }
@@ -105,12 +110,12 @@ void FilterNeuralMeshPlugin::learn_current_layer(MeshDocument& document, const R
         write_mesh(result, settings, added->cm);
         added->cm.svn = settings.select_features ? result.report.feature_vertices : 0;
         added->UpdateBoxAndNormals();
+        for (const std::string& line : log_lines(result.report)) Log(line);
     } catch (...) {
         document.delMesh(added);
         document.setCurrentMesh(layer->id());
         throw;
     }
-    for (const std::string& line : log_lines(result.report)) Log(line);
 }
 
 MESHLAB_PLUGIN_NAME_EXPORTER(FilterNeuralMeshPlugin)

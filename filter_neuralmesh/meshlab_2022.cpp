@@ -11,6 +11,8 @@
 
 #include <common/mlexception.h>
 
+#include <new>
+
 #include "host_parameters.h"
 
 using namespace neuralmesh;
@@ -68,7 +70,11 @@ std::map<std::string, QVariant> FilterNeuralMeshPlugin::applyFilter(const QActio
     } catch (...) {
         sentence = sentence_of_current_exception();
     }
-    log(GLLogStream::WARNING, sentence);
+    try {
+        log(GLLogStream::WARNING, sentence);
+    } catch (const std::bad_alloc&) {
+        // The log has no memory for it; the exception tells the same.
+    }
     throw MLException(QString::fromStdString(sentence));
 }
 
@@ -86,18 +92,18 @@ std::map<std::string, QVariant> FilterNeuralMeshPlugin::learn_current_layer(
         write_mesh(result, settings, added->cm);
         added->cm.svn = settings.select_features ? result.report.feature_vertices : 0;
         added->updateBoxAndNormals();
+
+        for (const std::string& line : log_lines(result.report)) log(line.c_str());
+        std::map<std::string, QVariant> results;
+        for (const Figure& figure : figures(result.report))
+            results[figure.key] =
+                figure.is_count ? QVariant(static_cast<int>(figure.value)) : QVariant(figure.value);
+        return results;
     } catch (...) {
         document.delMesh(added->id());
         document.setCurrentMesh(static_cast<int>(current));
         throw;
     }
-
-    for (const std::string& line : log_lines(result.report)) log(line.c_str());
-    std::map<std::string, QVariant> results;
-    for (const Figure& figure : figures(result.report))
-        results[figure.key] =
-            figure.is_count ? QVariant(static_cast<int>(figure.value)) : QVariant(figure.value);
-    return results;
 }
 
 MESHLAB_PLUGIN_NAME_EXPORTER(FilterNeuralMeshPlugin)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""What the host tests share: the build folder, the hosts with our plugin in them, clouds and bad inputs."""
+"""What the host tests share: the build folder, the hosts with our plugin in them, clouds and the table of parameters."""
 
 import os
 import subprocess
@@ -19,10 +19,11 @@ sys.path.insert(0, str(ROOT / "tests" / "experiments"))
 # machine that has other work, too.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
+import input_hosts  # noqa: E402
 import meshlabserver  # noqa: E402
 import models  # noqa: E402
 
-PYTHON_NAME = "generate_surface_reconstruction_neural_mesh"
+PYTHON_NAME = input_hosts.PYTHON_NAME
 # Made in code, or from a Debian package that run.sh installs; all closed and of genus 0.
 MODELS = ("sphere", "cup", "filleted-cube", "crossed-cylinders", "bunny")
 CLOUD_POINTS = 20_000
@@ -63,6 +64,12 @@ def pymeshlab(build):
     return module
 
 
+@pytest.fixture
+def meshes(pymeshlab):
+    """A MeshSet of the test's own."""
+    return input_hosts.new_mesh_set(pymeshlab)
+
+
 @pytest.fixture(scope="session")
 def model(tmp_path_factory):
     """model(name) -> (cloud file, surface file) of a model, both in single precision."""
@@ -79,18 +86,8 @@ def model(tmp_path_factory):
     return files
 
 
-# Clouds that cannot be learned, and words the sentence about each has to hold.
-NAN, INF = float("nan"), float("inf")
+NAN = float("nan")
 CORNERS = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]]
-BAD_CLOUDS = {
-    "empty": ([], "no points"),
-    "one_point": ([[1, 2, 3]], "4 distinct"),
-    "all_equal": ([[1, 2, 3]] * 100, "4 distinct"),
-    "three_distinct": (CORNERS[:3] * 50, "3 distinct"),
-    "on_a_line": ([[t, 2 * t, -t] for t in range(100)], "line"),
-    "not_a_number": ([*CORNERS, [NAN, 0, 0]], "not finite"),
-    "infinite": ([*CORNERS, [0, -INF, 0]], "not finite"),
-}
 
 
 def parameters(build):

@@ -2,58 +2,112 @@
 // Copyright the Neural Mesh authors
 
 // The filter run by MeshLab 2022.02 or 2025.07 without its window: the plugin manager of libmeshlab-common
-// checks and loads the plugin, and the filter learns a sphere. Compiled per release, its symbols left to load
-// time; run_library_host.cpp starts it. Prints one JSON object, or the host's sentence.
+// checks and loads the plugin, and the filter learns a layer. Compiled per release, its symbols left to load
+// time; run_library_host.cpp starts it with
+//   LAYER OUT          the layer that inputs.py has written, the result to OUT
+//   LAYER OUT cancel   the same again and again, the host asking to stop at ever later calls
+//   LAYER OUT memory   the same again and again, out of memory at ever later allocations
+// and prints one JSON object for each run, or the host's refusal of the plugin.
 #include <common/mlexception.h>
 #include <common/plugins/interfaces/filter_plugin.h>
 #include <common/plugins/plugin_manager.h>
-#include <vcg/complex/algorithms/clean.h>
 
 #include <QApplication>
-#include <cmath>
 #include <iostream>
+
+#include "library_layer.h"
+#include "tests/memory/allocations.h"
 
 namespace {
 
-/// Points spread evenly over a sphere of radius 2 around (10, 0, 0).
-void add_sphere(CMeshO& mesh, int count) {
-    auto v = vcg::tri::Allocator<CMeshO>::AddVertices(mesh, static_cast<std::size_t>(count));
-    for (int i = 0; i < count; ++i, ++v) {
-        const double z = 1 - (2 * i + 1.0) / count;
-        const double r = std::sqrt(1 - z * z);
-        const double turn = 2.399963229728653 * i;
-        v->P() =
-            Point3m(Scalarm(10 + 2 * r * std::cos(turn)), Scalarm(2 * r * std::sin(turn)), Scalarm(2 * z));
+namespace allocations = neuralmesh::allocations;
+using allocations::Failure;
+
+/// What the host answers to the filter's progress; a plain function has no other memory.
+int calls_until_stop = 0;
+int calls = 0;
+bool call_back(const int, const char*) { return ++calls < calls_until_stop; }
+
+std::string quoted(const std::string& text) {
+    std::string result = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') result += '\\';
+        result += c == '\n' ? ' ' : c;
     }
+    return result + '"';
 }
 
-void run(const char* plugin_file) {
-    PluginManager manager;
-    auto* plugin = dynamic_cast<FilterPlugin*>(manager.loadPlugin(plugin_file));
-    QAction* action = plugin->actions().front();
-    MeshDocument document;
-    MeshModel* cloud = document.addNewMesh("", "cloud", true);
-    add_sphere(cloud->cm, 5000);
-    RichParameterList list = plugin->initParameterList(action, document);
-    list.setValue("target_vertices", IntValue(500));
-    unsigned int mask = 0;
-    const auto results = plugin->applyFilter(action, list, document, mask, nullptr);
+class Host {
+public:
+    explicit Host(const char* plugin_file)
+        : plugin_(dynamic_cast<FilterPlugin*>(manager_.loadPlugin(plugin_file))),
+          action_(plugin_->actions().front()) {}
 
-    MeshModel& learned = *document.mm();
-    std::cout << "{\"label\": \"" << learned.label().toStdString()
-              << "\", \"layers\": " << document.meshNumber() << ", \"cloud_points\": " << cloud->cm.vn
-              << ", \"vn\": " << learned.cm.vn << ", \"watertight\": "
-              << (vcg::tri::Clean<CMeshO>::IsWaterTight(learned.cm) ? "true" : "false");
-    for (const auto& [key, value] : results) std::cout << ", \"" << key << "\": " << value.toDouble();
-    std::cout << "}" << std::endl;
+    /// Learns the layer once and tells what came of it. \p nth, \p failure: which allocation of the filter
+    /// fails.
+    void learn(const char* layer_file, const char* out, long long nth = -1, Failure failure = Failure::once) {
+        MeshDocument document;
+        document.addNewMesh("", "other", false);
+        MeshModel& layer = *document.addNewMesh("", "layer", true);
+        RichParameterList list = plugin_->initParameterList(action_, document);
+        read_layer(layer_file, layer, list);
+        plugin_->setLog(&document.Log);
+        const std::string before = bytes_of(document, layer);
 
-    list.setValue("target_vertices", IntValue(2));
-    try {
-        plugin->applyFilter(action, list, document, mask, nullptr);
-    } catch (const MLException& error) {
-        std::cout << error.what() << std::endl;
+        std::map<std::string, QVariant> told;
+        std::string sentence;
+        unsigned int mask = 0;
+        calls = 0;
+        allocations::fail_at(nth, failure);
+        try {
+            told = plugin_->applyFilter(action_, list, document, mask, call_back);
+        } catch (const std::exception& error) {
+            allocations::fail_at(-1);
+            sentence = error.what();
+        }
+        allocated = allocations::count();
+        allocations::fail_at(-1);
+
+        QStringList logged;
+        document.Log.print(logged);
+        const bool learned = sentence.empty();
+        std::cout << "{\"sentence\": " << quoted(sentence)
+                  << ", \"logged\": " << quoted(logged.join(' ').toStdString())
+                  << ", \"layers\": " << document.meshNumber()
+                  << ", \"current\": " << quoted(document.mm()->label().toStdString());
+        for (const auto& [key, value] : told) std::cout << ", \"" << key << "\": " << value.toDouble();
+        if (learned) {
+            std::cout << ", \"vn\": " << document.mm()->cm.vn;
+            write_off(document.mm()->cm, out);
+            document.delMesh(document.mm()->id());
+        }
+        std::cout << ", \"unchanged\": " << (bytes_of(document, layer) == before ? "true" : "false") << "}"
+                  << std::endl;
     }
-    std::cout << document.meshNumber() << std::endl;
+
+    long long allocated = 0;  ///< by the filter in the last run
+
+private:
+    PluginManager manager_;
+    FilterPlugin* plugin_;
+    QAction* action_;
+};
+
+void run(Host& host, const char* layer, const char* out, const std::string& mode) {
+    calls_until_stop = 1 << 30;
+    host.learn(layer, out);
+    const int all_calls = calls;
+    if (mode == "cancel") {
+        for (calls_until_stop = 1; calls_until_stop <= all_calls; calls_until_stop += 1 + all_calls / 10)
+            host.learn(layer, out);
+    } else if (mode == "memory") {
+        // Every allocation of the first and the last ones, where the adapter works, and some of the learning.
+        const long long all = host.allocated;
+        for (long long nth = 0; nth < all; nth += nth < 60 || nth > all - 150 ? 1 : (all - 210) / 20 + 1) {
+            host.learn(layer, out, nth, Failure::once);
+            host.learn(layer, out, nth, Failure::from_then_on);
+        }
+    }
 }
 
 }  // namespace
@@ -61,7 +115,8 @@ void run(const char* plugin_file) {
 extern "C" __attribute__((visibility("default"))) int library_host(int argc, char** argv) {
     QApplication application(argc, argv);
     try {
-        run(argv[argc - 1]);
+        Host host(argv[3]);
+        run(host, argv[4], argv[5], argc > 6 ? argv[6] : "");
         return 0;
     } catch (const MLException& error) {
         std::cout << "refused: " << error.what() << std::endl;

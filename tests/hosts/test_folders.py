@@ -10,6 +10,7 @@ from pathlib import Path
 
 import meshlabserver
 import pytest
+from conftest import write_points
 
 EXAMPLES = Path(__file__).resolve().parent / "examples"
 NAMES = ("sphere", "filleted-cube", "bunny")
@@ -41,9 +42,12 @@ def test_meshlabserver_with_gnu_parallel(build, server, folder):
 
 
 def test_pymeshlab_with_a_process_pool(build, folder):
+    """And with a cloud that cannot be learned between the others."""
+    write_points(folder / "clouds" / "c_point.ply", [[1, 2, 3]])
     plugin = meshlabserver.plugin_path(build, "pymeshlab-2025.7")
     done = subprocess.run([sys.executable, str(EXAMPLES / "folder_pymeshlab.py"), str(plugin)], cwd=folder, check=False,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
     assert done.returncode == 0, done.stdout
-    assert len(done.stdout.splitlines()) == len(NAMES)
+    assert done.stdout.count("2000 vertices") == len(NAMES)
+    assert done.stdout.count("c_point.ply: ") == done.stdout.count("at least 4 distinct points.") == 1
     assert_all_learned(build, folder)

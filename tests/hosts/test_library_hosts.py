@@ -1,57 +1,62 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The plugins for MeshLab 2022.02 and 2025.07, loaded and run by the libraries of those releases without a window.
+"""The plugins for MeshLab 2022.02 and 2025.07, loaded and run by the libraries of those releases without a window:
+plugins of other hosts, a host that asks to stop, a host without memory."""
 
-These come from Debian trixie and sid, in root folders that gui_debian_root.sh makes (800 MB each); without such a
-folder the tests are skipped. No root rights are needed here: the releases' own loader runs the program."""
-
-import json
-import os
-import subprocess
-from pathlib import Path
-
+import inputs
+import library_hosts
 import meshlabserver
 import pytest
-
-CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "neural-mesh"
-ROOTS = Path(os.environ.get("NEURAL_MESH_ROOTS") or CACHE / "roots")
-SUITES = {"2022.02": "trixie", "2025.07": "sid"}
-RELEASES = sorted(SUITES)
-
-
-def run(build, release, plugin):
-    suite = SUITES[release]
-    if not Path(f"{ROOTS}/{suite}.complete").exists():
-        pytest.skip(f"There is no {ROOTS / suite}: tests/hosts/gui_debian_root.sh {suite} {ROOTS / suite} makes it.")
-    libraries = ROOTS / suite / "usr/lib/x86_64-linux-gnu"
-    command = [libraries / "ld-linux-x86-64.so.2", "--library-path", f"{libraries}/meshlab:{libraries}",
-               build / "tests/run_library_host", libraries / "meshlab/libmeshlab-common.so",
-               build / f"tests/liblibrary_host_{release}.so", plugin]
-    return subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          check=False, timeout=120,
-                          env=dict(os.environ, QT_QPA_PLATFORM="offscreen", QT_PLUGIN_PATH=str(libraries / "qt5/plugins")))
-
-
-@pytest.mark.parametrize("release", RELEASES)
-def test_the_plugin_is_loaded_and_runs(build, release):
-    done = run(build, release, meshlabserver.plugin_path(build, f"meshlab-{release}"))
-    assert done.returncode == 0, done.stderr
-    told, sentence, layers = done.stdout.splitlines()
-    told = json.loads(told)
-    assert told["label"] == "Neural Mesh" and told["layers"] == 2 and told["cloud_points"] == 5000
-    assert told["vn"] == told["vertices"] == 500 and told["faces"] == 996 and told["watertight"]
-    assert told["genus"] == 0 and told["components"] == 1 and told["rms_error"] < 0.5
-    assert sentence.startswith("The parameter target_vertices ") and sentence.endswith(".")
-    assert layers == "2", "the refused run has left a layer"
-
+from library_hosts import RELEASES
 
 HOSTS = ("meshlab-2020.09", "meshlab-2022.02", "meshlab-2025.07", "pymeshlab-2025.7")
 
 
+@pytest.fixture
+def learn(build, tmp_path):
+    """learn(release, host, layer, *mode) -> the finished process, its result in tmp_path / "out.off"."""
+    def run(release, host, layer, *mode):
+        file = inputs.write_layer(layer, tmp_path / "layer.txt")
+        return library_hosts.run(build, release, meshlabserver.plugin_path(build, host), file, tmp_path / "out.off", *mode)
+    return run
+
+
+def ball(**parameters):
+    return inputs.Input(inputs.ball(1000), target=100, parameters={"settling_signals_per_vertex": 10, **parameters})
+
+
 @pytest.mark.parametrize("release, host", [(release, host) for release in RELEASES for host in HOSTS
                                            if host != f"meshlab-{release}"])
-def test_plugins_of_other_hosts_are_refused(build, release, host):
-    done = run(build, release, meshlabserver.plugin_path(build, host))
+def test_plugins_of_other_hosts_are_refused(learn, release, host):
+    done = learn(release, host, ball())
     assert done.returncode == 1, done.stderr
     assert done.stdout.startswith("refused: ") and len(done.stdout) > 40
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_a_host_that_asks_to_stop_gets_the_mesh_so_far(build, learn, tmp_path, release):
+    first, *stopped = library_hosts.outcomes(learn(release, f"meshlab-{release}", ball(), "cancel"))
+    assert first["stop_reason"] == 0 and first["vn"] == 100
+    assert len(stopped) >= 5
+    for told in stopped:
+        assert told["unchanged"] and told["layers"] == 3 and told["current"] == "Neural Mesh"
+        assert told["stop_reason"] == 2 and told["vn"] == told["vertices"] <= 100
+        assert told["logged"].count("it was cancelled") == 1
+    found = meshlabserver.check_mesh(build, tmp_path / "out.off")
+    assert found["vertices"] == stopped[-1]["vn"] and found["watertight"] and found["oriented"]
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_out_of_memory_at_any_allocation_leaves_the_document_as_it_was(learn, release):
+    quick = ball(settling_signals_per_vertex=0, start_mesh=1, fit_to_points=0, select_features=1)
+    first, *starved = library_hosts.outcomes(learn(release, f"meshlab-{release}", quick, "memory"))
+    assert first["vn"] == 100 and len(starved) > 200
+    for index, told in enumerate(starved):
+        assert told["unchanged"], f"run {index} has changed the layer: {told}"
+        if told["sentence"]:
+            assert "memory" in told["sentence"] and told["sentence"].endswith("."), f"run {index}: {told}"
+            assert (told["layers"], told["current"]) == (2, "layer"), f"run {index}: {told}"
+        else:
+            assert (told["layers"], told["vn"], told["signals"]) == (3, 100, first["signals"])
+    assert sum(1 for told in starved if told["sentence"]) > len(starved) / 2

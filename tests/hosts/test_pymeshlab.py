@@ -11,27 +11,12 @@ import meshlabserver
 import numpy as np
 import pytest
 import shapes
-from conftest import BAD_CLOUDS, CORNERS, MODELS, PYTHON_NAME, out_of_range, parameters, write_points
+from conftest import CORNERS, MODELS, PYTHON_NAME, out_of_range, parameters
+from input_hosts import state
 
 COUNTS = ("vertices", "faces", "signals", "splits", "collapses", "genus", "boundary_loops", "components",
           "feature_vertices", "stop_reason")
 MEASURES = ("rms_error", "mean_counter", "seconds")
-
-
-@pytest.fixture
-def meshes(pymeshlab):
-    return pymeshlab.MeshSet(verbose=False)
-
-
-def state(meshes):
-    """All that can be asked of every layer, in comparable form."""
-    layers = []
-    for mesh in meshes:
-        layers.append((mesh.id(), mesh.label(), mesh.vertex_matrix().tobytes(), mesh.face_matrix().tobytes(),
-                       mesh.vertex_normal_matrix().tobytes(), mesh.has_vertex_scalar(), mesh.has_vertex_color(),
-                       mesh.vertex_selection_array().tobytes(), mesh.face_selection_array().tobytes(),
-                       mesh.transform_matrix().tobytes(), mesh.is_visible()))
-    return layers, meshes.current_mesh_id() if len(layers) else None
 
 
 def learn(meshes, **values):
@@ -101,31 +86,10 @@ def assert_refused(pymeshlab, meshes, words, **values):
     return sentence
 
 
-@pytest.mark.parametrize("name", BAD_CLOUDS)
-def test_bad_clouds_raise_the_sentence_that_meshlabserver_logs(build, server, pymeshlab, meshes, tmp_path, name):
-    points, words = BAD_CLOUDS[name]
-    cloud = write_points(tmp_path / "cloud.ply", points)
-    # pymeshlab's readers drop points that are not finite, and its Mesh() cannot be empty.
-    if points:
-        meshes.add_mesh(pymeshlab.Mesh(np.array(points, dtype=float)))
-    else:
-        meshes.load_new_mesh(str(cloud))
-    sentence = assert_refused(pymeshlab, meshes, words, target_vertices=100)
-    script = meshlabserver.write_script(build, tmp_path / "s.mlx", target_vertices=100)
-    _, text = meshlabserver.run(server, "-i", cloud, "-s", script)
-    assert sentence in text.splitlines()
-
-
 def test_every_parameter_out_of_range_raises(build, pymeshlab, meshes):
     meshes.add_mesh(pymeshlab.Mesh(np.array(CORNERS, dtype=float)))
     for name, value in out_of_range(build):
         assert_refused(pymeshlab, meshes, f"The parameter {name} ", **{name: value})
-
-
-def test_nothing_selected_raises(pymeshlab, meshes, model):
-    meshes.load_new_mesh(str(model("sphere")[1]))
-    assert_refused(pymeshlab, meshes, "Only the selected faces", selected_only=True)
-    assert_refused(pymeshlab, meshes, "Only the selected vertices", selected_only=True, draw_from_faces=False)
 
 
 @pytest.mark.parametrize("draw_from_faces", [True, False])

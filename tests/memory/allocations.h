@@ -4,6 +4,8 @@
 // Control over all allocations of this program's own code: operator new, and the malloc that Eigen calls.
 #pragma once
 
+#pragma GCC visibility push(default)  // a program lends them to the libraries it loads
+
 namespace neuralmesh::allocations {
 
 /// How a machine runs out of memory.
@@ -21,3 +23,5 @@ long long count();
 long long living();
 
 }  // namespace neuralmesh::allocations
+
+#pragma GCC visibility pop

@@ -13,19 +13,26 @@ import pymeshlab
 
 
 def start(plugin):
+    # One MeshSet for all clouds: pymeshlab 2025.7 crashes when one in which a filter has raised is deleted and
+    # another one loads a file.
+    global meshes
     pymeshlab.load_plugin(plugin)
+    meshes = pymeshlab.MeshSet(verbose=False)
 
 
 def reconstruct(cloud):
-    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.clear()
     meshes.load_new_mesh(str(cloud))
-    told = meshes.apply_filter("generate_surface_reconstruction_neural_mesh", target_vertices=2000, threads=1)
+    try:
+        told = meshes.apply_filter("generate_surface_reconstruction_neural_mesh", target_vertices=2000, threads=1)
+    except pymeshlab.PyMeshLabException as error:
+        return f"{cloud.name}: {error}"
     meshes.save_current_mesh(str(Path("meshes") / cloud.name), save_vertex_quality=True)
-    return cloud.name, told["vertices"], told["rms_error"]
+    return f"{cloud.name}: {told['vertices']} vertices, RMS {told['rms_error']:.3f} %"
 
 
 if __name__ == "__main__":
     Path("meshes").mkdir(exist_ok=True)
     with ProcessPoolExecutor(initializer=start, initargs=sys.argv[1:2]) as pool:
-        for name, vertices, rms in pool.map(reconstruct, sorted(Path("clouds").glob("*.ply"))):
-            print(f"{name}: {vertices} vertices, RMS {rms:.3f} %")
+        for line in pool.map(reconstruct, sorted(Path("clouds").glob("*.ply"))):
+            print(line)

@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""The layers that a host may hand to the filter, good and bad, each small, with what has to come of it."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import shapes
+
+SELECTED = 0x20  # vcg's flag, in the property "flags" of a PLY file
+NAN, INF = float("nan"), float("inf")
+GOLDEN_TURN = 2.399963229728653
+
+
+@dataclass
+class Input:
+    """One layer. Every array has one row for each of the points or faces; faces may have more than three corners."""
+
+    points: np.ndarray
+    faces: list = field(default_factory=list)
+    refused: str = ""  # words of the sentence that refuses it; empty: it is learned
+    selected_points: np.ndarray = None
+    selected_faces: np.ndarray = None
+    deleted: np.ndarray = None  # points that are marked as deleted, and still there
+    matrix: np.ndarray = field(default_factory=lambda: np.eye(4))
+    textured: bool = False
+    outliers: int = 0  # the last points, which the mesh may follow or not
+    parameters: dict = field(default_factory=dict)
+    target: int = 250
+    rms: float = 2.0  # the error that the filter may tell, % of the diagonal of what it learned
+    margin: float = .05  # how far the mesh may lie outside the points' box, in diagonals of it
+    known: str = ""  # why it fails and is not mended yet; empty: it must not fail
+
+    def __post_init__(self):
+        # In single precision, so that float and double hosts get the same numbers.
+        self.points = np.asarray(self.points, dtype="f4").reshape(-1, 3)
+        none = np.zeros(len(self.points), dtype=bool)
+        self.deleted = none if self.deleted is None else self.deleted
+        self.selected_points = none if self.selected_points is None else self.selected_points
+        if self.selected_faces is None:
+            self.selected_faces = np.zeros(len(self.faces), dtype=bool)
+
+    def quality(self):
+        """Numbers that are in the layer's quality already."""
+        return (np.arange(len(self.points)) % 97).astype("f4")
+
+    def colors(self):
+        """Colours that are in the layer already, RGBA from 0 to 255."""
+        steps = np.arange(len(self.points))
+        return np.column_stack([steps % 251, steps % 13 * 19, steps % 7 * 36, steps * 0 + 255]).astype("u1")
+
+    def triangles(self):
+        """(corners, input face, bits of the edges that are none of the input face) of the faces cut into fans."""
+        cut = []
+        for index, face in enumerate(self.faces):
+            last = len(face) - 1
+            for k in range(1, last):
+                inner = (1 if k > 1 else 0) | (4 if k + 1 < last else 0)
+                cut.append(((face[0], face[k], face[k + 1]), index, inner))
+        return cut
+
+    def learned_points(self):
+        """Those that the mesh has to be near to, in world coordinates."""
+        chosen = ~self.deleted
+        only_selected = self.parameters.get("selected_only", False)
+        if self.faces and self.parameters.get("draw_from_faces", True):
+            chosen[:] = False
+            for face, selected in zip(self.faces, self.selected_faces):
+                chosen[list(face)] |= bool(selected or not only_selected)
+        elif only_selected:
+            chosen &= self.selected_points
+        points = self.points[chosen].astype("f8")
+        return points @ self.matrix[:3, :3].T + self.matrix[:3, 3]
+
+
+CRUMPLED = ("A single sheet is crumpled: the signals of one place are won by vertices of both of its sides in turn, so growth "
+            "stalls and vertices stay off the sheet.")
+
+
+def ball(count=2000, radius=1.0, centre=(0, 0, 0)):
+    """Points spread evenly over a sphere."""
+    steps = np.arange(count)
+    z = 1 - (2 * steps + 1) / count
+    turn = GOLDEN_TURN * steps
+    rim = np.sqrt(1 - z * z)
+    return radius * np.column_stack([rim * np.cos(turn), rim * np.sin(turn), z]) + centre
+
+
+def ball_mesh():
+    vertices, faces = shapes.sphere(subdivisions=3)
+    return vertices, [tuple(int(v) for v in face) for face in faces]
+
+
+def square(count=45):
+    u, v = np.meshgrid(np.linspace(0, 1, count), np.linspace(0, 1, count))
+    return np.column_stack([u.ravel(), v.ravel(), 0 * u.ravel()])
+
+
+def quads(count=16):
+    """A closed tube of quadrilaterals, bent to a ring."""
+    points, faces = [], []
+    for i in range(count):
+        for j in range(count):
+            u, v = 2 * np.pi * i / count, 2 * np.pi * j / count
+            points.append([(1 + .4 * np.cos(v)) * np.cos(u), (1 + .4 * np.cos(v)) * np.sin(u), .4 * np.sin(v)])
+            corners = ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1))
+            faces.append(tuple(a % count * count + b % count for a, b in corners))
+    return points, faces
+
+
+def _clouds(random):
+    line = np.linspace(0, 1, 100)[:, None] * [1, 2, -1]
+    noisy = ball(3000) + .02 * 2 * np.sqrt(3) * random.standard_normal((3000, 3))
+    side = ball(6000)
+    dense_side = side[(side[:, 0] > 0) | (random.random(6000) < .001)]
+    far_off = np.array([20, 30, -10]) * (random.random((20, 3)) - .5)
+    broken = ball(500)
+    broken[[3, 50, 499], [0, 1, 2]] = NAN, INF, -INF
+    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    turned = np.array([[0, -3, 0, 100], [0, 0, 6, -50], [-3, 0, 0, 7], [0, 0, 0, 1]], dtype=float)
+    return {
+        "empty layer": Input([], refused="no points"),
+        "1 point": Input([[1, 2, 3]], refused="4 distinct"),
+        "2 points": Input([[1, 2, 3], [4, 5, 6]], refused="2 distinct"),
+        "3 points": Input(corners[:3], refused="3 distinct"),
+        "all equal": Input([[1, 2, 3]] * 100, refused="4 distinct"),
+        "three distinct, repeated": Input(corners[:3] * 50, refused="3 distinct"),
+        "on a line": Input(line, refused="straight line"),
+        "a line, rounded": Input(line + [5000, -3000, 1000], rms=20),  # single precision makes a thread of it
+        "not finite": Input(broken, refused="3 of the 500"),
+        "4 points": Input(corners, target=50, margin=.15),  # nothing says where the surface is between them
+        "in a plane": Input(square(), known=CRUMPLED),
+        "in a slanting plane": Input(square() @ [[1, 0, 1], [0, 1, 1], [0, 0, 1]]),
+        "two far clusters": Input(np.vstack([ball(1000, .01), ball(1000, .01, (100, 0, 0))]), target=300),
+        "duplicates": Input(np.repeat(ball(60), 100, axis=0), target=250),
+        "five points, 200 times": Input((corners + [[1, 1, 1]]) * 200, target=100),
+        "size 1e-9": Input(ball() * 1e-9),
+        "size 1e+9": Input(ball() * 1e9),
+        "size 1e+30": Input(ball() * 1e30),
+        "offset 1e+7": Input(ball(2000, 1000) + [1e7, -1e7, 1e7]),
+        "offset 1e+7, small": Input(ball(2000, 3) + [1e7, -1e7, 1e7]),
+        "aspect 1 : 1e-3": Input(ball() * [1, 1e-3, 1e-3]),
+        "aspect 1 : 1 : 1e-5": Input(ball() * [1, 1, 1e-5], known=CRUMPLED),
+        "1 % gross outliers": Input(np.vstack([ball(), far_off]), outliers=20),
+        "1 % near outliers": Input(np.vstack([ball(), far_off / 20]), outliers=20),
+        "noise of 2 %": Input(noisy),
+        "density 1000 : 1": Input(dense_side),
+        "filled": Input(random.random((3000, 3)), rms=5),
+        "deleted vertices": Input(np.vstack([ball(), ball(200, 9)]), deleted=np.arange(2200) >= 2000),
+        "selected points": Input(np.vstack([ball(), ball(2000, 1, (5, 0, 0))]),
+                                 selected_points=np.arange(4000) >= 2000, parameters={"selected_only": True}),
+        "nothing selected": Input(ball(), refused="Only the selected vertices", parameters={"selected_only": True}),
+        "turned, scaled, moved": Input(ball(), matrix=turned),
+        "mirrored": Input(ball(), matrix=np.diag([-1.0, 1, 1, 1])),
+        "flattened by its matrix": Input(ball(), matrix=np.diag([1.0, 1, 0, 1]), known=CRUMPLED),
+        "matrix not finite": Input(ball(500), refused="500 of the 500", matrix=np.diag([NAN, 1, 1, 1])),
+    }
+
+
+def _meshes():
+    vertices, faces = ball_mesh()
+    far = np.vstack([vertices, [[50, 50, 50]] * 10])
+    fin = [(0, 1, len(vertices)), (1, 0, len(vertices) + 1)]
+    finned = np.vstack([vertices, vertices[0] * 1.2, vertices[1] * 1.3])
+    both = np.vstack([vertices, vertices + [5, 0, 0]])
+    shifted = [tuple(v + len(vertices) for v in face) for face in faces]
+    ring, ring_faces = quads()
+    flat = [(face[0], face[1], face[1]) for face in faces]
+    half = [face for face in faces if vertices[list(face), 2].mean() > 0]
+    return {
+        "mesh": Input(vertices, faces),
+        "mesh's vertices": Input(vertices, faces, parameters={"draw_from_faces": False}),
+        "unreferenced vertices": Input(far, faces),
+        "zero-area faces": Input(vertices, faces + [(0, 0, 1), (2, 2, 2), (3, 4, 3)]),
+        "only zero-area faces": Input(vertices, flat, refused="no area"),
+        "non-manifold faces": Input(finned, faces + fin + faces[:20]),
+        "open mesh": Input(vertices, half),
+        "selected faces": Input(both, faces + shifted, selected_faces=np.arange(2 * len(faces)) >= len(faces),
+                                parameters={"selected_only": True}),
+        "no face selected": Input(vertices, faces, refused="Only the selected faces", parameters={"selected_only": True}),
+        "quads": Input(ring, ring_faces),
+        "texture and attributes": Input(vertices, faces, textured=True),
+        "one triangle": Input([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [(0, 1, 2)], refused="3 distinct"),
+    }
+
+
+def all_inputs():
+    """name -> Input, the same at every call."""
+    return {**_clouds(np.random.default_rng(1)), **_meshes()}
+
+
+def write_ply(layer, path):
+    """The layer as a PLY file, without what a file cannot hold (the matrix, deleted points)."""
+    points = np.empty(len(layer.points), dtype=[("xyz", "<f4", 3), ("quality", "<f4"), ("color", "u1", 4), ("flags", "<i4")])
+    points["xyz"], points["quality"], points["color"] = layer.points, layer.quality(), layer.colors()
+    # Deleting is left to the host's own filter, which deletes what is selected.
+    points["flags"] = np.where(layer.selected_points | layer.deleted, SELECTED, 0)
+    header = ["ply", "format binary_little_endian 1.0"]
+    if layer.textured:
+        header.append("comment TextureFile none.png")
+    header += [f"element vertex {len(points)}", *(f"property float {name}" for name in ("x", "y", "z", "quality")),
+               *(f"property uchar {name}" for name in ("red", "green", "blue", "alpha")), "property int flags",
+               f"element face {len(layer.faces)}", "property list uchar int vertex_indices"]
+    if layer.textured:
+        header.append("property list uchar float texcoord")
+    header += ["property int flags", "end_header", ""]
+    rows = []
+    for face, selected in zip(layer.faces, layer.selected_faces):
+        rows.append(np.uint8(len(face)).tobytes() + np.array(face, dtype="<i4").tobytes())
+        if layer.textured:
+            rows.append(np.uint8(6).tobytes() + np.array([0, 0, 1, 0, 0, 1], dtype="<f4").tobytes())
+        rows.append(np.int32(SELECTED if selected else 0).tobytes())
+    path.write_bytes("\n".join(header).encode() + points.tobytes() + b"".join(rows))
+    return path
+
+
+def write_layer(layer, path):
+    """The layer as library_host.cpp reads it: word by word, with all that a layer can hold."""
+    lines = ["matrix " + " ".join(repr(float(x)) for x in layer.matrix.ravel())]
+    for p, q, c, selected, deleted in zip(layer.points, layer.quality(), layer.colors(), layer.selected_points,
+                                          layer.deleted):
+        lines.append(f"vertex {float(p[0])!r} {float(p[1])!r} {float(p[2])!r} {float(q)!r} "
+                     f"{c[0]} {c[1]} {c[2]} {c[3]} {int(selected)} {int(deleted)}")
+    for corners, index, inner in layer.triangles():
+        lines.append(f"face {corners[0]} {corners[1]} {corners[2]} {int(layer.selected_faces[index])} {inner}")
+    if layer.textured:
+        lines.append("textured")
+    for key, value in {"target_vertices": layer.target, **layer.parameters}.items():
+        lines.append(f"set {key} {int(value)}")
+    path.write_text("\n".join(lines) + "\n")
+    return path

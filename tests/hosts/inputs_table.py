@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""Every input of inputs.py in every host, as a table, with the failures counted:
+
+    build/venv/bin/python tests/hosts/inputs_table.py [--build DIR] [WORD...]
+
+WORDs choose inputs whose name holds one of them. The exit code is 1 if anything failed that is not known to.
+"""
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "experiments"))
+
+import input_hosts  # noqa: E402
+import inputs  # noqa: E402
+import meshlabserver  # noqa: E402
+
+
+def cell(build, server, pymeshlab, host, layer):
+    """(word for the table, what is wrong)"""
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            outcome = input_hosts.try_out(build, server, pymeshlab, host, layer, Path(folder))
+            input_hosts.judge(build, layer, outcome)
+    except Exception as problem:  # whatever it is, it is a failure of this cell and not of the table
+        return "FAILED", f"{type(problem).__name__}: {problem}"
+    return ("sentence" if outcome.sentence else f"{outcome.told['rms_error']:.2f} %"), ""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=Path, default=ROOT / "build")
+    parser.add_argument("words", nargs="*", metavar="WORD")
+    options = parser.parse_args()
+    build = options.build.resolve()
+
+    import pymeshlab
+    pymeshlab.load_plugin(str(meshlabserver.plugin_path(build, "pymeshlab-2025.7")))
+    problems, cells = [], 0
+    print(f"{'input':26}" + "".join(f"{host:>24}" for host in input_hosts.HOSTS))
+    with tempfile.TemporaryDirectory() as scratch:
+        server = meshlabserver.make_folder(Path(scratch) / "meshlab", meshlabserver.plugin_path(build))
+        for name, layer in inputs.all_inputs().items():
+            if options.words and not any(word in name for word in options.words):
+                continue
+            row = [cell(build, server, pymeshlab, host, layer) for host in input_hosts.HOSTS]
+            cells += len(row)
+            print(f"{name:26}" + "".join(f"{word:>24}" for word, _ in row), flush=True)
+            problems += [(layer.known, f"{name}, {host}: {problem}")
+                         for host, (_, problem) in zip(input_hosts.HOSTS, row) if problem]
+    known = sum(1 for reason, _ in problems if reason)
+    print(f"{len(problems)} of {cells} failed, {known} of them as known; a figure is the error told, in % of the diagonal")
+    for reason, problem in problems:
+        print(f"{problem}{' - known: ' if reason else ''}{reason}")
+    return 1 if len(problems) > known else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""MeshLab 2022.02 and 2025.07 without a window: library_host.cpp run by the libraries of Debian trixie and sid.
+
+No root rights are needed: the releases' own loader runs the program."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "neural-mesh"
+ROOTS = Path(os.environ.get("NEURAL_MESH_ROOTS") or CACHE / "roots")
+SUITES = {"2022.02": "trixie", "2025.07": "sid"}
+RELEASES = tuple(sorted(SUITES))
+
+
+def run(build, release, plugin, layer, out, *mode):
+    """Starts library_host.cpp on a layer file of inputs.write_layer(); returns the finished process."""
+    libraries = ROOTS / SUITES[release] / "usr/lib/x86_64-linux-gnu"
+    command = [libraries / "ld-linux-x86-64.so.2", "--library-path", f"{libraries}/meshlab:{libraries}",
+               build / "tests/run_library_host", libraries / "meshlab/libmeshlab-common.so",
+               build / f"tests/liblibrary_host_{release}.so", plugin, layer, out, *mode]
+    return subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          check=False, timeout=300,
+                          env=dict(os.environ, QT_QPA_PLATFORM="offscreen", QT_PLUGIN_PATH=str(libraries / "qt5/plugins")))
+
+
+def outcomes(done):
+    """The JSON objects that the runs have printed; the process must have come to its end."""
+    assert done.returncode == 0, f"ended with code {done.returncode}: {done.stderr or done.stdout}"
+    return [json.loads(line) for line in done.stdout.splitlines()]
