@@ -9,11 +9,13 @@
 #include <numeric>
 #include <string>
 
+#include "fit_crossings.h"
 #include "fit_flips.h"
 #include "fit_parallel.h"
 #include "fit_points.h"
 #include "fit_redistribute.h"
 #include "fit_solve.h"
+#include "fit_untangle.h"
 #include "random.h"
 
 namespace neuralmesh {
@@ -59,6 +61,8 @@ constexpr float kSplitVariances = 16;
 constexpr double kShiftedShare = 0.05;
 constexpr int kShiftEvery = 1;
 constexpr int kQuietRounds = 3;
+/// How often a change of the connectivity is tried again without what made the surface cut itself.
+constexpr int kTries = 3;
 
 struct Split {
     Followed fitted;
@@ -104,6 +108,8 @@ private:
     void aim(const Surface& surface);
     double held_error(const Surface& surface) const;
     double move(const FacePoints& ties, Surface& surface, int round);
+    template <class Change>
+    auto guarded(const Change& change);
     bool shift_vertices(const Surface& surface, const FacePoints& ties, FitReport& report);
     void follow(const Surface& surface, FacePoints& ties) const;
 
@@ -116,6 +122,7 @@ private:
     float noise_ = 0;    ///< variance
     float weight_ = 0;
     std::vector<VertexId> origin_;  ///< as FitReport::origin, of the current state
+    CrossingGuard guard_;           ///< of the current state
 };
 
 /// Ties every fitted point to its nearest face.
@@ -198,6 +205,7 @@ double Fit::move(const FacePoints& ties, Surface& surface, int round) {
     for_chunks(weights.size(), 1, threads_, [&](std::size_t i, std::size_t, std::size_t) {
         moved[i] = bounded_move(network_, surface, system.solve(weights[i]));
     });
+    const std::vector<Vec> start = surface.at;
     std::size_t best = 0;
     double best_rms = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -208,7 +216,13 @@ double Fit::move(const FacePoints& ties, Surface& surface, int round) {
         best_rms = error;
     }
     weight_ = weights[best];
-    surface.at = std::move(moved[best]);
+    surface.at = moved[best];
+    if (!guard_.objections(crossings_of(surface, threads_)).empty()) {
+        for (std::size_t v = 0; v < start.size(); ++v) moved[best][v] -= start[v];
+        surface.at = start;
+        surface.at = uncrossed_move(network_, surface, moved[best], guard_, threads_);
+        best_rms = held_error(surface);
+    }
     for (VertexId v = 0; v < network_.slot_count(); ++v)
         if (network_.alive(v)) network_.set_position(v, point(surface.at[index(v)]));
     return best_rms;
@@ -228,22 +242,59 @@ void Fit::follow(const Surface& surface, FacePoints& ties) const {
     });
 }
 
+/// Carries out \p change(barred), barred being vertices to leave alone; if then the guard objects, it is
+/// undone and tried again without the vertices objected to. \return what it does
+template <class Change>
+auto Fit::guarded(const Change& change) {
+    const Network before = network_;
+    std::vector<char> barred(index(network_.slot_count()), 0);
+    for (int tries = 0;; ++tries) {
+        if (tries == kTries) std::fill(barred.begin(), barred.end(), 1);
+        auto done = change(barred);
+        const std::vector<VertexId> objections = guard_.objections(crossings_of(Surface(network_), threads_));
+        if (objections.empty() || tries == kTries) return done;
+        for (const VertexId v : objections)
+            if (index(v) < barred.size()) barred[index(v)] = 1;
+        network_ = before;
+    }
+}
+
 /// Moves vertices to where the error is and keeps the records. \return whether the mesh has changed
 bool Fit::shift_vertices(const Surface& surface, const FacePoints& ties, FitReport& report) {
     const int most =
         std::max(1, static_cast<int>(kShiftedShare * static_cast<double>(network_.vertex_count())));
-    const Redistribution done =
-        redistribute(network_, surface, ties, most, kSplitVariances * noise_, threads_);
+    const Redistribution plan =
+        plan_redistribution(network_, surface, ties, kSplitVariances * noise_, threads_);
+    const Shifts done =
+        guarded([&](const std::vector<char>& barred) { return redistribute(network_, plan, most, barred); });
     if (done.merges.empty()) return false;
     std::vector<VertexId> heir(index(network_.slot_count()));
     std::iota(heir.begin(), heir.end(), 0);
-    for (const Redistribution::Merge& merge : done.merges) heir[index(merge.gone)] = merge.into;
+    for (const Shifts::Merge& merge : done.merges) heir[index(merge.gone)] = merge.into;
     for (Followed* followed : {&points_.fitted, &points_.held})
         for (VertexId& v : followed->near) v = heir[index(v)];
-    for (const Redistribution::Insertion& insertion : done.insertions)
+    for (const Shifts::Insertion& insertion : done.insertions)
         origin_[index(insertion.added)] = origin_[index(insertion.beside)];
     report.moved_vertices += static_cast<int>(done.merges.size());
     return true;
+}
+
+/// For every vertex that was put in anew the vertex of \p before whose place it came to: the nearest one that
+/// a walk from the vertex beside which it was put in comes to. So a counter stays where it was learned.
+void settle_origins(const Network& before, const Network& after, std::vector<VertexId>& origin) {
+    for (VertexId v = 0; v < after.slot_count(); ++v) {
+        if (!after.alive(v) || origin[index(v)] == v) continue;
+        const Vec here = vec(after.position(v));
+        const auto distance = [&](VertexId u) { return (vec(before.position(u)) - here).squaredNorm(); };
+        VertexId nearest = origin[index(v)];
+        for (VertexId from = -1; from != nearest;) {
+            from = nearest;
+            const Ring& ring = before.ring(from);
+            for (int i = 0; i < ring.valence; ++i)
+                if (distance(ring[i]) < distance(nearest)) nearest = ring[i];
+        }
+        origin[index(v)] = nearest;
+    }
 }
 
 /// Small meshes are cheap, and there every vertex counts.
@@ -255,6 +306,7 @@ void Fit::run(FitReport& report, Progress& progress) {
     Network best = network_;
     Followed at_start;
     origin_ = report.origin;
+    guard_ = CrossingGuard(untangle(network_, threads_));
     double best_rms = 0;
     for (int round = 0; round < rounds; ++round) {
         const std::string text = "Fitting to the points, round " + std::to_string(round + 1);
@@ -284,7 +336,10 @@ void Fit::run(FitReport& report, Progress& progress) {
         }
         if (options_.flip_edges && round + 1 < rounds) {
             follow(surface, ties);
-            report.flips += flip_edges(network_, surface, ties, kFlipVariances * noise_, threads_);
+            const std::vector<EdgeFlip> found =
+                find_flips(network_, surface, ties, kFlipVariances * noise_, threads_);
+            report.flips +=
+                guarded([&](const std::vector<char>& barred) { return flip_edges(network_, found, barred); });
         }
     }
     // The verdict: both meshes along the directions of the one before.
@@ -302,7 +357,10 @@ void Fit::run(FitReport& report, Progress& progress) {
         best = before;
         for (VertexId v = 0; v < before.slot_count(); ++v) report.origin[index(v)] = before.alive(v) ? v : -1;
     }
-    if (report.improved) report.rms_after = best_rms;
+    if (report.improved) {
+        report.rms_after = best_rms;
+        settle_origins(before, best, report.origin);
+    }
     network_ = std::move(best);
 }
 

@@ -40,7 +40,8 @@ struct FitReport {
     int flips = 0;
     int moved_vertices = 0;  ///< taken out at one place and put in at another
     bool improved = false;   ///< false: the mesh was left as it was
-    /// For every slot the vertex whose place and counters it takes over; itself unless it was put in anew.
+    /// For every slot the vertex whose counters it takes over: itself, or, if it was put in anew, the one at
+    /// whose place it came to lie.
     /// Ids are those before the fit. -1 for free slots.
     std::vector<VertexId> origin;
 };
@@ -50,7 +51,8 @@ struct FitReport {
 /// term whose weight the points held back decide; between them edges are flipped (and vertices redistributed)
 /// where that brings the points closer. Far outliers lose their pull. No face turns over or becomes a sliver;
 /// the result is kept only if it is closer to the points held back than the mesh was before (but for what
-/// learning has followed of their noise, see rms_before).
+/// learning has followed of their noise, see rms_before). Where the surface cuts itself it is smoothed first,
+/// and it does not come to cut itself in more faces than before.
 ///
 /// The number of vertices, components, handles and boundary loops stays. The same bytes for any \p threads
 /// (0: as many as the machine has). Stops early, with the best mesh so far, when \p progress asks for it;

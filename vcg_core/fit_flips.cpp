@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "fit_parallel.h"
+#include "fit_points.h"
 
 namespace neuralmesh {
 
@@ -21,17 +22,9 @@ constexpr float kSharpestFold = -0.6F;  ///< cosine between the normals of neigh
 constexpr float kUnfolding = 0.3F;      ///< rise of that cosine that makes a flip worth while for itself
 constexpr float kFlat = 0.995F;  ///< cosine between normals from which the shape of the faces may decide
 
-/// A new face needs this share of the points that its area should have, as the density of the old ones goes,
-/// but for kPseudoPoints; with fewer than kFewPoints the flip may not enlarge the area by more than kStretch.
-constexpr float kSupport = 0.3F;
-constexpr float kPseudoPoints = 2;
+/// With fewer points than this the flip may not enlarge the area by more than kStretch.
 constexpr float kFewPoints = 6;
 constexpr float kStretch = 1.02F;
-
-struct Candidate {
-    float gain;
-    VertexId a, b;
-};
 
 /// An inner edge a-b with its faces f = (a, b, c) and g = (b, a, d).
 struct Quad {
@@ -53,7 +46,8 @@ Vec normal_of(const Vec& a, const Vec& b, const Vec& c) { return (b - a).cross(c
 
 class Judge {
 public:
-    Judge(const Surface& surface, const FacePoints& points) : surface_(surface), points_(points) {}
+    Judge(const Surface& surface, const FacePoints& points, const Support& support)
+        : surface_(surface), points_(points), support_(support) {}
 
     /// Drop of the sum of squared distances by the flip of \p q; negative if the flip is out of the question.
     float gain(const Quad& q, float least_gain) const {
@@ -94,6 +88,7 @@ private:
 
     /// \return a negative number for a flip that would stretch surface over where there are no points
     float distance_drop(const Quad& q) const {
+        constexpr float kTolerance = 0.5F;  // points
         float drop = 0;
         float count = 0;
         float count_f = 0;
@@ -107,32 +102,44 @@ private:
                 count_f += f < g ? 1.0F : 0.0F;
             }
         }
-        const float old_area = area(q.a, q.b, q.c) + area(q.b, q.a, q.d);
-        const float area_f = area(q.c, q.d, q.b);
-        const float area_g = area(q.d, q.c, q.a);
-        const float per_area = kSupport * count / std::max(old_area, 1e-20F);
-        const bool bare = per_area * area_f > count_f + kPseudoPoints ||
-                          per_area * area_g > count - count_f + kPseudoPoints;
-        const bool stretched = count < kFewPoints && area_f + area_g > kStretch * old_area;
-        return bare || stretched ? -std::numeric_limits<float>::max() : drop;
+        const float old_missing =
+            missing(q.a, q.b, q.c, points_of(q.f)) + missing(q.b, q.a, q.d, points_of(q.g));
+        const float rise =
+            missing(q.c, q.d, q.b, count_f) + missing(q.d, q.c, q.a, count - count_f) - old_missing;
+        const bool stretched =
+            count < kFewPoints && area(q.c, q.d, q.b) + area(q.d, q.c, q.a) >
+                                      kStretch * (area(q.a, q.b, q.c) + area(q.b, q.a, q.d));
+        if (rise > kTolerance || (stretched && !(rise < 0))) return -std::numeric_limits<float>::max();
+        return rise < 0 ? drop - rise * support_.value() : drop;
     }
 
+    float points_of(int face) const {
+        return static_cast<float>(points_.first[index(face) + 1] - points_.first[index(face)]);
+    }
+
+    float missing(VertexId a, VertexId b, VertexId c, float count) const {
+        return support_.missing({a, b, c}, area(a, b, c), count);
+    }
+
+    /// Twice it.
     float area(VertexId a, VertexId b, VertexId c) const {
-        return (at(b) - at(a)).cross(at(c) - at(a)).norm() / 2;
+        return (at(b) - at(a)).cross(at(c) - at(a)).norm();
     }
 
     const Surface& surface_;
     const FacePoints& points_;
+    const Support& support_;
 };
 
 }  // namespace
 
-int flip_edges(Network& network, const Surface& surface, const FacePoints& points, float least_gain,
-               int threads) {
+std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface, const FacePoints& points,
+                                 float least_gain, int threads) {
     constexpr std::size_t kChunk = 256;
-    const Judge judge(surface, points);
+    const Support support(network, surface, points);
+    const Judge judge(surface, points, support);
     const auto slots = index(network.slot_count());
-    std::vector<std::vector<Candidate>> found((slots + kChunk - 1) / kChunk);
+    std::vector<std::vector<EdgeFlip>> found((slots + kChunk - 1) / kChunk);
     for_chunks(slots, kChunk, threads, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) {
             const auto a = static_cast<VertexId>(s);
@@ -148,22 +155,28 @@ int flip_edges(Network& network, const Surface& surface, const FacePoints& point
             }
         }
     });
-    std::vector<Candidate> all;
+    std::vector<EdgeFlip> all;
     for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
     std::stable_sort(all.begin(), all.end(),
-                     [](const Candidate& x, const Candidate& y) { return x.gain > y.gain; });
+                     [](const EdgeFlip& x, const EdgeFlip& y) { return x.gain > y.gain; });
+    return all;
+}
+
+int flip_edges(Network& network, const std::vector<EdgeFlip>& found, const std::vector<char>& barred) {
     // Quads with a face in common share three vertices.
-    std::vector<char> touched(slots, 0);
+    std::vector<char> touched(index(network.slot_count()), 0);
     int flips = 0;
-    for (const Candidate& candidate : all) {
-        const Ring& ring = network.ring(candidate.a);
-        const int i = ring.find(candidate.b);
-        if (i < 0 || !network.can_flip(candidate.a, candidate.b)) continue;
-        const std::array<VertexId, 4> corners{candidate.a, candidate.b, ring.next(i), ring.previous(i)};
-        if (std::count_if(corners.begin(), corners.end(),
-                          [&](VertexId v) { return touched[index(v)] != 0; }) > 2)
-            continue;
-        network.flip(candidate.a, candidate.b);
+    for (const EdgeFlip& flip : found) {
+        const Ring& ring = network.ring(flip.a);
+        const int i = ring.find(flip.b);
+        if (i < 0 || !network.can_flip(flip.a, flip.b)) continue;
+        const std::array<VertexId, 4> corners{flip.a, flip.b, ring.next(i), ring.previous(i)};
+        const auto in = [&](const std::vector<char>& marks) {
+            return std::count_if(corners.begin(), corners.end(),
+                                 [&](VertexId v) { return marks[index(v)] != 0; });
+        };
+        if (in(touched) > 2 || in(barred) > 0) continue;
+        network.flip(flip.a, flip.b);
         for (const VertexId v : corners) touched[index(v)] = 1;
         ++flips;
     }

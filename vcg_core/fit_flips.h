@@ -8,12 +8,22 @@
 
 namespace neuralmesh {
 
-/// Flips inner edges of \p network, best first and no two with a face in common, where the sum of the squared
-/// distances of the points tied to the edge's two faces drops by more than \p least_gain. No face turns over
-/// or becomes a sliver. Where the points do not care, the flip that makes the larger of the smallest angles
-/// wins. \p surface and \p points are those of the network before. \return the number of flips O(points x 3),
-/// on \p threads threads, with the same result for any number of them.
-int flip_edges(Network& network, const Surface& surface, const FacePoints& points, float least_gain,
-               int threads);
+/// An edge worth flipping.
+struct EdgeFlip {
+    float gain;  ///< drop of the sum of squared distances
+    VertexId a, b;
+};
+
+/// The inner edges of \p network, best first, with which flipped the sum of the squared distances of the
+/// points tied to the edge's two faces drops by more than \p least_gain. No face turns over or becomes a
+/// sliver. Where the points do not care, the flip that makes the larger of the smallest angles wins. \p
+/// surface and \p points are those of the network. O(points x 3), on \p threads threads, with the same result
+/// for any number of them.
+std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface, const FacePoints& points,
+                                 float least_gain, int threads);
+
+/// Flips those of \p found in their order that have no face in common with one flipped before and no corner
+/// that is \p barred (by slot). \return the number of flips
+int flip_edges(Network& network, const std::vector<EdgeFlip>& found, const std::vector<char>& barred);
 
 }  // namespace neuralmesh

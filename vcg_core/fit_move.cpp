@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit_crossings.h"
 #include "fit_solve.h"
 
 namespace neuralmesh {
@@ -31,6 +32,7 @@ public:
             const float norm = move_[index(v)].norm();
             if (norm > bound) move_[index(v)] *= bound / norm;
             if (!(norm >= 0)) move_[index(v)].setZero();
+            moved_[index(v)] += move_[index(v)];
         }
         normals_ = normals(surface.at);
         // A face that lies folded back already has to turn to come right.
@@ -43,27 +45,42 @@ public:
         }
     }
 
+    // Every pass sets at least one more vertex to rest once the halvings are used up, and no move at all is
+    // always allowed; so these loops end.
     std::vector<Vec> run() {
-        // Every pass sets at least one more vertex to rest once the halvings are used up, and no move at all
-        // is always allowed; so this ends.
+        for (int pass = 0;; ++pass)
+            if (!shorten(find_offending(), pass)) return std::move(moved_);
+    }
+
+    std::vector<Vec> run(CrossingGuard& guard, int threads) {
+        Surface now = surface_;
+        int crossed = 0;
         for (int pass = 0;; ++pass) {
-            for (std::size_t v = 0; v < moved_.size(); ++v) moved_[v] = surface_.at[v] + move_[v];
-            const std::vector<char> offending = find_offending();
-            bool any = false;
-            for (std::size_t v = 0; v < moved_.size(); ++v) {
-                if (offending[v] == 0 || move_[v] == Vec(0, 0, 0)) continue;
-                any = true;
-                if (pass < kHalvings) {
-                    move_[v] *= 0.5F;
-                } else {
-                    move_[v].setZero();
-                }
-            }
-            if (!any) return std::move(moved_);
+            if (shorten(find_offending(), pass)) continue;
+            now.at = moved_;
+            std::vector<char> offending(moved_.size(), 0);
+            for (const VertexId v : guard.objections(crossings_of(now, threads))) offending[index(v)] = 1;
+            if (!shorten(offending, crossed++)) return std::move(moved_);
         }
     }
 
 private:
+    /// \return whether any of the \p offending vertices moved at all
+    bool shorten(const std::vector<char>& offending, int pass) {
+        bool any = false;
+        for (std::size_t v = 0; v < moved_.size(); ++v) {
+            if (offending[v] == 0 || move_[v] == Vec(0, 0, 0)) continue;
+            any = true;
+            if (pass < kHalvings) {
+                move_[v] *= 0.5F;
+            } else {
+                move_[v].setZero();
+            }
+            moved_[v] = surface_.at[v] + move_[v];
+        }
+        return any;
+    }
+
     std::vector<Vec> normals(const std::vector<Vec>& at) const {
         std::vector<Vec> result(surface_.faces.size());
         for (std::size_t i = 0; i < result.size(); ++i) {
@@ -129,6 +146,11 @@ private:
 
 std::vector<Vec> bounded_move(const Network& network, const Surface& surface, const std::vector<Vec>& u) {
     return Mover(network, surface, u).run();
+}
+
+std::vector<Vec> uncrossed_move(const Network& network, const Surface& surface, const std::vector<Vec>& u,
+                                CrossingGuard& guard, int threads) {
+    return Mover(network, surface, u).run(guard, threads);
 }
 
 }  // namespace neuralmesh

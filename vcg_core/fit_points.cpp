@@ -93,6 +93,40 @@ float noise_variance(const Surface& surface, const FacePoints& points) {
     return variances.empty() ? 0.0F : median(std::move(variances));
 }
 
+Support::Support(const Network& network, const Surface& surface, const FacePoints& points) {
+    constexpr int kSpreads = 4;
+    constexpr float kLikelyDistance = 0.25F;  // of such faces from the points, in mean edge lengths
+    value_ = kLikelyDistance * mean_edge(surface);
+    value_ *= value_;
+    struct Around {
+        float points = 0;
+        float area = 0;
+    };
+    std::vector<Around> sums(surface.at.size());
+    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+        const int face = static_cast<int>(f);
+        const Vec& a = surface.corner(face, 0);
+        const float twice = (surface.corner(face, 1) - a).cross(surface.corner(face, 2) - a).norm();
+        for (const VertexId v : surface.faces[f]) {
+            sums[index(v)].points += static_cast<float>(points.first[f + 1] - points.first[f]);
+            sums[index(v)].area += twice;
+        }
+    }
+    for (int spread = 0; spread < kSpreads; ++spread) {
+        const std::vector<Around> before = sums;
+        for (VertexId v = 0; v < network.slot_count(); ++v) {
+            const Ring& ring = network.ring(v);
+            for (int i = 0; i < ring.valence; ++i) {
+                sums[index(v)].points += before[index(ring[i])].points;
+                sums[index(v)].area += before[index(ring[i])].area;
+            }
+        }
+    }
+    density_.resize(sums.size());
+    for (std::size_t v = 0; v < sums.size(); ++v)
+        density_[v] = sums[v].area > 0 ? sums[v].points / sums[v].area : 0.0F;
+}
+
 std::vector<Vec> smoothed_normals(const Network& network, const Surface& surface) {
     constexpr int kSpreads = 2;
     std::vector<Vec> normals(surface.at.size(), Vec::Zero());

@@ -4,6 +4,7 @@
 // The points of a fit: which face each belongs to, and what they tell of the noise.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "fit_solve.h"
@@ -29,6 +30,29 @@ FacePoints by_face(const Surface& surface, Followed& followed, const std::vector
 /// Variance of the noise: the median over the faces of that of their points about a plane parallel to the
 /// face. What neighbouring points share is misfit, what they do not share is noise.
 float noise_variance(const Surface& surface, const FacePoints& points);
+
+/// How many points belong to the surface and how many are missing from it.
+class Support {
+public:
+    /// Takes the density of the points around every vertex from some rings. O(vertices)
+    Support(const Network& network, const Surface& surface, const FacePoints& points);
+
+    /// How many points a face should have more to be believed: webs and spikes are surface without points.
+    /// \param twice_area of the face \param points those it has
+    float missing(const Triangle& face, float twice_area, float points) const {
+        const float density = density_[index(face[0])] + density_[index(face[1])] + density_[index(face[2])];
+        return std::max(0.0F, kShare / 3 * density * twice_area - points - kPseudoPoints);
+    }
+    /// What one missing point counts, as a squared distance: the backward error of a face.
+    float value() const { return value_; }
+
+private:
+    static constexpr float kShare = 0.3F;      ///< of the points that its area should have, a face needs ...
+    static constexpr float kPseudoPoints = 2;  ///< ... but for so many
+
+    std::vector<float> density_;  ///< by slot, of points per twice the area
+    float value_ = 0;
+};
 
 /// Normals of the vertices, averaged over their rings twice: what noise leaves of them.
 std::vector<Vec> smoothed_normals(const Network& network, const Surface& surface);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "fit_parallel.h"
+#include "fit_points.h"
 
 namespace neuralmesh {
 
@@ -17,10 +18,7 @@ constexpr std::size_t kChunk = 128;
 constexpr float kSliver = 0.1F;         ///< triangle_quality() that the faces of a collapse must have
 constexpr float kLeastTurn = 0.3F;      ///< cosine between the normals of a face before and after a collapse
 constexpr float kSharpestFold = -0.5F;  ///< cosine between the normals of neighbouring faces
-/// A new face needs this share of the points that its area should have, but for kPseudoPoints; with fewer
-/// than kFewPoints in the star its area may not grow by more than kStretch.
-constexpr float kSupport = 0.3F;
-constexpr int kPseudoPoints = 2;
+/// With fewer points than this in a star its area may not grow by more than kStretch.
 constexpr int kFewPoints = 6;
 constexpr float kStretch = 1.02F;
 constexpr int kStarPoints = 64;         ///< about as many points of a star are enough to judge a collapse by
@@ -29,19 +27,15 @@ constexpr float kLongestOffset = 0.3F;  ///< of a new vertex from its edge, in e
 
 Vec area_vector(const Vec& a, const Vec& b, const Vec& c) { return (b - a).cross(c - a); }
 
-struct Collapse {
-    float cost;
-    VertexId gone, into;
-};
-
 /// Finds the cheapest collapse of a vertex.
 class CollapseJudge {
 public:
-    CollapseJudge(const Network& network, const Surface& surface, const FacePoints& points)
-        : network_(network), surface_(surface), points_(points) {}
+    CollapseJudge(const Network& network, const Surface& surface, const FacePoints& points,
+                  const Support& support)
+        : network_(network), surface_(surface), points_(points), support_(support) {}
 
-    Collapse cheapest(VertexId v) const {
-        Collapse best{std::numeric_limits<float>::max(), v, -1};
+    Merger cheapest(VertexId v) const {
+        Merger best{std::numeric_limits<float>::max(), v, -1};
         const Ring& ring = network_.ring(v);
         std::array<std::pair<float, VertexId>, Ring::kMaxValence> order;
         int count = 0;
@@ -95,17 +89,21 @@ private:
     }
 
     struct Star {
-        int count = 0;  ///< of points
-        float area = 0;
+        int count = 0;   ///< of points
+        float area = 0;  ///< twice it
+        float missing = 0;
     };
 
     Star star(VertexId v) const {
         Star result;
         for (int i = surface_.first_face[index(v)]; i < surface_.first_face[index(v) + 1]; ++i) {
             const int f = surface_.face_of[index(i)];
-            result.count += points_.first[index(f) + 1] - points_.first[index(f)];
-            result.area +=
+            const int count = points_.first[index(f) + 1] - points_.first[index(f)];
+            const float area =
                 area_vector(surface_.corner(f, 0), surface_.corner(f, 1), surface_.corner(f, 2)).norm();
+            result.count += count;
+            result.area += area;
+            result.missing += support_.missing(surface_.faces[index(f)], area, static_cast<float>(count));
         }
         return result;
     }
@@ -141,33 +139,35 @@ private:
             next -= size;
             if (sum > 2 * bound) return sum;
         }
-        return bare(ring, u, old, counts, step) ? std::numeric_limits<float>::max() : std::max(sum, 0.0F);
+        return std::max(sum, 0.0F) + rise_of_missing(ring, u, old, counts, step);
     }
 
-    bool bare(const Ring& ring, VertexId u, const Star& old, const std::array<int, Ring::kMaxValence>& counts,
-              int step) const {
-        const float per_area = kSupport * static_cast<float>(old.count) / std::max(old.area, 1e-20F);
+    /// Of the points missing from the faces, in their value; without bound if surface would stretch over
+    /// where there are no points.
+    float rise_of_missing(const Ring& ring, VertexId u, const Star& old,
+                          const std::array<int, Ring::kMaxValence>& counts, int step) const {
+        constexpr float kTolerance = 0.5F;  // points
         float area = 0;
+        float missing = 0;
         for (int j = 0; j < ring.face_count(); ++j) {
             const VertexId a = ring[j];
             const VertexId b = ring.next(j);
             if (a == u || b == u) continue;
             const float of_face = area_vector(at(u), at(a), at(b)).norm();
             area += of_face;
-            if (per_area * of_face > static_cast<float>(counts[index(j)] + kPseudoPoints * step)) return true;
+            missing += support_.missing({u, a, b}, of_face, static_cast<float>(counts[index(j)]));
         }
-        return old.count < kFewPoints && area > kStretch * old.area;
+        const float rise = missing - old.missing;
+        const bool stretched = old.count < kFewPoints && area > kStretch * old.area;
+        if (rise > kTolerance * static_cast<float>(step) || (stretched && !(rise < 0)))
+            return std::numeric_limits<float>::max();
+        return rise < 0 ? rise * support_.value() : 0.0F;
     }
 
     const Network& network_;
     const Surface& surface_;
     const FacePoints& points_;
-};
-
-struct EdgeSplit {
-    float gain;
-    VertexId a, b;
-    Vec where;
+    const Support& support_;
 };
 
 /// Sums for the offset of a new vertex in the middle of a face's edge, whose hat function is phi.
@@ -195,9 +195,9 @@ std::array<HatSums, 3> hat_sums(const Surface& surface, const FacePoints& points
     return sums;
 }
 
-/// All inner edges with the gain of a vertex in their middle.
+/// The inner edges in whose middle a vertex gains at least \p least_gain.
 std::vector<EdgeSplit> edge_splits(const Network& network, const Surface& surface, const FacePoints& points,
-                                   int threads) {
+                                   float least_gain, int threads) {
     std::vector<std::array<HatSums, 3>> sums(surface.faces.size());
     for_chunks(sums.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) sums[f] = hat_sums(surface, points, static_cast<int>(f));
@@ -228,6 +228,7 @@ std::vector<EdgeSplit> edge_splits(const Network& network, const Surface& surfac
             const float bound = kLongestOffset * (at[index(a)] - at[index(b)]).norm();
             const float offset = std::min(std::max(both.phi_residual / both.phi_phi, -bound), bound);
             const float gain = both.phi_residual * both.phi_residual / both.phi_phi;
+            if (gain < least_gain) continue;
             splits.push_back(
                 {gain, a, b, 0.5F * (at[index(a)] + at[index(b)]) + offset * normal.normalized()});
         }
@@ -247,24 +248,29 @@ int split_position(const Network& network, VertexId a, VertexId b) {
 
 }  // namespace
 
-Redistribution redistribute(Network& network, const Surface& surface, const FacePoints& points, int most,
-                            float least_gain, int threads) {
-    const CollapseJudge judge(network, surface, points);
-    std::vector<Collapse> collapses(index(network.slot_count()));
-    for_chunks(collapses.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) collapses[v] = judge.cheapest(static_cast<VertexId>(v));
+Redistribution plan_redistribution(const Network& network, const Surface& surface, const FacePoints& points,
+                                   float least_gain, int threads) {
+    const Support support(network, surface, points);
+    const CollapseJudge judge(network, surface, points, support);
+    Redistribution plan;
+    plan.mergers.resize(index(network.slot_count()));
+    for_chunks(plan.mergers.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) plan.mergers[v] = judge.cheapest(static_cast<VertexId>(v));
     });
-    std::vector<EdgeSplit> splits = edge_splits(network, surface, points, threads);
-    std::stable_sort(collapses.begin(), collapses.end(),
+    plan.splits = edge_splits(network, surface, points, least_gain, threads);
+    std::stable_sort(plan.mergers.begin(), plan.mergers.end(),
                      [](const auto& x, const auto& y) { return x.cost < y.cost; });
-    std::stable_sort(splits.begin(), splits.end(),
+    std::stable_sort(plan.splits.begin(), plan.splits.end(),
                      [](const auto& x, const auto& y) { return x.gain > y.gain; });
+    return plan;
+}
 
+Shifts redistribute(Network& network, const Redistribution& plan, int most, const std::vector<char>& barred) {
     // The splits claim their surroundings first: they are what all this is for.
-    std::vector<char> touched(collapses.size(), 0);
+    std::vector<char> touched = barred;
     std::vector<EdgeSplit> chosen;
-    for (const EdgeSplit& split : splits) {
-        if (static_cast<int>(chosen.size()) >= most || split.gain < least_gain) break;
+    for (const EdgeSplit& split : plan.splits) {
+        if (static_cast<int>(chosen.size()) >= most) break;
         const Ring& ring = network.ring(split.a);
         const int i = ring.find(split.b);
         const std::array<VertexId, 4> corners{split.a, split.b, ring.next(i), ring.previous(i)};
@@ -274,19 +280,19 @@ Redistribution redistribute(Network& network, const Surface& surface, const Face
         for (const VertexId v : corners) touched[index(v)] = 1;
         chosen.push_back(split);
     }
-    Redistribution result;
-    for (const Collapse& collapse : collapses) {
-        if (result.merges.size() >= chosen.size() || collapse.into < 0 ||
-            collapse.cost >= chosen[result.merges.size()].gain)
+    Shifts result;
+    for (const Merger& merger : plan.mergers) {
+        if (result.merges.size() >= chosen.size() || merger.into < 0 ||
+            merger.cost >= chosen[result.merges.size()].gain)
             break;
-        const Ring ring = network.ring(collapse.gone);
-        bool free = touched[index(collapse.gone)] == 0;
+        const Ring ring = network.ring(merger.gone);
+        bool free = touched[index(merger.gone)] == 0;
         for (int i = 0; i < ring.valence; ++i) free = free && touched[index(ring[i])] == 0;
-        if (!free || !network.can_collapse(collapse.gone, collapse.into)) continue;
-        touched[index(collapse.gone)] = 1;
+        if (!free || !network.can_collapse(merger.gone, merger.into)) continue;
+        touched[index(merger.gone)] = 1;
         for (int i = 0; i < ring.valence; ++i) touched[index(ring[i])] = 1;
-        network.collapse(collapse.gone, collapse.into);
-        result.merges.push_back({collapse.gone, collapse.into});
+        network.collapse(merger.gone, merger.into);
+        result.merges.push_back({merger.gone, merger.into});
     }
     for (std::size_t i = 0; i < result.merges.size(); ++i) {
         const EdgeSplit& split = chosen[i];

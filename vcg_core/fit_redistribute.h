@@ -11,7 +11,7 @@
 namespace neuralmesh {
 
 /// What a redistribution did. The id of a removed vertex is usually used again by an inserted one.
-struct Redistribution {
+struct Shifts {
     struct Merge {
         VertexId gone, into;
     };
@@ -22,13 +22,31 @@ struct Redistribution {
     std::vector<Insertion> insertions;  ///< as many
 };
 
-/// Pairs the cheapest half-edge collapses with the most rewarding edge splits, no two of which touch, and
-/// carries them out as long as a split gains more than the collapse costs, at most \p most pairs. Both are in
-/// sums of squared distances of the points: the cost by new feet on the faces that a collapse leaves, the
-/// gain by linear least squares over the offset of the new vertex from the middle of its edge, at least \p
-/// least_gain. Topology and number of vertices stay. \p surface and \p points are those of the network
-/// before. O(points), on \p threads threads, with the same result for any number of them.
-Redistribution redistribute(Network& network, const Surface& surface, const FacePoints& points, int most,
-                            float least_gain, int threads);
+/// The cheapest half-edge collapse of a vertex.
+struct Merger {
+    float cost;  ///< rise of the sum of squared distances of the points
+    VertexId gone, into;
+};
+/// A new vertex on an edge.
+struct EdgeSplit {
+    float gain;  ///< drop of the sum of squared distances
+    VertexId a, b;
+    Vec where;
+};
+struct Redistribution {
+    std::vector<Merger> mergers;    ///< cheapest first
+    std::vector<EdgeSplit> splits;  ///< most rewarding first
+};
+
+/// The costs by new feet on the faces that a collapse leaves, the gains, of at least \p least_gain, by linear
+/// least squares over the offset of the new vertex from the middle of its edge. \p surface and \p points are
+/// those of the network. O(points), on \p threads threads, with the same result for any number of them.
+Redistribution plan_redistribution(const Network& network, const Surface& surface, const FacePoints& points,
+                                   float least_gain, int threads);
+
+/// Pairs collapses with splits, no two of which touch each other or a vertex that is \p barred (by slot),
+/// and carries them out as long as a split gains more than the collapse costs, at most \p most pairs.
+/// Topology and number of vertices stay.
+Shifts redistribute(Network& network, const Redistribution& plan, int most, const std::vector<char>& barred);
 
 }  // namespace neuralmesh

@@ -127,7 +127,7 @@ Hit FaceTree::nearest(const Vec& p) const {
         return (node.low - p).cwiseMax(p - node.high).cwiseMax(0).squaredNorm();
     };
     Hit best{-1, {std::numeric_limits<float>::max(), {1, 0, 0}}};
-    std::array<Entry, 64> stack;
+    std::array<Entry, kStack> stack;
     int height = 0;
     if (!nodes_.empty()) stack[index(height++)] = {box_distance(0), 0};
     while (height > 0) {

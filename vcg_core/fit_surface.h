@@ -116,9 +116,14 @@ public:
     /// The nearest face of \p p, the one of smallest index among equals. Exact in float.
     /// O(log faces) expected near the surface.
     Hit nearest(const Vec& p) const;
+    /// Calls \p visit(face) for every face whose bounding box has a point in common with that of \p face,
+    /// itself among them. \p surface is that of the constructor.
+    template <class Visit>
+    void for_overlapping(int face, const Surface& surface, const Visit& visit) const;
 
 private:
     static constexpr int kLeaf = 4;
+    static constexpr std::size_t kStack = 64;
 
     struct Node {
         Vec low, high;
@@ -136,5 +141,35 @@ private:
     std::vector<Corners> corners_;  ///< in order_
     std::vector<Node> nodes_;
 };
+
+template <class Visit>
+void FaceTree::for_overlapping(int face, const Surface& surface, const Visit& visit) const {
+    const auto low_of = [&](int f) -> Vec {
+        return surface.corner(f, 0).cwiseMin(surface.corner(f, 1)).cwiseMin(surface.corner(f, 2));
+    };
+    const auto high_of = [&](int f) -> Vec {
+        return surface.corner(f, 0).cwiseMax(surface.corner(f, 1)).cwiseMax(surface.corner(f, 2));
+    };
+    const Vec low = low_of(face);
+    const Vec high = high_of(face);
+    const auto apart = [&](const Vec& l, const Vec& h) {
+        return (l.array() > high.array()).any() || (h.array() < low.array()).any();
+    };
+    std::array<int, kStack> stack;
+    int height = 0;
+    stack[index(height++)] = 0;
+    while (height > 0) {
+        const int n = stack[index(--height)];
+        const Node& node = nodes_[index(n)];
+        if (apart(node.low, node.high)) continue;
+        if (node.right >= 0) {
+            stack[index(height++)] = node.right;
+            stack[index(height++)] = n + 1;
+            continue;
+        }
+        for (int i = node.begin; i < node.end; ++i)
+            if (!apart(low_of(order_[index(i)]), high_of(order_[index(i)]))) visit(order_[index(i)]);
+    }
+}
 
 }  // namespace neuralmesh

@@ -211,6 +211,26 @@ TEST(Fit, SaysWhereEveryVertexComesFrom) {
     EXPECT_LE(moved, report.moved_vertices);
 }
 
+// A vertex put in anew takes over the counter of the place it came to: no neighbour of the vertex that it has
+// it from was nearer.
+TEST(Fit, TakesCountersFromWhereTheyWereLearned) {
+    const TargetSpace target = target_of(shapes::box_cloud(20000));
+    Network network = network_of(shapes::icosphere(3), target, 0.6);
+    const Network before = network;
+    const FitReport report = fit(network, target);
+    int taken_over = 0;
+    for (VertexId v = 0; v < network.slot_count(); ++v) {
+        const VertexId from = report.origin[static_cast<std::size_t>(v)];
+        if (!network.alive(v) || from == v) continue;
+        ++taken_over;
+        const float distance = (before.position(from) - network.position(v)).Norm();
+        const Ring& ring = before.ring(from);
+        for (int i = 0; i < ring.valence; ++i)
+            EXPECT_LE(distance, (before.position(ring[i]) - network.position(v)).Norm()) << v;
+    }
+    EXPECT_GT(taken_over, 10);
+}
+
 /// Asks to stop at once.
 class Stop : public Progress {
 public:

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Surfaces that cut themselves: found as vcglib finds them, smoothed out, and never made by the fit.
+#include "vcg_core/fit_crossings.h"
+
+#include <gtest/gtest.h>
+#include <vcg/complex/algorithms/clean.h>
+#include <vcg/complex/algorithms/update/bounding.h>
+#include <vcg/complex/algorithms/update/normal.h>
+#include <vcg/complex/complex.h>
+
+#include <algorithm>
+#include <set>
+
+#include "shapes.h"
+#include "vcg_core/fit.h"
+#include "vcg_core/fit_untangle.h"
+
+namespace neuralmesh {
+namespace {
+
+using shapes::Shape;
+
+class CutVertex;
+class CutFace;
+struct CutTypes : vcg::UsedTypes<vcg::Use<CutVertex>::AsVertexType, vcg::Use<CutFace>::AsFaceType> {};
+class CutVertex : public vcg::Vertex<CutTypes, vcg::vertex::Coord3f, vcg::vertex::BitFlags> {};
+class CutFace : public vcg::Face<CutTypes, vcg::face::VertexRef, vcg::face::Normal3f, vcg::face::Mark,
+                                 vcg::face::BitFlags> {};
+class CutMesh : public vcg::tri::TriMesh<std::vector<CutVertex>, std::vector<CutFace>> {};
+
+/// A sphere of radius 10, where vcglib's tolerances are small, crumpled by \p noise.
+Network crumpled_sphere(double noise, std::uint64_t seed = 5) {
+    const Shape sphere = shapes::icosphere(3);
+    Random random(seed);
+    std::vector<vcg::Point3f> positions;
+    for (const vcg::Point3d& p : sphere.positions)
+        positions.push_back(vcg::Point3f::Construct((p + shapes::in_ball(random) * noise) * 10.0));
+    return Network(positions, std::vector<Triangle>(sphere.faces.begin(), sphere.faces.end()));
+}
+
+std::set<Triangle> cut_faces(const Network& network) {
+    std::set<Triangle> faces;
+    for (const Crossing& c : crossings_of(Surface(network), 1)) {
+        faces.insert({c[0], c[1], c[2]});
+        faces.insert({c[3], c[4], c[5]});
+    }
+    return faces;
+}
+
+std::set<Triangle> cut_faces_by_vcglib(const Network& network) {
+    CutMesh mesh;
+    vcg::tri::Allocator<CutMesh>::AddVertices(mesh, static_cast<std::size_t>(network.slot_count()));
+    for (VertexId v = 0; v < network.slot_count(); ++v)
+        mesh.vert[static_cast<std::size_t>(v)].P() = network.position(v);
+    const auto vertex = [&](VertexId v) { return &mesh.vert[static_cast<std::size_t>(v)]; };
+    for (const Triangle& f : network.faces())
+        vcg::tri::Allocator<CutMesh>::AddFace(mesh, vertex(f[0]), vertex(f[1]), vertex(f[2]));
+    vcg::tri::UpdateBounding<CutMesh>::Box(mesh);
+    std::vector<CutFace*> found;
+    vcg::tri::Clean<CutMesh>::SelfIntersections(mesh, found);
+    std::set<Triangle> faces;
+    for (const CutFace* f : found) {
+        Triangle t;
+        for (int k = 0; k < 3; ++k)
+            t[static_cast<std::size_t>(k)] = static_cast<VertexId>(f->cV(k) - mesh.vert.data());
+        std::sort(t.begin(), t.end());
+        faces.insert(t);
+    }
+    return faces;
+}
+
+TEST(Crossings, ARoundSphereHasNone) { EXPECT_TRUE(cut_faces(crumpled_sphere(0)).empty()); }
+
+TEST(Crossings, AreThoseThatVcglibFinds) {
+    for (const double noise : {0.1, 0.2, 0.4}) {
+        const Network network = crumpled_sphere(noise);
+        const std::set<Triangle> faces = cut_faces(network);
+        EXPECT_FALSE(faces.empty());
+        EXPECT_EQ(faces, cut_faces_by_vcglib(network)) << noise;
+    }
+}
+
+TEST(Crossings, AreTheSameForAnyNumberOfThreads) {
+    const Surface surface(crumpled_sphere(0.3));
+    const std::vector<Crossing> one = crossings_of(surface, 1);
+    EXPECT_TRUE(std::is_sorted(one.begin(), one.end()));
+    EXPECT_EQ(one, crossings_of(surface, 2));
+    EXPECT_EQ(one, crossings_of(surface, 5));
+}
+
+TEST(Crossings, AreIndifferentToTheScale) {
+    Network network = crumpled_sphere(0.1);
+    const std::set<Triangle> faces = cut_faces(network);
+    ASSERT_FALSE(faces.empty());
+    for (VertexId v = 0; v < network.slot_count(); ++v)
+        network.set_position(v, network.position(v) * 0x1p-10F);
+    EXPECT_EQ(cut_faces(network), faces);
+}
+
+TEST(CrossingGuard, ObjectsToWhatIsNewBeyondWhatWasThere) {
+    const Crossing a{0, 1, 2, 3, 4, 5};
+    const Crossing b{6, 7, 8, 9, 10, 11};
+    CrossingGuard strict;
+    EXPECT_TRUE(strict.objections({}).empty());
+    EXPECT_EQ(strict.objections({a}), std::vector<VertexId>(a.begin(), a.end()));
+    CrossingGuard guard({a});
+    EXPECT_TRUE(guard.objections({b}).empty()) << "as many faces as before";
+    EXPECT_EQ(guard.objections({a, b}), std::vector<VertexId>(a.begin(), a.end()));
+    EXPECT_TRUE(guard.objections({}).empty());
+}
+
+TEST(Untangle, SmoothsOutACrumpledCap) {
+    Network network = crumpled_sphere(0);
+    const Network crumpled = crumpled_sphere(0.13);
+    for (VertexId v = 0; v < network.slot_count(); ++v)
+        if (network.position(v)[2] > 8) network.set_position(v, crumpled.position(v));
+    const Network before = network;
+    const std::set<Triangle> faces = cut_faces(network);
+    ASSERT_FALSE(faces.empty());
+    EXPECT_TRUE(untangle(network, 1).empty());
+    EXPECT_TRUE(cut_faces(network).empty());
+    EXPECT_EQ(network.validate(), "");
+    int moved = 0;
+    for (VertexId u = 0; u < network.slot_count(); ++u)
+        moved += network.position(u) == before.position(u) ? 0 : 1;
+    EXPECT_GT(moved, 0);
+    EXPECT_LT(moved, 200) << "far from it nothing moves";
+}
+
+TEST(Untangle, LeavesAloneWhatItCannotMend) {
+    Network network = crumpled_sphere(1.5);
+    const Network before = network;
+    const std::size_t crossings = crossings_of(Surface(network), 1).size();
+    EXPECT_LE(untangle(network, 1).size(), crossings);
+    Network again = before;
+    untangle(again, 3);
+    for (VertexId v = 0; v < network.slot_count(); ++v) EXPECT_EQ(network.position(v), again.position(v));
+}
+
+/// A plate 1 x 1 x \p thickness.
+shapes::Cloud plate_cloud(int count, double thickness) {
+    shapes::Cloud cloud = shapes::box_cloud(count);
+    for (vcg::Point3d& p : cloud) p[2] *= thickness;
+    return cloud;
+}
+
+// Faces much larger than the plate is thick: points of either side are next to faces of the other.
+TEST(Fit, DoesNotMakeAPlateCutItself) {
+    for (const double thickness : {0.02, 0.05, 0.1}) {
+        const shapes::Cloud cloud = plate_cloud(20000, thickness);
+        const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+        const Shape sphere = shapes::icosphere(2);
+        std::vector<vcg::Point3f> positions;
+        for (const vcg::Point3d& p : sphere.positions)
+            positions.push_back(target.frame().inside({0.7 * p[0], 0.7 * p[1], 0.8 * thickness * p[2]}));
+        Network network(positions, std::vector<Triangle>(sphere.faces.begin(), sphere.faces.end()));
+        ASSERT_TRUE(cut_faces(network).empty());
+        NoProgress progress;
+        const FitReport report = fit_to_points(network, target, {}, 1, 1, progress);
+        EXPECT_TRUE(report.improved);
+        EXPECT_TRUE(cut_faces(network).empty()) << thickness;
+        EXPECT_EQ(network.validate(), "");
+    }
+}
+
+TEST(Fit, LeavesNoMoreCrossingsThanThereWere) {
+    const shapes::Cloud cloud = plate_cloud(20000, 0.03);
+    const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+    Network network = crumpled_sphere(0.3);
+    for (VertexId v = 0; v < network.slot_count(); ++v) {
+        vcg::Point3f p = network.position(v) * 0.05F;
+        p[2] *= 0.06F;
+        network.set_position(v, p);
+    }
+    const std::size_t before = cut_faces(network).size();
+    ASSERT_GT(before, 100U);
+    NoProgress progress;
+    fit_to_points(network, target, {}, 1, 1, progress);
+    EXPECT_LE(cut_faces(network).size(), before);
+    EXPECT_EQ(network.validate(), "");
+}
+
+}  // namespace
+}  // namespace neuralmesh

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Pairs of faces from a tree of boxes, then vcglib's test of two triangles.
+#include "fit_crossings.h"
+
+#include <vcg/space/intersection/triangle_triangle3.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "fit_parallel.h"
+
+namespace neuralmesh {
+
+namespace {
+
+constexpr std::size_t kChunk = 128;
+
+/// Six times the signed volume of the tetrahedron a b c d.
+float volume(const Vec& a, const Vec& b, const Vec& c, const Vec& d) {
+    return (b - a).cross(c - a).dot(d - a);
+}
+
+/// Whether the segment p-q goes through the triangle a b c, not merely along its plane. Without tolerances,
+/// so the answer does not depend on the scale.
+bool goes_through(const Vec& p, const Vec& q, const Vec& a, const Vec& b, const Vec& c) {
+    if (!(volume(a, b, c, p) * volume(a, b, c, q) < 0)) return false;
+    const float u = volume(p, q, a, b);
+    const float v = volume(p, q, b, c);
+    const float w = volume(p, q, c, a);
+    return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
+}
+
+bool cut_each_other(const Surface& surface, int f, int g) {
+    const Triangle& s = surface.faces[index(f)];
+    const Triangle& t = surface.faces[index(g)];
+    int common = 0;
+    std::size_t in_s = 0;
+    std::size_t in_t = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+            if (s[i] == t[j]) {
+                ++common;
+                in_s = i;
+                in_t = j;
+            }
+    if (common > 1) return false;
+    const auto corner = [&](int face, std::size_t k) -> const Vec& { return surface.corner(face, k % 3); };
+    if (common == 1)
+        return goes_through(corner(f, in_s + 1), corner(f, in_s + 2), corner(g, 0), corner(g, 1),
+                            corner(g, 2)) ||
+               goes_through(corner(g, in_t + 1), corner(g, in_t + 2), corner(f, 0), corner(f, 1),
+                            corner(f, 2));
+    return vcg::NoDivTriTriIsect(point(corner(f, 0)), point(corner(f, 1)), point(corner(f, 2)),
+                                 point(corner(g, 0)), point(corner(g, 1)), point(corner(g, 2)));
+}
+
+std::size_t faces_of(const std::vector<Crossing>& crossings) {
+    std::vector<Triangle> faces;
+    for (const Crossing& c : crossings) {
+        faces.push_back({c[0], c[1], c[2]});
+        faces.push_back({c[3], c[4], c[5]});
+    }
+    std::sort(faces.begin(), faces.end());
+    return static_cast<std::size_t>(std::unique(faces.begin(), faces.end()) - faces.begin());
+}
+
+}  // namespace
+
+std::vector<Crossing> crossings_of(const Surface& surface, int threads) {
+    const FaceTree tree(surface);
+    std::vector<std::vector<Crossing>> found((surface.faces.size() + kChunk - 1) / kChunk);
+    for_chunks(surface.faces.size(), kChunk, threads,
+               [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+                   for (std::size_t i = begin; i < end; ++i) {
+                       const int f = static_cast<int>(i);
+                       tree.for_overlapping(f, surface, [&](int g) {
+                           if (g <= f || !cut_each_other(surface, f, g)) return;
+                           Triangle s = surface.faces[index(f)];
+                           Triangle t = surface.faces[index(g)];
+                           std::sort(s.begin(), s.end());
+                           std::sort(t.begin(), t.end());
+                           if (t < s) std::swap(s, t);
+                           found[chunk].push_back({s[0], s[1], s[2], t[0], t[1], t[2]});
+                       });
+                   }
+               });
+    std::vector<Crossing> all;
+    for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+CrossingGuard::CrossingGuard(std::vector<Crossing> standing)
+    : standing_(std::move(standing)), most_faces_(faces_of(standing_)) {}
+
+std::vector<VertexId> CrossingGuard::objections(std::vector<Crossing> now) {
+    std::vector<Crossing> added;
+    std::set_difference(now.begin(), now.end(), standing_.begin(), standing_.end(),
+                        std::back_inserter(added));
+    std::vector<VertexId> result;
+    if (added.empty() || faces_of(now) <= most_faces_) {
+        standing_ = std::move(now);
+    } else {
+        for (const Crossing& crossing : added) result.insert(result.end(), crossing.begin(), crossing.end());
+    }
+    return result;
+}
+
+}  // namespace neuralmesh
