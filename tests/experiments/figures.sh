@@ -28,7 +28,7 @@ screenshots() {
     "$python" "$here/small_png.py" --width 1080 "$pictures/meshlab_$2"_{dialog,result}.png
 }
 
-cmake --build "$build" --target learn check_mesh -- --quiet
+cmake --build "$build" --target learn counter_trace check_mesh -- --quiet
 say "Figures of the paper"
 "$python" "$here/paper_figures.py" --learn "$build/tests/learn" --out "$out" --pictures "$pictures"
 say "Screenshots"
@@ -39,3 +39,5 @@ say "Table 1 of the paper"
 "$python" "$here/paper_table1.py" --learn "$build/tests/learn" --check "$build/tests/check_mesh" --out "$out"
 say "Features against every analysis of the final mesh and of the cloud"
 "$python" "$here/features.py" --learn "$build/tests/learn" --out "$out"
+say "Termination by eq 8"
+"$python" "$here/paper_termination.py" --learn "$build/tests/learn" --trace "$build/tests/counter_trace" --out "$out"

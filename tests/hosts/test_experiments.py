@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""The paper's experiments in a form small enough for every test run: its table, what drives its figures, features
+and termination. `./run.sh figures` makes the full ones."""
+
+import json
+
+import numpy as np
+import pytest
+
+import features
+import models
+import paper_figures
+import paper_runs
+import paper_table1
+import paper_termination
+
+
+VERTICES = 1000  # of the small table
+
+
+@pytest.fixture(scope="module")
+def learn(build):
+    return build / "tests" / "learn"
+
+
+def test_kept_rows_are_taken_again_and_only_those(tmp_path):
+    program = tmp_path / "program"
+    program.write_text("one build")
+    made = []
+
+    def make():
+        made.append(len(made))
+        return {"row": made[-1]}
+
+    path = tmp_path / "out" / "rows.jsonl"
+    kept = paper_runs.Kept(path, program)
+    assert kept.row(make, seed=1) == {"row": 0}
+    assert kept.row(make, seed=2) == {"row": 1}
+    with path.open("a") as file:
+        file.write('\n{"key": "the run ended he')
+    again = paper_runs.Kept(path, program)
+    assert [again.row(make, seed=seed) for seed in (1, 2, 3)] == [{"row": 0}, {"row": 1}, {"row": 2}]
+    assert paper_runs.Kept(path, program).row(make, seed=3) == {"row": 2}
+    program.write_text("another build")
+    assert paper_runs.Kept(path, program).row(make, seed=1) == {"row": 3}
+
+
+# --- Table 1 ------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def table1(build, learn, tmp_path_factory):
+    out = tmp_path_factory.mktemp("table1")
+    paper_table1.main(["--learn", str(learn), "--check", str(build / "tests" / "check_mesh"), "--out", str(out),
+                       "--models", "bunny", "--vertices", str(VERTICES), "--seeds", "1,2"])
+    return json.loads((out / "table1.json").read_text())
+
+
+def median_of(rows, measure, **wanted):
+    return np.median([row[measure] for row in paper_table1.runs_of(rows, **wanted)])
+
+
+def test_every_run_has_exactly_the_vertices_asked_for(table1):
+    assert len(table1) == 3 * 2 * 2
+    assert all(row["vertices"] == row["target"] for row in table1)
+
+
+def test_to_the_letter_adaptive_growth_stalls_and_with_maturity_it_does_not(table1):
+    def stalled(**wanted):
+        return [any("stalled" in warning for warning in row["warnings"])
+                for row in paper_table1.runs_of(table1, **wanted)]
+
+    assert all(stalled(variant="to the letter", kind="ad"))
+    assert not any(stalled(variant="to the letter", kind="nad"))
+    assert not any(stalled(variant="with maturity")) and not any(stalled(variant="default"))
+
+
+def test_adaptive_meshes_are_closer_and_have_better_normals(table1):
+    for measure in ("rms", "normal_error"):
+        adaptive, even = (median_of(table1, measure, variant="with maturity", kind=kind)
+                          for kind in ("ad", "nad"))
+        assert adaptive < even, measure
+
+
+def test_the_default_is_closer_than_the_papers_learning(table1):
+    default, paper = (median_of(table1, "rms", variant=variant, kind="ad") for variant in ("default", "with maturity"))
+    assert default < 0.7 * paper
+
+
+# --- Figure 1 -----------------------------------------------------------------------------------------------------
+
+
+def test_density_follows_curvature_with_the_normal_counter(learn, tmp_path):
+    surface = models.load_model("bunny")
+    models.save_ply(tmp_path / "cloud.ply", models.make_cloud(*surface, 40_000))
+    curvature = paper_figures.mean_curvature(*surface)
+    found = {}
+    for utility in (0, 1):
+        mesh = tmp_path / f"{utility}.ply"
+        paper_runs.learn(learn, tmp_path / "cloud.ply", mesh, target_vertices=1500, utility_counter=utility,
+                         fit_to_points=0)
+        found[utility] = paper_figures.density_correlation(mesh, surface[0], curvature)
+    assert found[0] > 0.35 and found[0] > found[1] + 0.3, found
+
+
+# --- features -----------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def feature_rows(learn, tmp_path_factory):
+    out = tmp_path_factory.mktemp("features")
+    features.main(["--learn", str(learn), "--out", str(out), "--models", "crossed-cylinders,filleted-cube",
+                   "--noise", ".3", "--vertices", "2500", "--samples", "50000"])
+    return json.loads((out / "features.json").read_text())
+
+
+def test_the_crease_measure_beats_every_analysis_of_the_final_mesh(feature_rows):
+    rows = [row for row in feature_rows if row["model"] == "crossed-cylinders" and row["stage"] == "fitted"]
+    assert len(rows) == 2
+    for row in rows:
+        ours = row["crease measure"]
+        assert ours["default"] > features.best_of(row, features.MESH_MEASURES), row
+        assert ours["best"] > row["eq 6 counter"]["best"] and ours["best"] <= row["oracle"]["best"], row
+
+
+def test_rounded_edges_are_no_creases(feature_rows):
+    rows = [row for row in feature_rows if row["model"] == "filleted-cube"]
+    assert len(rows) == 4 and all(row["false positives"] < 0.1 for row in rows)
+
+
+# --- termination --------------------------------------------------------------------------------------------------
+
+
+def test_the_stop_criterion_speaks_of_the_mesh_and_eq_4_does_not(build, learn, tmp_path):
+    paper_termination.main(["--learn", str(learn), "--trace", str(build / "tests" / "counter_trace"), "--out",
+                            str(tmp_path), "--models", "bunny,crossed-cylinders", "--samples", "50000", "--most", "6000",
+                            "--thresholds", ".25"])
+    told = json.loads((tmp_path / "termination.json").read_text())
+    for trace in told["traces"].values():
+        assert len(trace) == 4
+        # 1 a signal on average, less 5 % of the sum: 0.95 / 0.05.
+        assert [line["sum_eq4"] for line in trace] == pytest.approx([19] * 4, rel=0.25)
+        turns = [line["mean_turn"] for line in trace]
+        assert turns[-1] < 0.6 * turns[0]
+    for row in told["rows"]:
+        assert row["stopped"]["stop_reason"] == paper_termination.CONVERGED and 300 < row["stopped"]["vertices"] < 6000
