@@ -210,12 +210,12 @@ def fig2(studio):
 
 
 def fig3(studio):
-    """Levels of detail."""
+    """Levels of detail, with the processor time of each on one thread."""
     rows, captions, told = [], [], {}
     for subject in studio.had(PAIR, 2):
-        made = [studio.mesh(subject, level) for level in studio.options.levels]
+        made = [studio.mesh(subject, level, threads=1) for level in studio.options.levels]
         rows.append(subject.pictures([mesh for mesh, _ in made], "flat"))
-        captions.append([f"{report['vertices']:,} vertices, {report['seconds']:.1f} s" for _, report in made])
+        captions.append([f"{report['vertices']:,} vertices, {report['processor_seconds']:.1f} s" for _, report in made])
         told[subject.name] = {"points": subject.points, "levels": [report for _, report in made]}
     studio.sheet("fig3", rows, captions, size=(320, 320))
     studio.numbers["fig3"] = told
@@ -241,8 +241,16 @@ def main(arguments=None):
         sys.exit(f"There is no figure '{unknown[0]}': there are {', '.join(makers)}.")
     for name in options.figures:
         makers[name](studio)
-    (options.out / "figures.json").write_text(json.dumps(studio.numbers, indent=1))
-    print(json.dumps({name: told for name, told in studio.numbers.items() if name == "fig1"}, indent=1))
+    told = options.out / "figures.json"
+    earlier = json.loads(told.read_text()) if told.exists() else {}
+    told.write_text(json.dumps({**earlier, **studio.numbers}, indent=1))  # figures may be made one by one
+    for name, told in studio.numbers.get("fig1", {}).items():
+        print(f"fig1, {name}: correlation of density with curvature " +
+              ", ".join(f"{label} {value:+.2f}" for label, value in told.items()))
+    for name, told in studio.numbers.get("fig3", {}).items():
+        print(f"fig3, {name}, {told['points']:,} points: " +
+              ", ".join(f"{level['vertices']:,} vertices in {level['processor_seconds']:.1f} processor seconds, RMS "
+                        f"{level['rms_error']:.4f} %" for level in told["levels"]))
 
 
 if __name__ == "__main__":
