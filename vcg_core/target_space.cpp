@@ -39,7 +39,7 @@ void TargetSpace::set_frame(const vcg::Box3d& box, std::size_t not_finite, std::
             std::to_string(not_finite) + " of the " + std::to_string(count) +
             " vertices have coordinates that are not finite (NaN or infinite): remove them, for "
             "example with the filter 'Conditional Vertex Selection' and 'Delete Selected Vertices'.");
-    frame_.centre = (box.min + box.max) / 2;
+    frame_.centre = box.min / 2 + box.max / 2;  // the sum of both may be beyond double
     frame_.diagonal = (box.max - box.min).Norm();
     if (box.min == box.max)
         throw InputError("All points of the layer are equal: a surface needs at least 4 distinct points.");

@@ -111,6 +111,13 @@ TEST(TargetSpace, RefusesABoxBeyondDoublePrecision) {
     expect_complaint(placed(shapes::sphere_cloud(50), {{0, 0, 0}, 1e-200}), "scale it");
 }
 
+TEST(TargetSpace, TakesAPlaneNearTheEndOfDouble) {
+    const double far = 1.7e308;
+    const TargetSpace target = cloud_target({{far, 0, 0}, {far, 1, 0}, {far, 0, 1}, {far, 1, 1}});
+    EXPECT_EQ(target.frame().centre, Point3d(far, 0.5, 0.5));
+    for (const vcg::Point3f& p : target.positions()) EXPECT_EQ(p[0], 0);
+}
+
 TEST(TargetSpace, FrameIsCentredWithDiagonalOne) {
     for (const Place& place : kPlaces) {
         const Cloud cloud = placed(shapes::box_cloud(2000, {1, 2, 3}), place);
