@@ -7,6 +7,7 @@
 # Prints nothing when all is there already.
 set -euo pipefail
 
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 cache="${XDG_CACHE_HOME:-$HOME/.cache}/neural-mesh"
 releases="
 2020.09 meshlab_2020.09+dfsg1.orig.tar.xz d6715352ff65caffdec0292858d4263eb0c3cbbf3b1e5c2e2bab218e3f234630
@@ -21,17 +22,11 @@ fail() {
     exit 1
 }
 
-# The mirror that Debian's own packages come from; asked of apt, so that no host is named here.
-mirror() {
-    apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Origin: Debian' 'Label: Debian' |
-        sort -u | head -n 1
-}
-
 holds() { echo "$2  $1" | sha256sum --check --status 2> /dev/null; }
 
 fetch() {
     local tarball="$1" sum="$2" uri
-    uri="$(mirror)"
+    uri="$("$here/debian_mirror.sh")"
     if [ -z "$uri" ]; then
         fail "apt knows no Debian mirror to fetch MeshLab's sources from: run apt-get update on a Debian system."
     fi

@@ -23,9 +23,7 @@ if ! command -v debootstrap >/dev/null; then
     exit 1
 fi
 
-# shellcheck disable=SC2016  # the dollars are apt's
-mirror=${DEBIAN_MIRROR:-$(apt-get indextargets --format '$(ORIGIN) $(LABEL) $(REPO_URI)' \
-    'Created-By: Packages' | sed -n 's/^Debian Debian //p' | sed 1q)}
+mirror=$("$(dirname "$0")/../../filter_neuralmesh/debian_mirror.sh")
 if [ -z "$mirror" ]; then
     echo "gui_debian_root: no Debian mirror in apt's sources; name one in DEBIAN_MIRROR." >&2
     exit 1

@@ -3,22 +3,34 @@
 
 """MeshLab 2022.02 and 2025.07 without a window: library_host.cpp run by the libraries of Debian trixie and sid.
 
-No root rights are needed: the releases' own loader runs the program."""
+They are fetched on first use, and no root rights are needed: the releases' own loader runs the program."""
 
+import functools
 import json
 import os
 import subprocess
 from pathlib import Path
 
 CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "neural-mesh"
-ROOTS = Path(os.environ.get("NEURAL_MESH_ROOTS") or CACHE / "roots")
 SUITES = {"2022.02": "trixie", "2025.07": "sid"}
 RELEASES = tuple(sorted(SUITES))
 
 
+@functools.lru_cache
+def libraries_of(release):
+    """The folder with the release's libraries, in the user's cache. RuntimeError: they cannot be had, and why."""
+    folder = CACHE / "libraries" / release
+    script = Path(__file__).resolve().with_name("fetch_libraries.sh")
+    done = subprocess.run([str(script), release, SUITES[release], str(folder)], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True, check=False, timeout=900)
+    if done.returncode != 0:
+        raise RuntimeError(done.stderr.strip())
+    return folder / "usr/lib/x86_64-linux-gnu"
+
+
 def run(build, release, plugin, layer, out, *mode):
     """Starts library_host.cpp on a layer file of inputs.write_layer(); returns the finished process."""
-    libraries = ROOTS / SUITES[release] / "usr/lib/x86_64-linux-gnu"
+    libraries = libraries_of(release)
     command = [libraries / "ld-linux-x86-64.so.2", "--library-path", f"{libraries}/meshlab:{libraries}",
                build / "tests/run_library_host", libraries / "meshlab/libmeshlab-common.so",
                build / f"tests/liblibrary_host_{release}.so", plugin, layer, out, *mode]

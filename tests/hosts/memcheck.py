@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""The plugin in meshlabserver 2020.09 under valgrind's memcheck, on a small cloud:
+
+    /usr/bin/python3 tests/hosts/memcheck.py [--build DIR]
+
+Prints every error, and every leak, whose stack passes through the plugin, and ends with 1 if there is one. What the
+host, Qt and the OpenGL driver do among themselves is counted and left to them. Takes half a minute on an idle machine. Needs the Debian
+packages valgrind and xvfb.
+"""
+
+import argparse
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import meshlabserver
+
+ROOT = Path(__file__).resolve().parents[2]
+PLUGIN = "libfilter_neuralmesh.so"
+
+
+def write_cloud(path, count=600):
+    """A saddle of points, as a text file that meshlabserver reads."""
+    steps = [i / 24 - .5 for i in range(25)]
+    points = [(x, y, x * x - y * y) for x in steps for y in steps][:count]
+    path.write_text("\n".join(["ply", "format ascii 1.0", f"element vertex {len(points)}", "property float x",
+                               "property float y", "property float z", "end_header",
+                               *(f"{x} {y} {z}" for x, y, z in points)]) + "\n")
+    return path
+
+
+def checked_run(build, folder, report, **parameters):
+    """Runs the filter under memcheck; returns what meshlabserver printed."""
+    server = meshlabserver.make_folder(folder / "meshlab", meshlabserver.plugin_path(build))
+    script = meshlabserver.write_script(build, folder / "script.mlx", **parameters)
+    # softpipe: the other software drivers compile their code while they run, which takes memcheck minutes.
+    variables = dict(meshlabserver.environment(server), DISPLAY=meshlabserver.display(), GALLIUM_DRIVER="softpipe")
+    command = ["valgrind", "--tool=memcheck", "--leak-check=full", "--show-leak-kinds=definite", "--num-callers=40",
+               "--xml=yes", f"--xml-file={report}", str(server / "meshlabserver"),
+               "-i", str(write_cloud(folder / "cloud.ply")), "-o", str(folder / "out.ply"), "-m", "vq", "vc", "-s", str(script)]
+    done = subprocess.run(command, env=variables, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          errors="replace", check=False)
+    if "stop_reason=" not in done.stdout or not (folder / "out.ply").exists():
+        raise meshlabserver.ServerError(f"meshlabserver ended with code {done.returncode}:\n{done.stdout[-3000:]}")
+    return done.stdout
+
+
+def stack_of(error):
+    """(file of the object, function) of each frame of the error's first stack, from the innermost."""
+    return [(Path(frame.findtext("obj") or "").name, frame.findtext("fn") or "?") for frame in error.find("stack")]
+
+
+def judge(report):
+    """(errors through the plugin as text, number of all errors)"""
+    errors = ElementTree.parse(report).getroot().findall("error")
+    ours = []
+    for error in errors:
+        stack = stack_of(error)
+        if any(name == PLUGIN for name, _ in stack):
+            what = error.findtext("what") or error.findtext("xwhat/text") or error.findtext("kind")
+            ours.append("\n    ".join([what, *(f"{function} ({name})" for name, function in stack)]))
+    return ours, len(errors)
+
+
+# The defaults, and what they leave out.
+VARIANTS = ({}, {"start_mesh": 1, "feature_measure": 1, "select_features": True})
+
+
+def check(build, parameters):
+    """Runs the filter once. Returns (a line about it, errors through the plugin)."""
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder) / "report.xml"
+        text = checked_run(build, Path(folder), report, target_vertices=60, settling_signals_per_vertex=0, threads=2,
+                           **parameters)
+        ours, all_errors = judge(report)
+    figures = meshlabserver.figures(text)
+    return (f"{figures['vertices']} vertices after {figures['signals']} signals: {len(ours)} errors in the plugin, "
+            f"{all_errors - len(ours)} elsewhere"), ours
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=Path, default=ROOT / "build")
+    build = parser.parse_args().build.resolve()
+    found = 0
+    for parameters in VARIANTS:
+        line, errors = check(build, parameters)
+        print("\n".join([line, *errors]), flush=True)
+        found += len(errors)
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
