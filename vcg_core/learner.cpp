@@ -30,7 +30,6 @@ constexpr int kSplitCandidates = 32;  ///< tried before a split is put off
 constexpr std::int64_t kLeastSettling = 60000;
 constexpr int kMostAtOnce = 2048;   ///< a batch that stays in the cache
 constexpr int kReportEvery = 1000;  ///< signals between two looks at the progress and at the stop criteria
-constexpr double kDegreesPerRadian = 57.29577951308232;
 
 }  // namespace
 
@@ -112,6 +111,7 @@ void Learner::learn_counters(int i) {
     const VertexId w = steps_.winner(i);
     const double delta = steps_.delta(i);  // eq 2
     mean_delta_.add(delta);
+    turn_mean_.add(delta, network_.vertex_count());
     const double m_delta = mean_delta_.mean();
     // A mesh that has not turned at all (a plane learned by a plane) has no mean to compare with: all are
     // equal.
@@ -307,11 +307,6 @@ std::int64_t Learner::growth_budget() const {
 
 std::int64_t Learner::signal_bound() const {
     return growth_budget() + 2 * std::int64_t{settings_.signals_per_split} * settings_.target_vertices;
-}
-
-double Learner::mean_turn() const {
-    // delta = 1 - cos(angle), which is angle^2 / 2 for the small angles in question.
-    return kDegreesPerRadian * std::sqrt(2 * mean_delta_.mean());
 }
 
 }  // namespace neuralmesh

@@ -16,6 +16,7 @@
 #include "random.h"
 #include "settings.h"
 #include "target_space.h"
+#include "turn_mean.h"
 #include "winner_search.h"
 
 namespace neuralmesh {
@@ -77,10 +78,8 @@ public:
     std::int64_t signals() const { return signals_; }
     std::int64_t splits() const { return splits_; }
     std::int64_t collapses() const { return collapses_; }
-    /// Mean(n_c) without the normalisation of eq 3, which holds it close to 1 whatever the mesh; as an angle
-    /// in degrees: by how much the winner's normal turns in one Basic Step, root of the mean square over the
-    /// last C_delta signals. This is what eq 8 stops at.
-    double mean_turn() const;
+    /// By how much the winner's normal turns in one Basic Step, in degrees. This is what eq 8 stops at.
+    double mean_turn() const { return turn_mean_.degrees(); }
 
 private:
     struct Halving {
@@ -109,6 +108,7 @@ private:
     FeatureCounters feature_counters_;
     FeatureStatistic feature_statistic_;
     WindowMean mean_delta_;
+    TurnMean turn_mean_;
     BasicSteps steps_;
     Random random_;
     std::vector<vcg::Point3f> drawn_;

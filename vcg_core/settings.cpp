@@ -140,8 +140,8 @@ std::vector<SettingInfo> advanced_rows() {
             "that positions and counters speak of the final mesh. 0: it does not."),
         row(&S::stop_below_mean_counter, "stop_below_mean_counter", "Stop below mean counter", 0, 1e6,
             "α_t of the paper (eq 8), as an angle in degrees: growth ends before the target when a signal "
-            "turns the "
-            "winner's normal by less than this, root mean square over the normalization window. 0: off."),
+            "turns the winner's normal by less than this, root mean square over the last ten signals per "
+            "vertex. 0: off."),
     };
 }
 

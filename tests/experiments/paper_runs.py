@@ -107,14 +107,18 @@ class SmoothNormals:
     def __init__(self, vertices, faces, samples=evaluate.NORMAL_SAMPLES):
         self.points, self.normals = samples_with_normals(vertices, faces, samples, 20030103)
 
-    def error(self, vertices, faces):
-        """The mean angle in degrees between the true normal and the mesh's next to it, both interpolated from
-        the vertices; the mean is over the true surface's area. A mesh that is inside out is turned over."""
+    def angles(self, vertices, faces):
+        """At points uniform over the true surface, the angle in degrees between the true normal and the mesh's next to
+        it, both interpolated from the vertices. A mesh that is inside out is turned over."""
         points, normals = samples_with_normals(vertices, faces, evaluate.SAMPLES, 20030104)
         _, nearest = cKDTree(points).query(self.points)
         cosine = np.einsum("ij,ij->i", self.normals, normals[nearest])
-        angle = float(np.degrees(np.arccos(cosine.clip(-1, 1))).mean())
-        return min(angle, 180 - angle)
+        angle = np.degrees(np.arccos(cosine.clip(-1, 1)))
+        return angle if angle.mean() <= 90 else 180 - angle
+
+    def error(self, vertices, faces):
+        """The mean of angles()."""
+        return float(self.angles(vertices, faces).mean())
 
 
 def digest(data):

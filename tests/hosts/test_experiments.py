@@ -135,7 +135,7 @@ def test_rounded_edges_are_no_creases(feature_rows):
 
 def test_the_stop_criterion_speaks_of_the_mesh_and_eq_4_does_not(build, learn, tmp_path):
     paper_termination.main(["--learn", str(learn), "--trace", str(build / "tests" / "counter_trace"), "--out",
-                            str(tmp_path), "--models", "bunny,crossed-cylinders", "--samples", "50000", "--most", "6000",
+                            str(tmp_path), "--models", "bunny,filleted-cube", "--samples", "50000", "--most", "5000",
                             "--thresholds", ".25"])
     told = json.loads((tmp_path / "termination.json").read_text())
     for trace in told["traces"].values():
@@ -144,5 +144,10 @@ def test_the_stop_criterion_speaks_of_the_mesh_and_eq_4_does_not(build, learn, t
         assert [line["sum_eq4"] for line in trace] == pytest.approx([19] * 4, rel=0.25)
         turns = [line["mean_turn"] for line in trace]
         assert turns[-1] < 0.6 * turns[0]
-    for row in told["rows"]:
-        assert row["stopped"]["stop_reason"] == paper_termination.CONVERGED and 300 < row["stopped"]["vertices"] < 6000
+    rows = told["rows"]
+    assert all(row["stopped"]["stop_reason"] == paper_termination.CONVERGED for row in rows)
+    # The bunny needs more vertices for normals as good; with as many for both, they are less alike.
+    assert paper_termination.spread([row["stopped"]["vertices"] for row in rows]) > 2
+    off = [row for row in rows if row["fit"] == "fit off"]
+    assert all(paper_termination.spread([row["stopped"][error] for row in off]) <
+               0.6 * paper_termination.spread([row["even"][error] for row in off]) for error in ("normal_error", "normal_rms"))
