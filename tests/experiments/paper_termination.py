@@ -40,9 +40,9 @@ def parse(arguments):
     parser.add_argument("--trace", required=True, help="counter_trace.cpp, built")
     parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
     parser.add_argument("--models", type=numbers(str), default=MODELS)
-    parser.add_argument("--thresholds", type=numbers(float), default=(.3, .22, .16), help="in degrees")
+    parser.add_argument("--thresholds", type=numbers(float), default=(.24, .2, .17), help="in degrees")
     parser.add_argument("--samples", type=int, default=200_000)
-    parser.add_argument("--most", type=int, default=30_000, help="vertices at which growth ends in any case")
+    parser.add_argument("--most", type=int, default=20_000, help="vertices at which growth ends in any case")
     parser.add_argument("--out", type=Path, default=Path("out/figures"))
     return parser.parse_args(arguments)
 
