@@ -161,3 +161,28 @@ def test_nothing_is_printed(pymeshlab, model, capfd):
     learn(meshes, target_vertices=200)
     printed = capfd.readouterr()
     assert (printed.out, printed.err) == ("", "")
+
+
+LEARN_AND_SIGN = """import hashlib, pymeshlab, sys
+pymeshlab.load_plugin(sys.argv[1])
+meshes = pymeshlab.MeshSet(verbose=False)
+meshes.load_new_mesh(sys.argv[2])
+meshes.apply_filter(sys.argv[3], target_vertices=400)
+mesh = meshes.current_mesh()
+for array in (mesh.vertex_matrix(), mesh.face_matrix(), mesh.vertex_scalar_array(), mesh.vertex_color_matrix()):
+    print(hashlib.sha256(array.tobytes()).hexdigest())
+"""
+
+
+def test_two_processes_at_once_give_what_each_gives_alone(build, model):
+    plugin = str(meshlabserver.plugin_path(build, "pymeshlab-2025.7"))
+
+    def start(name):
+        return subprocess.Popen([sys.executable, "-c", LEARN_AND_SIGN, plugin, str(model(name)[0]), PYTHON_NAME],
+                                stdout=subprocess.PIPE, text=True)
+
+    names = ("sphere", "bunny")
+    alone = [start(name).communicate(timeout=300)[0] for name in names]
+    assert all(len(text.split()) == 4 for text in alone) and alone[0] != alone[1]
+    running = [start(name) for name in names]
+    assert [process.communicate(timeout=300)[0] for process in running] == alone
