@@ -15,7 +15,20 @@ namespace {
 
 /// Fewer signals than this are not worth a second thread.
 constexpr int kLeastPerThread = 48;
-constexpr int kSearchAhead = 3;  ///< signals whose cells are on their way into the cache
+/// Signals whose cells, and whose cells' vertices, are on their way into the cache.
+constexpr int kHeadsAhead = 8;
+constexpr int kVerticesAhead = 4;
+/// Vertices from which on the network is not in the cache anyway.
+constexpr int kLeastOutOfCache = 16384;
+
+/// Brings into the cache what gather() will read first around a winner.
+void prefetch_ring_of(const Network& network, VertexId winner) {
+    const Ring& ring = network.ring(winner);
+    for (int i = 0; i < ring.valence; ++i) {
+        __builtin_prefetch(&network.ring(ring[i]));
+        __builtin_prefetch(&network.slots()[ring[i]]);
+    }
+}
 
 }  // namespace
 
@@ -41,8 +54,10 @@ void BasicSteps::take(const vcg::Point3f* signals, int count, const StepRates& r
 
 void BasicSteps::compute(const vcg::Point3f* signals, int begin, int end, const StepRates& rates,
                          const Network& network, const WinnerSearch& search, Scratch& scratch) {
+    const bool out_of_cache = network.vertex_count() >= kLeastOutOfCache;
     for (int j = begin; j < end; ++j) {
-        if (j + kSearchAhead < end) search.prefetch(signals[j + kSearchAhead]);
+        if (j + kHeadsAhead < end) search.prefetch_heads(signals[j + kHeadsAhead]);
+        if (out_of_cache && j + kVerticesAhead < end) search.prefetch_vertices(signals[j + kVerticesAhead]);
         winners_[static_cast<std::size_t>(j)] = search.winner(signals[j]);
     }
     sort_by_valence(begin, end, network, scratch.order);
@@ -53,6 +68,8 @@ void BasicSteps::compute(const vcg::Point3f* signals, int begin, int end, const 
         while (to < std::min(from + Patches::kLanes, end - begin) &&
                valence(order[to]) == valence(order[from]))
             ++to;
+        for (int next = to; out_of_cache && next < std::min(to + Patches::kLanes, end - begin); ++next)
+            prefetch_ring_of(network, winner(order[next]));
         step_group(signals, order + from, to - from, rates, network, scratch.patches);
         from = to;
     }
@@ -71,10 +88,12 @@ void BasicSteps::step_group(const vcg::Point3f* signals, const int* group, int c
                             const Network& network, Patches& patches) {
     VertexId winners[Patches::kLanes];
     vcg::Point3f towards[Patches::kLanes];
+    Four* moved[Patches::kLanes];
     for (int lane = 0; lane < Patches::kLanes; ++lane) {
         const int j = group[lane < count ? lane : 0];
         winners[lane] = winner(j);
         towards[lane] = signals[j];
+        moved[lane] = &displacements_[static_cast<std::size_t>(j) * kStride];
     }
     EightVectors n;
     EightVectors n_after;
@@ -83,8 +102,7 @@ void BasicSteps::step_group(const vcg::Point3f* signals, const int* group, int c
     patches.move_winners(towards, rates.learning);
     patches.smooth(rates.sweeps, rates.smoothing);
     patches.take_normals(n_after);
-    Four moved[Patches::kLanes * kStride];
-    patches.displacements(moved, kStride);
+    patches.displacements(moved);
     for (int lane = 0; lane < count; ++lane) {
         const auto j = static_cast<std::size_t>(group[lane]);
         // 1 - n.n', written so that it keeps its digits where the normals are nearly equal.
@@ -92,7 +110,6 @@ void BasicSteps::step_group(const vcg::Point3f* signals, const int* group, int c
         const float y = n_after.y[lane] - n.y[lane];
         const float z = n_after.z[lane] - n.z[lane];
         deltas_[j] = 0.5F * (x * x + y * y + z * z);
-        std::copy_n(moved + lane * kStride, 1 + patches.valence(), &displacements_[j * kStride]);
     }
 }
 

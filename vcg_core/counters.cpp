@@ -142,6 +142,15 @@ void UtilityCounters::remove(VertexId v) {
     enter(v, kNone);
 }
 
+void UtilityCounters::renumber(const std::vector<VertexId>& order) {
+    keys_ = picked(keys_, order);
+    wins_ = picked(wins_, order);
+    const std::vector<double> entries = picked(tournament_[0], order);
+    tournament_.clear();
+    resize(static_cast<int>(order.size()));
+    for (std::size_t v = 0; v < entries.size(); ++v) enter(static_cast<VertexId>(v), entries[v]);
+}
+
 void UtilityCounters::waive_maturity() {
     maturity_ = 0;
     for (std::size_t v = 0; v < keys_.size(); ++v)

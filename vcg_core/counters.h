@@ -4,12 +4,22 @@
 // The counters of the paper's section 3: one number per vertex that says how much its place matters.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "network.h"
 
 namespace neuralmesh {
+
+/// The values at \p order's places, in its order.
+template <class T>
+std::vector<T> picked(const std::vector<T>& values, const std::vector<VertexId>& order) {
+    std::vector<T> result;
+    result.reserve(std::max(values.capacity(), order.size()));
+    for (const VertexId v : order) result.push_back(values[static_cast<std::size_t>(v)]);
+    return result;
+}
 
 /// Mean of the last C_delta values: the paper's M_delta (before eq 3). O(1) per value.
 class WindowMean {
@@ -56,6 +66,8 @@ public:
     void remove(VertexId v);
     /// v has been tried in vain: it counts as immature until its next win. O(log n).
     void pass_over(VertexId v) { enter(v, kNone); }
+    /// Vertex order[i] is vertex i from now on, those not named are gone. O(n).
+    void renumber(const std::vector<VertexId>& order);
     /// From now on highest() passes nobody over. O(n).
     void waive_maturity();
     std::size_t bytes() const;
@@ -92,6 +104,8 @@ public:
         n_c = decay_ * n_c + (1 - decay_) * static_cast<float>(n_delta);
     }
     float value(VertexId v) const { return values_[static_cast<std::size_t>(v)]; }
+    /// As UtilityCounters::renumber().
+    void renumber(const std::vector<VertexId>& order) { values_ = picked(values_, order); }
     /// A new vertex starts from its parent's knowledge of the place.
     void inherit(VertexId from, VertexId to) { values_[static_cast<std::size_t>(to)] = value(from); }
 

@@ -19,6 +19,7 @@ using Four = float __attribute__((vector_size(16)));
 using FourInts = std::int32_t __attribute__((vector_size(16)));
 using Eight = float __attribute__((vector_size(32), aligned(32)));
 using EightInts = std::int32_t __attribute__((vector_size(32), aligned(32)));
+using EightWords = std::uint32_t __attribute__((vector_size(32), aligned(32)));
 
 /// 16 aligned bytes as they are.
 inline Four load_raw(const void* from) {
@@ -134,6 +135,23 @@ struct alignas(32) EightVectors {
     v.x = __builtin_shufflevector(xy01, xy23, 0, 1, 8, 9, 4, 5, 12, 13);
     v.y = __builtin_shufflevector(xy01, xy23, 2, 3, 10, 11, 6, 7, 14, 15);
     v.z = __builtin_shufflevector(z01, z23, 0, 1, 8, 9, 4, 5, 12, 13);
+}
+
+/// The same with the points' last words.
+[[gnu::always_inline]] inline void transpose(const Four* p, EightVectors& v, EightInts& last_words) {
+    transpose(p, v);
+    const auto last_of_pair = [](const Four& low, const Four& high, Eight& both) {
+        both = __builtin_shufflevector(low, high, 2, 3, 2, 3, 6, 7, 6, 7);
+    };
+    Eight a, b, c, d;
+    last_of_pair(p[0], p[4], a);
+    last_of_pair(p[1], p[5], b);
+    last_of_pair(p[2], p[6], c);
+    last_of_pair(p[3], p[7], d);
+    const Eight w01 = __builtin_shufflevector(a, b, 1, 9, 1, 9, 5, 13, 5, 13);
+    const Eight w23 = __builtin_shufflevector(c, d, 1, 9, 1, 9, 5, 13, 5, 13);
+    const Eight w = __builtin_shufflevector(w01, w23, 0, 1, 8, 9, 4, 5, 12, 13);
+    std::memcpy(&last_words, &w, sizeof last_words);
 }
 
 /// The way back: to[i] gets x, y, z of lane i, and 0.

@@ -28,7 +28,8 @@ double voronoi_area(const Network& network, VertexId v) {
 constexpr float kFlatEnough = 0.95F;
 constexpr int kSplitCandidates = 32;  ///< tried before a split is put off
 constexpr std::int64_t kLeastSettling = 60000;
-constexpr int kMostAtOnce = 2048;   ///< a batch that stays in the cache
+constexpr int kLeastOutOfCache = 16384;  ///< vertices
+constexpr int kMostAtOnce = 512;         ///< a batch that stays in the cache
 constexpr int kReportEvery = 1000;  ///< signals between two looks at the progress and at the stop criteria
 
 }  // namespace
@@ -67,6 +68,7 @@ StopReason Learner::run(int per_vertex, Progress& progress) {
             if (signals_ % settings_.signals_per_split == 0) vertex_split();
         }
         if (due_for_collapse()) half_edge_collapse();
+        keep_neighbours_near();
 
         if (!forced_ && signals_ >= budget) force_growth();
         if (signals_ >= bound) return StopReason::cut_short;
@@ -99,6 +101,20 @@ const vcg::Point3f* Learner::draw(int count) {
     drawn_.resize(static_cast<std::size_t>(count));
     for (vcg::Point3f& s : drawn_) s = target_.sample(random_);
     return drawn_.data();
+}
+
+/// A network that outgrows the caches is put in order from time to time, so that what a step visits shares
+/// cache lines and pages.
+void Learner::keep_neighbours_near() {
+    const int n = network_.vertex_count();
+    if (n < kLeastOutOfCache || n < vertices_in_order_ + vertices_in_order_ / 4) return;
+    vertices_in_order_ = n;
+    const std::vector<VertexId> order = network_.along_curve();
+    network_.renumber(order);
+    utility_counters_.renumber(order);
+    feature_counters_.renumber(order);
+    last_active_ = picked(last_active_, order);
+    search_.lay_out();
 }
 
 void Learner::basic_steps(const vcg::Point3f* signals, int count) {

@@ -89,6 +89,7 @@ private:
 
     bool to_the_letter() const { return settings_.min_wins_per_split == 0; }
     const vcg::Point3f* draw(int count);
+    void keep_neighbours_near();
     bool due_for_report();
     bool report(const char* doing, Progress& progress) const;
     bool due_for_collapse() const;
@@ -120,6 +121,7 @@ private:
     std::int64_t last_collapse_ = 0;
     std::int64_t last_report_ = 0;
     int vertices_at_collapse_ = 0;
+    int vertices_in_order_ = 0;
     bool forced_ = false;
 };
 

@@ -5,6 +5,7 @@
 #include "network.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace neuralmesh {
 
@@ -67,11 +68,11 @@ bool at_end(const Ring& ring, int i) { return ring.open != 0 && (i == 0 || i + 1
 
 void Network::reserve(int vertices) {
     rings_.reserve(static_cast<std::size_t>(vertices));
-    slots_.reserve(static_cast<std::size_t>(vertices));
+    slots_.reserve(static_cast<std::size_t>(vertices) + 1);
 }
 
 void Network::set_position(VertexId v, const vcg::Point3f& p) {
-    Slot& slot = slots_[static_cast<std::size_t>(v)];
+    Slot& slot = slots()[v];
     slot.x = p[0];
     slot.y = p[1];
     slot.z = p[2];
@@ -221,23 +222,57 @@ void Network::flip(VertexId a, VertexId b) {
 }
 
 std::vector<VertexId> Network::compact() {
-    std::vector<VertexId> moved(rings_.size(), -1);
-    VertexId next = 0;
+    std::vector<VertexId> order;
     for (VertexId v = 0; v < slot_count(); ++v)
-        if (alive(v)) moved[static_cast<std::size_t>(v)] = next++;
-    for (VertexId v = 0; v < slot_count(); ++v) {
-        if (!alive(v)) continue;
-        const auto to = static_cast<std::size_t>(moved[static_cast<std::size_t>(v)]);
-        rings_[to] = rings_[static_cast<std::size_t>(v)];
-        slots_[to] = slots_[static_cast<std::size_t>(v)];
-        Ring& r = rings_[to];
+        if (alive(v)) order.push_back(v);
+    return renumber(order);
+}
+
+std::vector<VertexId> Network::renumber(const std::vector<VertexId>& order) {
+    std::vector<VertexId> moved(rings_.size(), -1);
+    for (std::size_t i = 0; i < order.size(); ++i)
+        moved[static_cast<std::size_t>(order[i])] = static_cast<VertexId>(i);
+    std::vector<Ring> rings;
+    std::vector<Slot> slots_in_order;
+    rings.reserve(std::max(rings_.capacity(), order.size()));
+    slots_in_order.reserve(std::max(slots_.capacity(), order.size() + 1));
+    slots_in_order.push_back(kNobody);
+    for (const VertexId old : order) {
+        rings.push_back(ring(old));
+        slots_in_order.push_back(slots()[old]);
+        Ring& r = rings.back();
         for (int i = 0; i < r.valence; ++i) *at(r, i) = moved[static_cast<std::size_t>(r[i])];
         r.repeat();
     }
-    rings_.resize(static_cast<std::size_t>(next));
-    slots_.resize(static_cast<std::size_t>(next));
+    rings_.swap(rings);
+    slots_.swap(slots_in_order);
     free_.clear();
     return moved;
+}
+
+std::vector<VertexId> Network::along_curve() const {
+    // 21 bits for each coordinate of the core's frame and what lies around it.
+    const auto spread = [](float coordinate) {
+        const float scaled = (std::clamp(coordinate, -1.0F, 0.999F) + 1) * 0x1p20F;
+        auto x = static_cast<std::uint64_t>(scaled);
+        x = (x | x << 32) & 0x1f00000000ffffu;
+        x = (x | x << 16) & 0x1f0000ff0000ffu;
+        x = (x | x << 8) & 0x100f00f00f00f00fu;
+        x = (x | x << 4) & 0x10c30c30c30c30c3u;
+        return (x | x << 2) & 0x1249249249249249u;
+    };
+    std::vector<std::pair<std::uint64_t, VertexId>> places;
+    places.reserve(static_cast<std::size_t>(vertex_count_));
+    for (VertexId v = 0; v < slot_count(); ++v) {
+        if (!alive(v)) continue;
+        const vcg::Point3f p = position(v);
+        places.emplace_back(spread(p[0]) | spread(p[1]) << 1 | spread(p[2]) << 2, v);
+    }
+    std::sort(places.begin(), places.end());
+    std::vector<VertexId> order;
+    order.reserve(places.size());
+    for (const auto& place : places) order.push_back(place.second);
+    return order;
 }
 
 }  // namespace neuralmesh

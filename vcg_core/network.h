@@ -84,11 +84,11 @@ public:
     int slot_count() const { return static_cast<int>(rings_.size()); }
     bool alive(VertexId v) const { return ring(v).valence != 0; }
     const Ring& ring(VertexId v) const { return rings_[static_cast<std::size_t>(v)]; }
-    vcg::Point3f position(VertexId v) const { return slots_[static_cast<std::size_t>(v)].point(); }
+    vcg::Point3f position(VertexId v) const { return slots()[v].point(); }
     void set_position(VertexId v, const vcg::Point3f& p);
-    /// Raw slots for the hot loops.
-    Slot* slots() { return slots_.data(); }
-    const Slot* slots() const { return slots_.data(); }
+    /// Raw slots for the hot loops. slots()[-1] is nobody's: far from everything, and last in any cell.
+    Slot* slots() { return slots_.data() + 1; }
+    const Slot* slots() const { return slots_.data() + 1; }
     void reserve(int vertices);
     /// Memory in use, without what is reserved for growth.
     std::size_t bytes() const {
@@ -124,6 +124,11 @@ public:
     /// Gives new ids, so that the used ones are 0 .. vertex_count() - 1, in unchanged order. Whatever holds
     /// ids, a WinnerSearch for one, must be made anew. \return for every old slot its new id, or -1.
     std::vector<VertexId> compact();
+    /// The same in another order: \p order[i] is the old id of vertex i, every used id once. O(vertices).
+    std::vector<VertexId> renumber(const std::vector<VertexId>& order);
+    /// The used ids along a curve that visits near places soon after each other (Morton 1966), so that
+    /// vertices near in space come to lie near in memory. O(vertices log vertices).
+    std::vector<VertexId> along_curve() const;
 
     int face_count() const;
     int edge_count() const;
@@ -149,7 +154,9 @@ private:
     VertexId new_vertex(const vcg::Point3f& where);
 
     std::vector<Ring> rings_;
-    std::vector<Slot> slots_;
+    static constexpr Slot kNobody{1e18F, 1e18F, 1e18F, -1};
+
+    std::vector<Slot> slots_{kNobody};  ///< of vertex v at v + 1
     std::vector<VertexId> free_;
     int vertex_count_ = 0;
 };

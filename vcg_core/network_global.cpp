@@ -63,7 +63,7 @@ Network::Network(const std::vector<vcg::Point3f>& positions, const std::vector<T
         }
     }
     rings_.resize(positions.size());
-    slots_.resize(positions.size(), Slot{0, 0, 0, -1});
+    slots_.resize(positions.size() + 1, Slot{0, 0, 0, -1});
     vertex_count_ = static_cast<int>(positions.size());
     for (std::size_t v = 0; v < positions.size(); ++v) {
         set_position(static_cast<VertexId>(v), positions[v]);

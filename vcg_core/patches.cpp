@@ -33,7 +33,7 @@ struct Patches::Kernels {
                                                        float alpha_w);
     NEURALMESH_MULTIVERSIONED static void smooth(Patches& p, int sweeps, float alpha_l);
     NEURALMESH_MULTIVERSIONED static void take_normals(const Patches& p, EightVectors& normals);
-    NEURALMESH_MULTIVERSIONED static void displacements(const Patches& p, Four* to, int stride);
+    NEURALMESH_MULTIVERSIONED static void displacements(const Patches& p, Four* const* to);
 };
 
 NEURALMESH_MULTIVERSIONED void Patches::Kernels::gather(Patches& p, const Network& network) {
@@ -210,15 +210,15 @@ NEURALMESH_MULTIVERSIONED void Patches::Kernels::take_normals(const Patches& p, 
     normals.z = sum.z / length;
 }
 
-NEURALMESH_MULTIVERSIONED void Patches::Kernels::displacements(const Patches& p, Four* to, int stride) {
+NEURALMESH_MULTIVERSIONED void Patches::Kernels::displacements(const Patches& p, Four* const* to) {
     Four moved[kLanes];
     transpose(p.winner_at_, moved);
-    for (int lane = 0; lane < kLanes; ++lane) to[lane * stride] = moved[lane];
+    for (int lane = 0; lane < kLanes; ++lane) to[lane][0] = moved[lane];
     for (int i = 0; i < p.valence_; ++i) {
         EightVectors d = p.at_[i + 1];
         subtract(d, p.before_[i]);
         transpose(d, moved);
-        for (int lane = 0; lane < kLanes; ++lane) to[lane * stride + 1 + i] = moved[lane];
+        for (int lane = 0; lane < kLanes; ++lane) to[lane][1 + i] = moved[lane];
     }
 }
 
@@ -236,6 +236,6 @@ void Patches::smooth(int sweeps, float alpha_l) { Kernels::smooth(*this, sweeps,
 
 void Patches::take_normals(EightVectors& normals) const { Kernels::take_normals(*this, normals); }
 
-void Patches::displacements(Four* to, int stride) const { Kernels::displacements(*this, to, stride); }
+void Patches::displacements(Four* const* to) const { Kernels::displacements(*this, to); }
 
 }  // namespace neuralmesh

@@ -38,9 +38,9 @@ public:
     void take_normals(EightVectors& normals) const;
 
     int valence() const { return valence_; }
-    /// By what lane \p lane moves its winner and its ring: \p to[0] the winner, \p to[1 + i] ring vertex i,
-    /// in \p to + lane * \p stride.
-    void displacements(Four* to, int stride) const;
+    /// By what every lane moves its winner and its ring: \p to[lane][0] the winner, \p to[lane][1 + i] ring
+    /// vertex i.
+    void displacements(Four* const* to) const;
 
 private:
     static constexpr int kMost = Ring::kMaxValence;

@@ -14,8 +14,9 @@ namespace neuralmesh {
 
 namespace {
 
-/// Turns of the waiting loop before a helper goes to sleep: some 50 microseconds.
-constexpr int kSpins = 2000;
+/// Turns of the waiting loop before a helper goes to sleep: some 200 microseconds, longer than what the
+/// caller does between two loops.
+constexpr int kSpins = 16000;
 
 void relax() {
 #ifdef __SSE2__

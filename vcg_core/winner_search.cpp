@@ -13,25 +13,33 @@ namespace neuralmesh {
 namespace {
 
 /// Cell edge in mean edge lengths of the network, by measurement.
-constexpr float kCellEdge = 1.0F;
+constexpr float kCellEdge = 1.3F;
 /// Float rounding of a cell border, in cells, generously.
 constexpr float kRounding = 1e-3F;
-/// A box of more cells than this is dearer than looking at every vertex of a small network.
-constexpr int kMostCells = 1000;
+/// The same far from the origin of the cells, where float has fewer digits left.
+constexpr float kFarRounding = 0.1F;
+/// A box of more cells across is dearer than a walk down the pyramid.
+constexpr float kMostAcross = 4;
+
+/// Squared distances from here on are those of nobody.
+constexpr float kFar = 1e30F;
 
 /// Squared distance and vertex in one number that orders by distance, then by id: the bits of a non-negative
 /// float order like the float.
 using Candidate = std::uint64_t;
 constexpr Candidate kNobody = Candidate{0x7f800000} << 32 | 0xffffffff;
 
+Candidate candidate(float squared_distance, VertexId v) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &squared_distance, sizeof bits);
+    return Candidate{bits} << 32 | static_cast<std::uint32_t>(v);
+}
+
 Candidate candidate(const Slot& slot, VertexId v, const vcg::Point3f& s) {
     const float x = slot.x - s[0];
     const float y = slot.y - s[1];
     const float z = slot.z - s[2];
-    const float squared_distance = x * x + y * y + z * z;
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &squared_distance, sizeof bits);
-    return Candidate{bits} << 32 | static_cast<std::uint32_t>(v);
+    return candidate(x * x + y * y + z * z, v);
 }
 
 float squared_distance_of(Candidate c) {
@@ -42,6 +50,63 @@ float squared_distance_of(Candidate c) {
 }
 
 VertexId vertex_of(Candidate c) { return static_cast<VertexId>(c & 0xffffffff); }
+
+/// Index of the list head of a cell, or of eight cells: 4 x 2 x 2 neighbouring cells share a cache line.
+template <class Ints>
+[[gnu::always_inline]] inline void bucket_of(const Ints& x, const Ints& y, const Ints& z, int line_shift,
+                                             Ints& bucket) {
+    const Ints hash = (x >> 2) * 0x9e3779b1u ^ (y >> 1) * 0x85ebca77u ^ (z >> 1) * 0xc2b2ae3du;
+    const Ints line = (hash * 0x27d4eb2fu) >> line_shift;
+    bucket = line << 4 | (x & 3u) | (y & 1u) << 2 | (z & 1u) << 3;
+}
+
+/// The buckets of the 2 x 2 x 2 cells from \p low on.
+[[gnu::always_inline]] inline void eight_buckets(FourInts low, int line_shift, EightWords& buckets) {
+    const EightWords one_x = {0, 1, 0, 1, 0, 1, 0, 1};
+    const EightWords one_y = {0, 0, 1, 1, 0, 0, 1, 1};
+    const EightWords one_z = {0, 0, 0, 0, 1, 1, 1, 1};
+    bucket_of(one_x + static_cast<std::uint32_t>(low[0]), one_y + static_cast<std::uint32_t>(low[1]),
+              one_z + static_cast<std::uint32_t>(low[2]), line_shift, buckets);
+}
+
+/// The nearest vertex in the 2 x 2 x 2 cells from \p low on. The eight lists are walked abreast, to the end
+/// of the longest and without a branch per vertex: which cells are empty is unpredictable.
+NEURALMESH_MULTIVERSIONED Candidate scan_eight_cells(const Slot* slots, const VertexId* heads, int line_shift,
+                                                     FourInts low, const vcg::Point3f& s) {
+    EightWords buckets;
+    eight_buckets(low, line_shift, buckets);
+    std::uint32_t b[8];
+    std::memcpy(b, &buckets, sizeof b);
+    EightInts ids = {heads[b[0]], heads[b[1]], heads[b[2]], heads[b[3]],
+                     heads[b[4]], heads[b[5]], heads[b[6]], heads[b[7]]};
+    EightInts nearest = ids;
+    Eight least = Eight{} + kFar;
+    std::int32_t links[8];
+    std::memcpy(links, &ids, sizeof links);
+    do {
+        Four points[8];
+        for (int i = 0; i < 8; ++i) points[i] = load_raw(&slots[links[i]]);
+        EightVectors p;
+        EightInts next;
+        transpose(points, p, next);
+        std::memcpy(links, &next, sizeof links);
+        const Eight x = p.x - s[0];
+        const Eight y = p.y - s[1];
+        const Eight z = p.z - s[2];
+        const Eight distance = x * x + y * y + z * z;
+        const EightInts better = (distance < least) | ((distance == least) & (ids < nearest));
+        least = better ? distance : least;
+        nearest = better ? ids : nearest;
+        ids = next;
+    } while ((links[0] & links[1] & links[2] & links[3] & links[4] & links[5] & links[6] & links[7]) >= 0);
+    float distances[8];
+    std::int32_t winners[8];
+    std::memcpy(distances, &least, sizeof distances);
+    std::memcpy(winners, &nearest, sizeof winners);
+    Candidate best = kNobody;
+    for (int i = 0; i < 8; ++i) best = std::min(best, candidate(distances[i], winners[i]));
+    return squared_distance_of(best) < kFar ? best : kNobody;
+}
 
 /// Mean edge length, from every vertex's first edge.
 float mean_edge_length(const Network& network) {
@@ -76,8 +141,18 @@ void WinnerSearch::lay_out() {
         --line_shift_;
     }
     heads_.assign(16 * lines, -1);
+    inhabited_ = CellPyramid(static_cast<std::size_t>(laid_out_for_),
+                             static_cast<std::int32_t>(2 * kOffset * inverse_edge_) + 1);
+    out_of_range_ = 0;
     for (VertexId v = 0; v < network_.slot_count(); ++v)
         if (network_.alive(v)) add(v);
+}
+
+std::size_t WinnerSearch::bucket_of(std::int32_t x, std::int32_t y, std::int32_t z) const {
+    std::uint32_t bucket = 0;
+    neuralmesh::bucket_of(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                          static_cast<std::uint32_t>(z), line_shift_, bucket);
+    return bucket;
 }
 
 void WinnerSearch::link(VertexId v, std::size_t bucket) {
@@ -92,46 +167,57 @@ void WinnerSearch::unlink(VertexId v, std::size_t bucket) {
     *link = slots[v].next_in_cell;
 }
 
-void WinnerSearch::add(VertexId v) { link(v, bucket_of(cell_of(load_xyz(&network_.slots()[v])))); }
-
-void WinnerSearch::remove(VertexId v) { unlink(v, bucket_of(cell_of(load_xyz(&network_.slots()[v])))); }
-
-void WinnerSearch::relink(VertexId v, std::size_t from, std::size_t to) {
-    unlink(v, from);
-    link(v, to);
+void WinnerSearch::enter(FourInts cell) {
+    if (inhabited_.holds(cell)) {
+        inhabited_.add(cell);
+    } else {
+        ++out_of_range_;
+    }
 }
 
-void WinnerSearch::prefetch(const vcg::Point3f& s) const {
+void WinnerSearch::leave(FourInts cell) {
+    if (inhabited_.holds(cell)) {
+        inhabited_.remove(cell);
+    } else {
+        --out_of_range_;
+    }
+}
+
+void WinnerSearch::add(VertexId v) {
+    const FourInts cell = cell_of(load_xyz(&network_.slots()[v]));
+    link(v, bucket_of(cell));
+    enter(cell);
+}
+
+void WinnerSearch::remove(VertexId v) {
+    const FourInts cell = cell_of(load_xyz(&network_.slots()[v]));
+    unlink(v, bucket_of(cell));
+    leave(cell);
+}
+
+void WinnerSearch::relink(VertexId v, FourInts from, FourInts to) {
+    unlink(v, bucket_of(from));
+    link(v, bucket_of(to));
+    if (inhabited_.holds(from) && inhabited_.holds(to)) {
+        inhabited_.move(from, to);
+    } else {
+        leave(from);
+        enter(to);
+    }
+}
+
+void WinnerSearch::prefetch_heads(const vcg::Point3f& s) const {
     const float half = 0.5F * edge_;
     const FourInts low = cell_of(s - vcg::Point3f(half, half, half));
     for (int z = 0; z < 2; ++z)
         for (int y = 0; y < 2; ++y) __builtin_prefetch(&heads_[bucket_of(low[0], low[1] + y, low[2] + z)]);
 }
 
-/// The 2 x 2 x 2 cells nearest to s, which reach at least half a cell's edge in all directions. The lists are
-/// walked abreast and without a branch per vertex: which cells are empty is unpredictable.
-std::uint64_t WinnerSearch::scan_nearest_cells(const vcg::Point3f& s) const {
-    const Slot* slots = network_.slots();
+void WinnerSearch::prefetch_vertices(const vcg::Point3f& s) const {
     const float half = 0.5F * edge_;
-    const FourInts low = cell_of(s - vcg::Point3f(half, half, half));
-    VertexId lists[8];
-    int open = 0;
-    for (int i = 0; i < 8; ++i) {
-        lists[open] = heads_[bucket_of(low[0] + (i & 1), low[1] + (i >> 1 & 1), low[2] + (i >> 2))];
-        open += lists[open] >= 0 ? 1 : 0;
-    }
-    Candidate best = kNobody;
-    while (open > 0) {
-        int still_open = 0;
-        for (int i = 0; i < open; ++i) {
-            const VertexId v = lists[i];
-            best = std::min(best, candidate(slots[v], v, s));
-            lists[still_open] = slots[v].next_in_cell;
-            still_open += lists[still_open] >= 0 ? 1 : 0;
-        }
-        open = still_open;
-    }
-    return best;
+    EightWords buckets;
+    eight_buckets(cell_of(s - vcg::Point3f(half, half, half)), line_shift_, buckets);
+    for (int i = 0; i < 8; ++i) __builtin_prefetch(network_.slots() + heads_[buckets[i]]);
 }
 
 std::uint64_t WinnerSearch::scan_box(const vcg::Point3f& s, float reach) const {
@@ -147,6 +233,21 @@ std::uint64_t WinnerSearch::scan_box(const vcg::Point3f& s, float reach) const {
     return best;
 }
 
+std::uint64_t WinnerSearch::scan_far(const vcg::Point3f& s) const {
+    const Slot* slots = network_.slots();
+    Candidate best = kNobody;
+    const float to_cells = inverse_edge_ * inverse_edge_;
+    inhabited_.nearest({(s[0] + kOffset) * inverse_edge_, (s[1] + kOffset) * inverse_edge_,
+                        (s[2] + kOffset) * inverse_edge_},
+                       kFarRounding, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
+                           for (VertexId v = heads_[bucket_of(x, y, z)]; v >= 0; v = slots[v].next_in_cell)
+                               best = std::min(best, candidate(slots[v], v, s));
+                           // Those at the same distance count, too: the smaller id wins.
+                           return squared_distance_of(best) * to_cells * (1 + kFarRounding);
+                       });
+    return best;
+}
+
 std::uint64_t WinnerSearch::scan_all(const vcg::Point3f& s) const {
     const Slot* slots = network_.slots();
     Candidate best = kNobody;
@@ -156,17 +257,18 @@ std::uint64_t WinnerSearch::scan_all(const vcg::Point3f& s) const {
 }
 
 VertexId WinnerSearch::winner(const vcg::Point3f& s) const {
-    Candidate best = scan_nearest_cells(s);
+    // The 2 x 2 x 2 cells nearest to s reach at least half a cell's edge in all directions.
+    const float half = 0.5F * edge_;
+    Candidate best = scan_eight_cells(network_.slots(), heads_.data(), line_shift_,
+                                      cell_of(s - vcg::Point3f(half, half, half)), s);
     const float sure = (0.5F - kRounding) * edge_;
     if (squared_distance_of(best) < sure * sure) return vertex_of(best);
-    // Anybody at all gives a radius that holds the winner.
     if (best == kNobody) best = scan_box(s, 2 * edge_);
-    const float reach = std::sqrt(squared_distance_of(best)) + kRounding * edge_;
-    const float across = 2 * reach * inverse_edge_ + 2;
-    const bool box_is_small =
-        across < 5 ||
-        across * across * across < static_cast<float>(std::min(network_.slot_count(), kMostCells));
-    return vertex_of(box_is_small ? scan_box(s, reach) : scan_all(s));
+    if (best != kNobody) {
+        const float reach = std::sqrt(squared_distance_of(best)) + kRounding * edge_;
+        if (2 * reach * inverse_edge_ < kMostAcross) return vertex_of(scan_box(s, reach));
+    }
+    return vertex_of(out_of_range_ == 0 ? scan_far(s) : scan_all(s));
 }
 
 }  // namespace neuralmesh

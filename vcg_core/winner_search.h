@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cell_pyramid.h"
 #include "lanes.h"
 #include "network.h"
 
@@ -27,10 +28,12 @@ public:
     /// Keeps a reference to \p network. O(vertices).
     explicit WinnerSearch(Network& network);
 
-    /// The vertex nearest to \p s. O(1) expected near the mesh; O(vertices) far from it.
+    /// The vertex nearest to \p s. O(1) expected near the mesh, O(log vertices) expected far from it.
     VertexId winner(const vcg::Point3f& s) const;
-    /// Brings into the cache what winner(s) will read first.
-    void prefetch(const vcg::Point3f& s) const;
+    /// Brings into the cache what winner(s) will read first: the lists' heads, and later, when those have
+    /// come, the vertices they name.
+    void prefetch_heads(const vcg::Point3f& s) const;
+    void prefetch_vertices(const vcg::Point3f& s) const;
 
     /// \p v has just been born. O(1).
     void add(VertexId v);
@@ -41,15 +44,17 @@ public:
         Slot* slot = &network_.slots()[v];
         const FourInts from = cell_of(load_xyz(slot));
         const FourInts to = cell_of(where);
-        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0)
-            relink(v, bucket_of(from), bucket_of(to));
+        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0) relink(v, from, to);
         store_xyz(slot, where);
     }
     void move(VertexId v, const vcg::Point3f& where) { move(v, Four{where[0], where[1], where[2], 0}); }
     /// Lays the grid out anew if the network has outgrown it.
     void keep_up();
 
-    std::size_t bytes() const { return heads_.size() * sizeof(VertexId); }
+    /// Lays the grid out anew: to be called after vertices have got new ids.
+    void lay_out();
+
+    std::size_t bytes() const { return heads_.size() * sizeof(VertexId) + inhabited_.bytes(); }
 
 private:
     /// Makes all coordinates positive: the core's frame lies in [-0.5, 0.5], start meshes somewhat beyond.
@@ -59,25 +64,21 @@ private:
         return __builtin_convertvector((position + kOffset) * inverse_edge_, FourInts);
     }
     FourInts cell_of(const vcg::Point3f& p) const { return cell_of(Four{p[0], p[1], p[2], 0}); }
-    /// Index of a cell's list head. 4 x 2 x 2 neighbouring cells share a cache line.
-    std::size_t bucket_of(std::int32_t x, std::int32_t y, std::int32_t z) const {
-        const auto hash = static_cast<std::uint32_t>(x >> 2) * 0x9e3779b1u ^
-                          static_cast<std::uint32_t>(y >> 1) * 0x85ebca77u ^
-                          static_cast<std::uint32_t>(z >> 1) * 0xc2b2ae3du;
-        const std::uint32_t line = (hash * 0x27d4eb2fu) >> line_shift_;
-        return line << 4 | static_cast<std::uint32_t>((x & 3) | (y & 1) << 2 | (z & 1) << 3);
-    }
+    std::size_t bucket_of(std::int32_t x, std::int32_t y, std::int32_t z) const;
     std::size_t bucket_of(FourInts cell) const { return bucket_of(cell[0], cell[1], cell[2]); }
     void link(VertexId v, std::size_t bucket);
     void unlink(VertexId v, std::size_t bucket);
-    void relink(VertexId v, std::size_t from, std::size_t to);
-    void lay_out();
-    std::uint64_t scan_nearest_cells(const vcg::Point3f& s) const;
+    void relink(VertexId v, FourInts from, FourInts to);
+    void enter(FourInts cell);
+    void leave(FourInts cell);
     std::uint64_t scan_box(const vcg::Point3f& s, float reach) const;
+    std::uint64_t scan_far(const vcg::Point3f& s) const;
     std::uint64_t scan_all(const vcg::Point3f& s) const;
 
     Network& network_;
     std::vector<VertexId> heads_;
+    CellPyramid inhabited_;
+    int out_of_range_ = 0;  ///< vertices so far away that the pyramid does not hold them
     int line_shift_ = 0;
     int laid_out_for_ = 0;
     float edge_ = 1;

@@ -197,8 +197,10 @@ void part_normals(benchmark::State& state) {
 
 void part_displacements(benchmark::State& state) {
     per_group(state, [](const Network&, const std::vector<VertexId>&, Patches& patches) {
-        Four moved[Patches::kLanes * 16];
-        patches.displacements(moved, 16);
+        Four moved[Patches::kLanes][1 + Ring::kMaxValence];
+        Four* to[Patches::kLanes];
+        std::copy(std::begin(moved), std::end(moved), std::begin(to));
+        patches.displacements(to);
         benchmark::DoNotOptimize(moved);
     });
 }

@@ -6,10 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <limits>
 #include <numeric>
+#include <vector>
 
 #include "vcg_core/random.h"
 
@@ -283,6 +285,29 @@ TEST(FeatureCounters, FollowEquation6) {
     counters.resize(3);
     counters.inherit(1, 2);
     EXPECT_EQ(counters.value(2), counters.value(1));
+}
+
+TEST(UtilityCounters, RenumberedAreTheSameUnderNewIds) {
+    constexpr int kSlots = 700;
+    UtilityCounters counters(0.95, 3);
+    counters.resize(kSlots);
+    Random random(6);
+    for (int i = 0; i < 5000; ++i)
+        counters.win(static_cast<VertexId>(random.below(kSlots)), static_cast<double>(random.unit()));
+    std::vector<VertexId> order;
+    for (VertexId v = 0; v < kSlots; ++v)
+        if (v % 5 != 2) order.push_back((v * 3) % kSlots);  // 700 and 3 share no factor
+    std::sort(order.begin(), order.end(), [](VertexId a, VertexId b) { return a * 37 % 701 < b * 37 % 701; });
+    UtilityCounters renumbered = counters;
+    renumbered.renumber(order);
+    VertexId best = -1;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const auto v = static_cast<VertexId>(i);
+        EXPECT_EQ(renumbered.value(v), counters.value(order[i]));
+        EXPECT_EQ(renumbered.wins(v), counters.wins(order[i]));
+        if (renumbered.wins(v) >= 3 && (best < 0 || renumbered.value(v) > renumbered.value(best))) best = v;
+    }
+    EXPECT_EQ(renumbered.highest(), best);
 }
 
 }  // namespace

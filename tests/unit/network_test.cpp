@@ -358,6 +358,41 @@ TEST(Network, UsesTheIdsOfRemovedVerticesAgain) {
     EXPECT_EQ(network.split(20, 0, 3, {0, 0, 0}), slots);
 }
 
+TEST(Network, RenumberedAlongACurveIsTheSameMesh) {
+    Network network = referee::network_of(shapes::torus_grid(30, 20));
+    Random random(5);
+    std::vector<VertexId> shuffled = network.along_curve();
+    for (std::size_t i = shuffled.size(); i > 1; --i)
+        std::swap(shuffled[i - 1], shuffled[random.below(static_cast<std::uint32_t>(i))]);
+    network.renumber(shuffled);
+    for (int i = 0; i < 50; ++i)  // and again free slots
+        if (network.alive(i) && network.can_collapse(i, network.ring(i)[0]))
+            network.collapse(i, network.ring(i)[0]);
+    const Network before = network;
+    const std::vector<VertexId> order = network.along_curve();
+    ASSERT_EQ(static_cast<int>(order.size()), network.vertex_count());
+    const std::vector<VertexId> moved = network.renumber(order);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.slot_count(), before.vertex_count());
+    double length_before = 0;
+    double length = 0;
+    for (VertexId v = 0; v < before.slot_count(); ++v) {
+        const VertexId now = moved[static_cast<std::size_t>(v)];
+        ASSERT_EQ(now >= 0, before.alive(v));
+        if (now < 0) continue;
+        EXPECT_EQ(order[static_cast<std::size_t>(now)], v);
+        EXPECT_EQ(network.position(now), before.position(v));
+        ASSERT_EQ(network.ring(now).valence, before.ring(v).valence);
+        for (int i = 0; i < before.ring(v).valence; ++i)
+            EXPECT_EQ(network.ring(now)[i], moved[static_cast<std::size_t>(before.ring(v)[i])]);
+        if (v > 0 && before.alive(v - 1))
+            length_before += static_cast<double>((before.position(v) - before.position(v - 1)).Norm());
+        if (now > 0)
+            length += static_cast<double>((network.position(now) - network.position(now - 1)).Norm());
+    }
+    EXPECT_LT(4 * length, length_before);
+}
+
 TEST(Network, CompactRenumbersAndChangesNothingElse) {
     Network network = network_of(shapes::torus_grid(8, 6));
     Random random(5);

@@ -64,7 +64,9 @@ void take(const Network& network, const std::vector<VertexId>& winners,
     patches.move_winners(towards, alpha_w);
     patches.smooth(sweeps, alpha_l);
     patches.take_normals(steps.normal_after);
-    patches.displacements(steps.moved[0], 16);
+    Four* to[Patches::kLanes];
+    for (int lane = 0; lane < Patches::kLanes; ++lane) to[lane] = steps.moved[lane];
+    patches.displacements(to);
 }
 
 vcg::Point3d lane_of(const EightVectors& v, int lane) {

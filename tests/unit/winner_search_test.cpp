@@ -214,5 +214,19 @@ TEST(WinnerSearch, SurvivesMovesThroughEverMoreCells) {
     expect_exact(network, search, random, 500);
 }
 
+TEST(WinnerSearch, IsLinearSearchFarFromTheMesh) {
+    Random random(9);
+    for (const double scale : {0.3, 0.01}) {
+        Network network = in_frame(shapes::icosphere(4), scale);
+        WinnerSearch search(network);
+        for (int step = 0; step < 2000; ++step) {
+            const VertexId v = random_vertex(network, random);
+            search.move(v, network.position(v) + random_point(random, 0.01F));
+            const vcg::Point3f far = random_point(random, step % 2 == 0 ? 0.5F : 3.0F);
+            ASSERT_EQ(search.winner(far), nearest_by_hand(network, far)) << "at step " << step;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace neuralmesh
