@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <iomanip>
 #include <locale>
 #include <new>
@@ -53,6 +54,19 @@ std::ostringstream plain_stream() {
 /// The words of a progress text before its numbers.
 std::string stage_of(const std::string& text) { return text.substr(0, text.find_first_of("0123456789")); }
 
+std::string sentence_on_topology(const Report& report) {
+    std::ostringstream told = plain_stream();
+    told << "The cloud was taken for a surface of " << report.components
+         << (report.components == 1 ? " component" : " components") << " with " << report.genus
+         << (report.genus == 1 ? " handle" : " handles") << "; of what was looked at, "
+         << std::lround(100 * report.topology_confidence) << " % says so ("
+         << (report.topology_confidence < 0.5   ? "a guess: check it"
+             : report.topology_confidence < 0.9 ? "likely"
+                                                : "as good as certain")
+         << ").";
+    return told.str();
+}
+
 std::string sentence_if_memory_allows() {
     try {
         throw;
@@ -93,6 +107,7 @@ std::vector<Figure> figures(const Report& report) {
             count("feature_vertices", report.feature_vertices),
             {"rms_error", report.rms_error, false},
             {"mean_counter", report.mean_counter, false},
+            {"topology_confidence", report.topology_confidence, false},
             {"seconds", report.seconds, false},
             count("stop_reason", static_cast<int>(report.stop_reason))};
 }
@@ -116,6 +131,7 @@ std::vector<std::string> log_lines(const Report& report) {
     }
 
     std::vector<std::string> lines = {told.str(), dictionary.str()};
+    if (report.topology_confidence > 0) lines.push_back(sentence_on_topology(report));
     lines.insert(lines.end(), report.warnings.begin(), report.warnings.end());
     return lines;
 }

@@ -30,6 +30,9 @@ struct Report {
     int genus = 0;  ///< of all components together
     int boundary_loops = 0;
     int components = 0;
+    /// How sure genus and components are: the share of what was looked at (radii of the shell, StartMesh)
+    /// that agrees, in [0, 1]; 0 if the learning started from a tetrahedron, which asks nothing of the cloud.
+    double topology_confidence = 0;
     int feature_vertices = 0;  ///< with counter > feature_threshold x mean (eq 7)
     double rms_error = 0;      ///< cloud to mesh, % of the cloud's bounding-box diagonal
     double mean_counter = 0;   ///< Mean(n_c)

@@ -82,6 +82,7 @@ Start start_of(const TargetSpace& target, const Settings& settings, Report& repo
                                   "target_vertices to keep the shape.");
         return tetrahedron();
     }
+    report.topology_confidence = shell.confidence;
     return {Network(shell.positions, shell.faces), kSignalsToLand};
 }
 

@@ -31,9 +31,9 @@ int learn(int argc, char** argv) {
     std::printf(
         "{\"vertices\":%d,\"faces\":%d,\"signals\":%lld,\"splits\":%lld,\"collapses\":%lld,\"genus\":%d,"
         "\"boundary_loops\":%d,\"components\":%d,\"feature_vertices\":%d,\"rms_error\":%.6g,"
-        "\"mean_counter\":%.6g,\"seconds\":%.4g,\"stop_reason\":%d}\n",
+        "\"mean_counter\":%.6g,\"topology_confidence\":%.3g,\"seconds\":%.4g,\"stop_reason\":%d}\n",
         r.vertices, r.faces, r.signals, r.splits, r.collapses, r.genus, r.boundary_loops, r.components,
-        r.feature_vertices, r.rms_error, r.mean_counter, r.seconds, static_cast<int>(r.stop_reason));
+        r.feature_vertices, r.rms_error, r.mean_counter, r.topology_confidence, r.seconds, static_cast<int>(r.stop_reason));
     return 0;
 }
 

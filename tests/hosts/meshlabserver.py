@@ -83,13 +83,16 @@ def reconstruct(folder, cloud, script, out):
     return figures(text)
 
 
+MEASURES = ("rms_error", "mean_counter", "topology_confidence", "seconds")  # the others are counts
+
+
 def figures(text):
     """The figures of a run that the filter has written into the log, as a dictionary."""
     lines = [line for line in text.splitlines() if "vertices=" in line and "stop_reason=" in line]
     if not lines:
         raise ServerError(text)
     pairs = (word.split("=") for word in lines[-1].split() if "=" in word)
-    return {key: float(value) if key in ("rms_error", "mean_counter", "seconds") else int(value)
+    return {key: float(value) if key in MEASURES else int(value)
             for key, value in pairs}
 
 

@@ -16,7 +16,7 @@ from input_hosts import state
 
 COUNTS = ("vertices", "faces", "signals", "splits", "collapses", "genus", "boundary_loops", "components",
           "feature_vertices", "stop_reason")
-MEASURES = ("rms_error", "mean_counter", "seconds")
+MEASURES = meshlabserver.MEASURES
 
 
 def learn(meshes, **values):
@@ -38,6 +38,7 @@ def test_exact_count_sound_mesh_and_the_full_dictionary(build, meshes, model, tm
     topology = meshes.get_topological_measures()
     assert topology["is_mesh_two_manifold"] and topology["boundary_edges"] == 0
     assert topology["genus"] == told["genus"] == 0 and topology["connected_components_number"] == 1
+    assert 0.9 <= told["topology_confidence"] <= 1
     assert topology["unreferenced_vertices"] == 0
     assert told["stop_reason"] == 0 and told["signals"] > 0 and told["splits"] > 0 and told["seconds"] > 0
     assert learned.has_vertex_scalar() and learned.has_vertex_color()
