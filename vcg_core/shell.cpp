@@ -26,7 +26,8 @@ constexpr float kCoarser = 1.4F;
 constexpr double kLowConfidence = 0.5, kHighConfidence = 0.9;  // of the votes
 // A closer look takes more nodes, if the cloud is dense enough for them.
 constexpr double kCloserLook = 8, kDensePoints = 2;  // times the nodes, times the points per node
-constexpr double kWideOpeningSteps = 4;              // in lattice steps; gaps between points are narrower
+constexpr double kCoarseShellSteps = 5;  // radius of the shell in steps of the finest usual lattice
+constexpr double kWideOpeningSteps = 4;  // in lattice steps; gaps between points are narrower
 
 float longest_side(const Box3f& box) { return std::max({box.DimX(), box.DimY(), box.DimZ()}); }
 
@@ -178,7 +179,7 @@ struct Inquiry {
 std::vector<TopologyAt> plain_topologies(const Region& region) {
     std::vector<TopologyAt> result;
     for (std::size_t l = 1; l < region.topologies.size(); ++l)
-        if (region.topologies[l].components > 0)
+        if (!in_pieces(region, static_cast<int>(l)))
             result.push_back(
                 {static_cast<int>(l), region.topologies[l].components, region.topologies[l].genus});
     return result;
@@ -317,7 +318,9 @@ StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Rando
     result.widest_opening = region.widest_opening;
     result.encloses_space = region.encloses_space;
     result.ignored_points = static_cast<long long>(points.size()) - region.fringe_points - closed.held;
-    add_warnings(verdict, region.lattice.step > inquiry.step, static_cast<long long>(points.size()), result);
+    const bool coarser = region.lattice.step > inquiry.step ||
+                         result.radius > kCoarseShellSteps * static_cast<double>(inquiry.step);
+    add_warnings(verdict, coarser, static_cast<long long>(points.size()), result);
     progress(1.0, "Start mesh: done");
     return result;
 }

@@ -152,7 +152,7 @@ std::vector<TopologyAt> grown_topologies(const Region& region) {
     std::vector<TopologyAt> result;
     for (const int level : kStarts) {
         const LevelTopology& plain = region.topologies[static_cast<std::size_t>(level)];
-        if (plain.components == 0 || (level == 0 && plain.specks > 0)) continue;
+        if (in_pieces(region, level) || (level == 0 && plain.specks > 0)) continue;
         long long held = 0;
         const std::vector<std::uint8_t> solid = grown_solid(region, level, held);
         // No cavities: the Euler characteristic is components minus handles.

@@ -15,6 +15,7 @@ constexpr double kWeakWidthRatio = 1.2;  // the same for a cloud that encloses n
 constexpr int kWeakDepth = 4 * 4;        // ... and the least squared depth of such a space, in coarse steps
 constexpr double kCoarseSteps = 40;      // per side
 constexpr int kCoarseReach = 18;
+constexpr double kLoose = 0.05;            // of the points
 constexpr double kFringe = 0.2;            // of the density next to it
 constexpr std::uint32_t kManyPoints = 40;  // enough for that ratio to mean something
 
@@ -93,6 +94,15 @@ void seal_wide_openings(const std::vector<vcg::Point3f>& points, const vcg::Box3
 
 }  // namespace
 
+bool in_pieces(const Region& region, int level) {
+    constexpr int kTogether = 4 * 4;
+    const auto at = [&](int l) { return region.topologies[static_cast<std::size_t>(l)]; };
+    const LevelTopology here = at(level);
+    const double coming =
+        static_cast<double>(here.speck_points - at(std::max(level, kTogether)).speck_points);
+    return here.components == 0 || coming > kLoose * static_cast<double>(region.total_points);
+}
+
 std::vector<std::uint32_t> count_points(const Lattice& lattice, const std::vector<vcg::Point3f>& points) {
     std::vector<std::uint32_t> counts(lattice.size(), 0);
     for (const vcg::Point3f& p : points) {
@@ -113,7 +123,7 @@ double points_per_occupied_node(const std::vector<std::uint32_t>& counts) {
 
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step, double share,
                long long least) {
-    Region region{Lattice(box, step, Region::kMargin), {}, 0, {}, {}, false, 0, 0, {}};
+    Region region{Lattice(box, step, Region::kMargin), {}, 0, {}, {}, false, 0, 0, 0, {}};
     const std::vector<std::uint32_t> counts = count_points(region.lattice, points);
     region.counts = without_fringe(region.lattice, counts);
     for (std::size_t i = 0; i < counts.size(); ++i) region.fringe_points += counts[i] - region.counts[i];
@@ -129,6 +139,7 @@ Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, f
 
     const long long total = static_cast<long long>(points.size());
     const long long wanted = std::max(least, static_cast<long long>(share * static_cast<double>(total)));
+    region.total_points = total;
     region.enough = std::min(wanted, 1 + total / 4);  // a handful of points is a cloud, too
     region.topologies =
         topology_of_levels(region.lattice, region.clearance, region.counts, Region::kReach, region.enough);

@@ -26,7 +26,8 @@ struct Region {
     std::vector<Level> clearance;  ///< with enclosed spaces sealed
     bool encloses_space = false;
     double widest_opening = 0;  ///< radius of the widest hole that was sealed, same unit as the points
-    long long enough = 0;       ///< points that make a component
+    long long total_points = 0;
+    long long enough = 0;                   ///< points that make a component
     std::vector<LevelTopology> topologies;  ///< of every level
 };
 
@@ -38,6 +39,11 @@ struct Region {
 /// gaps. A component needs \p share of the points and at least \p least. O(nodes + points).
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step, double share,
                long long least);
+
+/// Is the solid at \p level still in pieces, as at radii below the distances of the points? That is: nothing
+/// is large enough to count, or a twentieth of the points and more lies in pieces too small to count that
+/// come together within four lattice steps. O(1).
+bool in_pieces(const Region& region, int level);
 
 /// Points per lattice node; points outside the lattice are left out.
 std::vector<std::uint32_t> count_points(const Lattice& lattice, const std::vector<vcg::Point3f>& points);

@@ -76,7 +76,8 @@ class Case:
 
     def truth(self):
         if self._truth is None:
-            self._truth = evaluate.Truth(*models.load_model(self.name, self.options.data))
+            samples = getattr(self.options, "measure_samples", evaluate.SAMPLES)
+            self._truth = evaluate.Truth(*models.load_model(self.name, self.options.data), samples)
         return self._truth
 
     def cloud(self):

@@ -164,6 +164,16 @@ TEST(Shell, AFewPointsAreEnough) {
     }
 }
 
+TEST(Shell, PiecesOfASparseCloudAreNoComponents) {
+    for (const int count : {400, 800, 2000}) {
+        Random random(16);
+        const StartMesh mesh = shell(
+            shell_shapes::sample(shell_shapes::torus(1, 0.35), static_cast<std::size_t>(count), random));
+        expect_topology(mesh, 1, 1);
+        EXPECT_EQ(mesh.ignored_points, 0);
+    }
+}
+
 TEST(Shell, VerticesFollowTheBudget) {
     Random random(2);
     const auto cloud = shell_shapes::sample(shell_shapes::torus(1, 0.4), 20000, random);

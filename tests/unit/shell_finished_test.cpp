@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// What becomes of open, dirty and thin clouds: the shell's promises, kept by the finished mesh.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "shell_shapes.h"
+#include "vcg_core/network.h"
+#include "vcg_core/reconstruct.h"
+
+namespace neuralmesh {
+namespace {
+
+NeuralMesh finished(const std::vector<vcg::Point3d>& cloud, int vertices) {
+    Settings settings;
+    settings.target_vertices = vertices;
+    const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+    NoProgress progress;
+    return reconstruct(target, settings, progress);
+}
+
+void expect_closed(const NeuralMesh& mesh, int vertices, int components, int genus) {
+    EXPECT_EQ(mesh.report.vertices, vertices);
+    EXPECT_EQ(mesh.report.components, components);
+    EXPECT_EQ(mesh.report.genus, genus);
+    EXPECT_EQ(mesh.report.boundary_loops, 0);
+    std::vector<vcg::Point3f> positions;
+    for (const vcg::Point3d& p : mesh.positions) positions.push_back(vcg::Point3f::Construct(p));
+    EXPECT_EQ(Network(positions, mesh.faces).validate(), "");
+}
+
+bool warned_of(const NeuralMesh& mesh, const std::string& words) {
+    return std::any_of(mesh.report.warnings.begin(), mesh.report.warnings.end(),
+                       [&](const std::string& w) { return w.find(words) != std::string::npos; });
+}
+
+/// A sphere's points with every hundredth thrown anywhere into a box three times as wide.
+std::vector<vcg::Point3d> sphere_with_gross_outliers() {
+    Random random(11);
+    std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
+    const auto anywhere = [&] { return 6 * static_cast<double>(random.unit()) - 3; };
+    for (std::size_t i = 0; i < cloud.size(); i += 100) cloud[i] = {anywhere(), anywhere(), anywhere()};
+    return cloud;
+}
+
+TEST(ShellFinished, GrossOutliersMakeNoComponents) {
+    const NeuralMesh mesh = finished(sphere_with_gross_outliers(), 500);
+    expect_closed(mesh, 500, 1, 0);
+    EXPECT_TRUE(warned_of(mesh, "as outliers"));
+}
+
+TEST(ShellFinished, FarClumpsOfFewPointsMakeNoComponents) {
+    Random random(12);
+    std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::torus(1, 0.35), 20000, random);
+    for (const double x : {3.0, -3.0, 5.0})
+        for (int i = 0; i < 150; ++i)
+            cloud.emplace_back(x + 0.05 * static_cast<double>(random.unit()),
+                               0.05 * static_cast<double>(random.unit()), 2);
+    const NeuralMesh mesh = finished(cloud, 500);
+    expect_closed(mesh, 500, 1, 1);
+    EXPECT_TRUE(warned_of(mesh, "450 of 20450 points were ignored"));
+}
+
+TEST(ShellFinished, AGroupOfOnePercentIsAComponent) {
+    Random random(13);
+    std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
+    for (const vcg::Point3d& p : shell_shapes::sample(shell_shapes::sphere(0.2), 300, random))
+        cloud.push_back(p + vcg::Point3d(2, 0, 0));
+    expect_closed(finished(cloud, 500), 500, 2, 0);
+}
+
+TEST(ShellFinished, HalfASphereIsClosedWithAWarning) {
+    Random random(14);
+    std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
+    cloud.erase(std::remove_if(cloud.begin(), cloud.end(), [](const vcg::Point3d& p) { return p[2] > 0; }),
+                cloud.end());
+    const NeuralMesh mesh = finished(cloud, 500);
+    expect_closed(mesh, 500, 1, 0);
+    EXPECT_TRUE(warned_of(mesh, "closed"));
+}
+
+TEST(ShellFinished, APlanePatchIsClosedWithAWarning) {
+    Random random(15);
+    std::vector<vcg::Point3d> cloud;
+    for (int i = 0; i < 10000; ++i)
+        cloud.emplace_back(static_cast<double>(random.unit()), static_cast<double>(random.unit()), 0);
+    const NeuralMesh mesh = finished(cloud, 500);
+    expect_closed(mesh, 500, 1, 0);
+    EXPECT_TRUE(warned_of(mesh, "closed"));
+}
+
+TEST(ShellFinished, ACloudTooSparseForItsShellTakesACoarserOneAndSaysSo) {
+    // Clusters of points, far apart: dense enough for a fine lattice, on which they stay apart.
+    Random random(16);
+    std::vector<vcg::Point3d> cloud;
+    const auto jitter = [&] { return 0.004 * static_cast<double>(random.unit()); };
+    for (const vcg::Point3d& p : shell_shapes::sample(shell_shapes::torus(1, 0.15), 800, random))
+        for (int i = 0; i < 30; ++i) cloud.push_back(p + vcg::Point3d(jitter(), jitter(), jitter()));
+    const NeuralMesh mesh = finished(cloud, 200);
+    expect_closed(mesh, 200, 1, 1);
+    EXPECT_TRUE(warned_of(mesh, "a coarser one was taken"));
+}
+
+}  // namespace
+}  // namespace neuralmesh
