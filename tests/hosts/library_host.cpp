@@ -76,6 +76,7 @@ public:
                   << ", \"layers\": " << document.meshNumber()
                   << ", \"current\": " << quoted(document.mm()->label().toStdString());
         for (const auto& [key, value] : told) std::cout << ", \"" << key << "\": " << value.toDouble();
+        std::cout << ", \"asked_to_stop\": " << (calls >= calls_until_stop ? "true" : "false");
         if (learned) {
             std::cout << ", \"vn\": " << document.mm()->cm.vn;
             write_off(document.mm()->cm, out);

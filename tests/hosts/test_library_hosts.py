@@ -38,11 +38,13 @@ def test_plugins_of_other_hosts_are_refused(learn, release, host):
 def test_a_host_that_asks_to_stop_gets_the_mesh_so_far(build, learn, tmp_path, release):
     first, *stopped = library_hosts.outcomes(learn(release, f"meshlab-{release}", ball(), "cancel"))
     assert first["stop_reason"] == 0 and first["vn"] == 100
-    assert len(stopped) >= 5
+    # How often the filter calls the host depends on the time it takes; so a later call may not come.
+    assert stopped[0]["asked_to_stop"]
     for told in stopped:
         assert told["unchanged"] and told["layers"] == 3 and told["current"] == "Neural Mesh"
-        assert told["stop_reason"] == 2 and told["vn"] == told["vertices"] <= 100
-        assert told["logged"].count("it was cancelled") == 1
+        assert told["stop_reason"] == (2 if told["asked_to_stop"] else 0)
+        assert told["logged"].count("it was cancelled") == (1 if told["asked_to_stop"] else 0)
+        assert told["vn"] == told["vertices"] <= 100
     found = meshlabserver.check_mesh(build, tmp_path / "out.off")
     assert found["vertices"] == stopped[-1]["vn"] and found["watertight"] and found["oriented"]
 
