@@ -23,7 +23,7 @@ using vcg::Point3f;
 
 constexpr std::size_t kResolutions = 5;  // lattices that vote at most
 constexpr float kCoarser = 1.4F;
-constexpr double kLowConfidence = 0.5, kHighConfidence = 0.9;  // of the votes
+constexpr double kLowConfidence = 0.5, kClearConfidence = 0.75, kHighConfidence = 0.9;  // of the votes
 // A closer look takes more nodes, if the cloud is dense enough for them.
 constexpr double kCloserLook = 8, kDensePoints = 2;  // times the nodes, times the points per node
 constexpr double kCoarseShellSteps = 5;  // radius of the shell in steps of the finest usual lattice
@@ -206,7 +206,7 @@ Inquiry inquire(const std::vector<Point3f>& points, const Box3f& box, const Shel
     inquiry.vote(true);
     const float finer = step_for(points, box, options, kCloserLook * options.max_nodes,
                                  kDensePoints * options.points_per_node);
-    if (inquiry.verdict.confidence < kHighConfidence && finer * kCoarser <= step) {
+    if (inquiry.verdict.confidence < kClearConfidence && finer * kCoarser <= step) {
         inquiry.regions.insert(inquiry.regions.begin(), look(finer));
         inquiry.topologies.insert(inquiry.topologies.begin(), grown_topologies(inquiry.regions.front()));
         inquiry.vote(true);

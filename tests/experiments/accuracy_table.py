@@ -31,6 +31,8 @@ from compare_accuracy import by_case, geometric_mean, table, topology_right
 
 TABLE_MODELS = ("bunny", "koala", "fandisk", "kitten", "rocker-arm", "eight", "block", "genus3")
 SMALL_MODELS = ("torus", "two-spheres", "linked-tori", "filleted-cube")
+# The others' parts come closer than noise of .3 % leaves apart in 20,000 points.
+SMALL_NOISY_MODELS = ("torus", "filleted-cube")
 PEERS = ("poisson", "poisson-smooth")
 EXTRA_TOPOLOGY = ("turbine",)  # not in the score
 TOPOLOGY_SAMPLES = (20_000, 200_000)
@@ -107,6 +109,8 @@ def accuracy_rows(options, note):
     for seed in options.seeds:
         for noise in options.noise:
             for name in options.models:
+                if options.small and noise and name not in SMALL_NOISY_MODELS:
+                    continue
                 case = compare_accuracy.Case(name, noise, options)
                 rows += ours(options, case, options.vertices, seed)
                 # With normals from noisy neighbours Poisson takes a minute even for a small cloud.
