@@ -11,6 +11,7 @@
 
 #include "fit_crossings.h"
 #include "fit_flips.h"
+#include "fit_move.h"
 #include "fit_parallel.h"
 #include "fit_points.h"
 #include "fit_redistribute.h"
@@ -61,6 +62,8 @@ constexpr float kSplitVariances = 16;
 constexpr double kShiftedShare = 0.05;
 constexpr int kShiftEvery = 1;
 constexpr int kQuietRounds = 3;
+/// Rounds without gain after which no more are made.
+constexpr int kPatience = 4;
 /// How often a change of the connectivity is tried again without what made the surface cut itself.
 constexpr int kTries = 3;
 
@@ -200,12 +203,13 @@ double Fit::move(const FacePoints& ties, Surface& surface, int round) {
     least = std::max({least, kLastLeastWeight, noise_ / (gap * gap * per_vertex)});
     for (float& weight : weights) weight = std::max(weight, least);
     weights.erase(std::unique(weights.begin(), weights.end()), weights.end());
+    const Surface start = surface;
+    const MoveLimits limits(network_, start);
     const FitSystem system(network_, surface, ties, threads_);
     std::vector<std::vector<Vec>> moved(weights.size());
     for_chunks(weights.size(), 1, threads_, [&](std::size_t i, std::size_t, std::size_t) {
-        moved[i] = bounded_move(network_, surface, system.solve(weights[i]));
+        moved[i] = limits.bounded(system.solve(weights[i]));
     });
-    const std::vector<Vec> start = surface.at;
     std::size_t best = 0;
     double best_rms = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -218,9 +222,8 @@ double Fit::move(const FacePoints& ties, Surface& surface, int round) {
     weight_ = weights[best];
     surface.at = moved[best];
     if (!guard_.objections(crossings_of(surface, threads_)).empty()) {
-        for (std::size_t v = 0; v < start.size(); ++v) moved[best][v] -= start[v];
-        surface.at = start;
-        surface.at = uncrossed_move(network_, surface, moved[best], guard_, threads_);
+        for (std::size_t v = 0; v < start.at.size(); ++v) moved[best][v] -= start.at[v];
+        surface.at = limits.uncrossed(moved[best], guard_, threads_);
         best_rms = held_error(surface);
     }
     for (VertexId v = 0; v < network_.slot_count(); ++v)
@@ -327,6 +330,7 @@ void Fit::run(FitReport& report, Progress& progress) {
         }
         if (round > 0) aim(surface);
         const double error = move(ties, surface, round);
+        if (round > 0 && error >= best_rms && round + 1 - report.rounds >= kPatience) break;
         if (round == 0 || error < best_rms) {
             best = network_;
             report.origin = origin_;

@@ -71,20 +71,19 @@ std::size_t faces_of(const std::vector<Crossing>& crossings) {
 std::vector<Crossing> crossings_of(const Surface& surface, int threads) {
     const FaceTree tree(surface);
     std::vector<std::vector<Crossing>> found((surface.faces.size() + kChunk - 1) / kChunk);
+    const auto note = [&](int f, int g, std::vector<Crossing>& crossings) {
+        if (!cut_each_other(surface, std::min(f, g), std::max(f, g))) return;
+        Triangle s = surface.faces[index(f)];
+        Triangle t = surface.faces[index(g)];
+        std::sort(s.begin(), s.end());
+        std::sort(t.begin(), t.end());
+        if (t < s) std::swap(s, t);
+        crossings.push_back({s[0], s[1], s[2], t[0], t[1], t[2]});
+    };
     for_chunks(surface.faces.size(), kChunk, threads,
                [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-                   for (std::size_t i = begin; i < end; ++i) {
-                       const int f = static_cast<int>(i);
-                       tree.for_overlapping(f, surface, [&](int g) {
-                           if (g <= f || !cut_each_other(surface, f, g)) return;
-                           Triangle s = surface.faces[index(f)];
-                           Triangle t = surface.faces[index(g)];
-                           std::sort(s.begin(), s.end());
-                           std::sort(t.begin(), t.end());
-                           if (t < s) std::swap(s, t);
-                           found[chunk].push_back({s[0], s[1], s[2], t[0], t[1], t[2]});
-                       });
-                   }
+                   for (std::size_t i = begin; i < end; ++i)
+                       tree.for_overlapping(i, [&](int f, int g) { note(f, g, found[chunk]); });
                });
     std::vector<Crossing> all;
     for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());

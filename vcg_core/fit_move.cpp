@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit_crossings.h"
-#include "fit_solve.h"
+#include "fit_move.h"
 
 namespace neuralmesh {
 
@@ -18,30 +17,51 @@ constexpr float kSharpestFold = -0.6F;  ///< cosine between the normals of neigh
 constexpr float kSliver = 0.06F;        ///< triangle_quality() below which a face may not fall
 constexpr int kHalvings = 5;            ///< before the vertices of an offending face stay where they are
 
-class Mover {
+std::vector<Vec> normals_of(const Surface& surface, const std::vector<Vec>& at) {
+    std::vector<Vec> result(surface.faces.size());
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        const Triangle& f = surface.faces[i];
+        const Vec& a = at[index(f[0])];
+        result[i] = (at[index(f[1])] - a).cross(at[index(f[2])] - a).normalized();
+    }
+    return result;
+}
+
+}  // namespace
+
+MoveLimits::MoveLimits(const Network& network, const Surface& surface)
+    : network_(network),
+      surface_(surface),
+      normals_(normals_of(surface, surface.at)),
+      folded_(normals_.size()),
+      longest_(surface.at.size()) {
+    for (std::size_t i = 0; i < normals_.size(); ++i) {
+        const Triangle& f = surface_.faces[i];
+        for (std::size_t k = 0; k < 3; ++k)
+            if (normals_[i].dot(normal_beyond(surface_, f[k], f[(k + 1) % 3])) < kSharpestFold)
+                folded_[i] = 1;
+    }
+    for (VertexId v = 0; v < network.slot_count(); ++v) {
+        const Ring& ring = network.ring(v);
+        if (ring.valence == 0) continue;
+        float length = 0;
+        for (int i = 0; i < ring.valence; ++i)
+            length += (surface_.at[index(ring[i])] - surface_.at[index(v)]).norm();
+        longest_[index(v)] = kLongestMove * length / static_cast<float>(ring.valence);
+    }
+}
+
+/// One set of displacements, and what becomes of it within the limits.
+class MoveLimits::Mover {
 public:
-    Mover(const Network& network, const Surface& surface, const std::vector<Vec>& u)
-        : network_(network), surface_(surface), move_(u), moved_(surface.at) {
-        for (VertexId v = 0; v < network.slot_count(); ++v) {
-            const Ring& ring = network.ring(v);
-            if (ring.valence == 0) continue;
-            float length = 0;
-            for (int i = 0; i < ring.valence; ++i)
-                length += (surface.at[index(ring[i])] - surface.at[index(v)]).norm();
-            const float bound = kLongestMove * length / static_cast<float>(ring.valence);
-            const float norm = move_[index(v)].norm();
-            if (norm > bound) move_[index(v)] *= bound / norm;
-            if (!(norm >= 0)) move_[index(v)].setZero();
-            moved_[index(v)] += move_[index(v)];
-        }
-        normals_ = normals(surface.at);
-        // A face that lies folded back already has to turn to come right.
-        folded_.resize(normals_.size());
-        for (std::size_t i = 0; i < normals_.size(); ++i) {
-            const Triangle& f = surface.faces[i];
-            for (std::size_t k = 0; k < 3; ++k)
-                if (normals_[i].dot(normal_beyond(surface, f[k], f[(k + 1) % 3])) < kSharpestFold)
-                    folded_[i] = 1;
+    Mover(const MoveLimits& limits, const std::vector<Vec>& u)
+        : limits_(limits), surface_(limits.surface_), move_(u), moved_(surface_.at) {
+        for (std::size_t v = 0; v < moved_.size(); ++v) {
+            const float bound = limits.longest_[v];
+            const float norm = move_[v].norm();
+            if (norm > bound) move_[v] *= bound / norm;
+            if (!(norm >= 0)) move_[v].setZero();
+            moved_[v] += move_[v];
         }
     }
 
@@ -81,18 +101,8 @@ private:
         return any;
     }
 
-    std::vector<Vec> normals(const std::vector<Vec>& at) const {
-        std::vector<Vec> result(surface_.faces.size());
-        for (std::size_t i = 0; i < result.size(); ++i) {
-            const Triangle& f = surface_.faces[i];
-            const Vec& a = at[index(f[0])];
-            result[i] = (at[index(f[1])] - a).cross(at[index(f[2])] - a).normalized();
-        }
-        return result;
-    }
-
     bool spoiled(std::size_t i, const std::vector<Vec>& now) const {
-        if (normals_[i].dot(now[i]) < kLeastTurn && folded_[i] == 0) return true;
+        if (limits_.normals_[i].dot(now[i]) < kLeastTurn && limits_.folded_[i] == 0) return true;
         const Triangle& f = surface_.faces[i];
         const auto quality = [&](const std::vector<Vec>& at) {
             return triangle_quality(at[index(f[0])], at[index(f[1])], at[index(f[2])]);
@@ -103,21 +113,22 @@ private:
 
     /// Vertices of faces that turn over, become slivers, or fold onto a neighbour.
     std::vector<char> find_offending() const {
-        const std::vector<Vec> now = normals(moved_);
+        const std::vector<Vec> now = normals_of(surface_, moved_);
         std::vector<char> offending(moved_.size(), 0);
         const auto mark = [&](std::size_t face) {
             for (const VertexId v : surface_.faces[face]) offending[index(v)] = 1;
         };
         for (std::size_t i = 0; i < now.size(); ++i)
             if (spoiled(i, now)) mark(i);
-        for (VertexId v = 0; v < network_.slot_count(); ++v) {
+        for (VertexId v = 0; v < limits_.network_.slot_count(); ++v) {
             // The faces of a vertex that share an edge with it share that edge's other end.
             for (int i = surface_.first_face[index(v)]; i < surface_.first_face[index(v) + 1]; ++i) {
                 const auto f = index(surface_.face_of[index(i)]);
                 for (int j = i + 1; j < surface_.first_face[index(v) + 1]; ++j) {
                     const auto g = index(surface_.face_of[index(j)]);
                     const float fold = now[f].dot(now[g]);
-                    if (fold >= kSharpestFold || fold >= normals_[f].dot(normals_[g]) || !share_edge(f, g))
+                    if (fold >= kSharpestFold || fold >= limits_.normals_[f].dot(limits_.normals_[g]) ||
+                        !share_edge(f, g))
                         continue;
                     mark(f);
                     mark(g);
@@ -134,23 +145,16 @@ private:
         return shared == 2;
     }
 
-    const Network& network_;
+    const MoveLimits& limits_;
     const Surface& surface_;
     std::vector<Vec> move_;
     std::vector<Vec> moved_;
-    std::vector<Vec> normals_;  ///< before the move
-    std::vector<char> folded_;
 };
 
-}  // namespace
+std::vector<Vec> MoveLimits::bounded(const std::vector<Vec>& u) const { return Mover(*this, u).run(); }
 
-std::vector<Vec> bounded_move(const Network& network, const Surface& surface, const std::vector<Vec>& u) {
-    return Mover(network, surface, u).run();
-}
-
-std::vector<Vec> uncrossed_move(const Network& network, const Surface& surface, const std::vector<Vec>& u,
-                                CrossingGuard& guard, int threads) {
-    return Mover(network, surface, u).run(guard, threads);
+std::vector<Vec> MoveLimits::uncrossed(const std::vector<Vec>& u, CrossingGuard& guard, int threads) const {
+    return Mover(*this, u).run(guard, threads);
 }
 
 }  // namespace neuralmesh

@@ -22,6 +22,7 @@ constexpr float kSharpestFold = -0.5F;  ///< cosine between the normals of neigh
 constexpr int kFewPoints = 6;
 constexpr float kStretch = 1.02F;
 constexpr int kStarPoints = 64;         ///< about as many points of a star are enough to judge a collapse by
+constexpr float kJudged = 0.4F;         ///< share of the vertices, those whose removal seems cheapest
 constexpr int kTries = 3;               ///< neighbours to collapse into, the best by the quadric
 constexpr float kLongestOffset = 0.3F;  ///< of a new vertex from its edge, in edge lengths
 
@@ -51,6 +52,17 @@ public:
             if (cost < best.cost) best = {cost, v, into};
         }
         return best;
+    }
+
+    /// About what the removal of \p v costs at least: the smallest quadric of its neighbours times the
+    /// density of the points. 0 where points are missing.
+    float estimate(VertexId v) const {
+        const Ring& ring = network_.ring(v);
+        const Star around = star(v);
+        if (around.missing > 0 || ring.valence == 0) return 0;
+        float least = std::numeric_limits<float>::max();
+        for (int i = 0; i < ring.valence; ++i) least = std::min(least, quadric(v, ring[i]));
+        return least * static_cast<float>(around.count) / around.area;
     }
 
 private:
@@ -254,8 +266,20 @@ Redistribution plan_redistribution(const Network& network, const Surface& surfac
     const CollapseJudge judge(network, surface, points, support);
     Redistribution plan;
     plan.mergers.resize(index(network.slot_count()));
+    std::vector<float> estimates(plan.mergers.size());
+    for_chunks(estimates.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) estimates[v] = judge.estimate(static_cast<VertexId>(v));
+    });
+    std::vector<float> sorted = estimates;
+    const auto last = static_cast<std::size_t>(kJudged * static_cast<float>(sorted.size()));
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(last), sorted.end());
     for_chunks(plan.mergers.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) plan.mergers[v] = judge.cheapest(static_cast<VertexId>(v));
+        for (std::size_t v = begin; v < end; ++v) {
+            const auto vertex = static_cast<VertexId>(v);
+            plan.mergers[v] = estimates[v] <= sorted[last]
+                                  ? judge.cheapest(vertex)
+                                  : Merger{std::numeric_limits<float>::max(), vertex, -1};
+        }
     });
     plan.splits = edge_splits(network, surface, points, least_gain, threads);
     std::stable_sort(plan.mergers.begin(), plan.mergers.end(),

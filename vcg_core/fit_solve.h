@@ -7,7 +7,6 @@
 
 #include <vector>
 
-#include "fit_crossings.h"
 #include "fit_surface.h"
 
 namespace neuralmesh {
@@ -98,14 +97,5 @@ private:
     std::vector<Vec> bending_force_;
     std::vector<float> bending_diagonal_;
 };
-
-/// Shortens the displacements \p u until no face turns over, folds onto its neighbour or becomes a sliver and
-/// no vertex moves further than a quarter of the way to its neighbours; adds them to the positions. \return
-/// the new positions by slot
-std::vector<Vec> bounded_move(const Network& network, const Surface& surface, const std::vector<Vec>& u);
-
-/// As bounded_move(), and shortened until \p guard, which stands for \p surface, has no objections.
-std::vector<Vec> uncrossed_move(const Network& network, const Surface& surface, const std::vector<Vec>& u,
-                                CrossingGuard& guard, int threads);
 
 }  // namespace neuralmesh

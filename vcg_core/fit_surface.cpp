@@ -59,7 +59,8 @@ Hit walk_to_nearest(const Surface& surface, const Vec& p, VertexId start) {
     }
 }
 
-FaceTree::FaceTree(const Surface& surface) : order_(surface.faces.size()), corners_(surface.faces.size()) {
+FaceTree::FaceTree(const Surface& surface)
+    : order_(surface.faces.size()), corners_(surface.faces.size()), boxes_(surface.faces.size()) {
     std::vector<Vec> centres(order_.size());
     for (std::size_t f = 0; f < order_.size(); ++f)
         centres[f] = surface.corner(static_cast<int>(f), 0) + surface.corner(static_cast<int>(f), 1) +
@@ -98,7 +99,10 @@ int FaceTree::build(const std::vector<Vec>& centres, int begin, int end) {
 void FaceTree::set_boxes(const Surface& surface) {
     for (std::size_t i = 0; i < order_.size(); ++i) {
         const Vec& a = surface.corner(order_[i], 0);
-        corners_[i] = {a, surface.corner(order_[i], 1) - a, surface.corner(order_[i], 2) - a};
+        const Vec& b = surface.corner(order_[i], 1);
+        const Vec& c = surface.corner(order_[i], 2);
+        corners_[i] = {a, b - a, c - a};
+        boxes_[i] = {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
     }
     for (std::size_t n = nodes_.size(); n-- > 0;) {
         Node& node = nodes_[n];
@@ -107,12 +111,11 @@ void FaceTree::set_boxes(const Surface& surface) {
             node.high = nodes_[n + 1].high.cwiseMax(nodes_[index(node.right)].high);
             continue;
         }
-        node.low = node.high = corners_[index(node.begin)].a;
-        for (int i = node.begin; i < node.end; ++i) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                node.low = node.low.cwiseMin(surface.corner(order_[index(i)], k));
-                node.high = node.high.cwiseMax(surface.corner(order_[index(i)], k));
-            }
+        node.low = boxes_[index(node.begin)].low;
+        node.high = boxes_[index(node.begin)].high;
+        for (int i = node.begin + 1; i < node.end; ++i) {
+            node.low = node.low.cwiseMin(boxes_[index(i)].low);
+            node.high = node.high.cwiseMax(boxes_[index(i)].high);
         }
     }
 }

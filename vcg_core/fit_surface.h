@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -116,10 +117,10 @@ public:
     /// The nearest face of \p p, the one of smallest index among equals. Exact in float.
     /// O(log faces) expected near the surface.
     Hit nearest(const Vec& p) const;
-    /// Calls \p visit(face) for every face whose bounding box has a point in common with that of \p face,
-    /// itself among them. \p surface is that of the constructor.
+    /// Calls \p visit(f, g) for every face g whose bounding box has a point in common with that of f, the
+    /// \p i-th face in the order of the tree, and that comes after it there: for all i each pair once.
     template <class Visit>
-    void for_overlapping(int face, const Surface& surface, const Visit& visit) const;
+    void for_overlapping(std::size_t i, const Visit& visit) const;
 
 private:
     static constexpr int kLeaf = 4;
@@ -133,42 +134,40 @@ private:
     struct Corners {
         Vec a, ab, ac;
     };
+    struct Box {
+        Vec low, high;
+        bool apart(const Vec& l, const Vec& h) const {
+            return (l.array() > high.array()).any() || (h.array() < low.array()).any();
+        }
+    };
 
     int build(const std::vector<Vec>& centres, int begin, int end);
     void set_boxes(const Surface& surface);
 
     std::vector<int> order_;
     std::vector<Corners> corners_;  ///< in order_
+    std::vector<Box> boxes_;        ///< in order_
     std::vector<Node> nodes_;
 };
 
 template <class Visit>
-void FaceTree::for_overlapping(int face, const Surface& surface, const Visit& visit) const {
-    const auto low_of = [&](int f) -> Vec {
-        return surface.corner(f, 0).cwiseMin(surface.corner(f, 1)).cwiseMin(surface.corner(f, 2));
-    };
-    const auto high_of = [&](int f) -> Vec {
-        return surface.corner(f, 0).cwiseMax(surface.corner(f, 1)).cwiseMax(surface.corner(f, 2));
-    };
-    const Vec low = low_of(face);
-    const Vec high = high_of(face);
-    const auto apart = [&](const Vec& l, const Vec& h) {
-        return (l.array() > high.array()).any() || (h.array() < low.array()).any();
-    };
+void FaceTree::for_overlapping(std::size_t i, const Visit& visit) const {
+    const Box& box = boxes_[i];
+    const int first = static_cast<int>(i) + 1;
     std::array<int, kStack> stack;
     int height = 0;
     stack[index(height++)] = 0;
     while (height > 0) {
         const int n = stack[index(--height)];
         const Node& node = nodes_[index(n)];
-        if (apart(node.low, node.high)) continue;
+        if (node.end <= first || box.apart(node.low, node.high)) continue;
         if (node.right >= 0) {
             stack[index(height++)] = node.right;
             stack[index(height++)] = n + 1;
             continue;
         }
-        for (int i = node.begin; i < node.end; ++i)
-            if (!apart(low_of(order_[index(i)]), high_of(order_[index(i)]))) visit(order_[index(i)]);
+        for (int j = std::max(first, node.begin); j < node.end; ++j)
+            if (!box.apart(boxes_[index(j)].low, boxes_[index(j)].high)) visit(order_[i], order_[index(j)]);
     }
 }
 

