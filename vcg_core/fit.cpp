@@ -24,9 +24,6 @@ namespace neuralmesh {
 namespace {
 
 constexpr std::size_t kChunk = 512;
-/// One point in this many is held back, but at most kMostHeld.
-constexpr std::size_t kHeldShare = 8;
-constexpr std::size_t kMostHeld = 10000;
 /// With fewer points than this there is nothing to fit to and to judge by.
 constexpr std::size_t kLeastPoints = 64;
 /// A point is an outlier from this many robust standard deviations (1.4826 MAD) ...
@@ -53,46 +50,21 @@ constexpr double kLearnedShare = 0.8;
 constexpr double kCrumpling = 3;
 /// The first round with a redistribution.
 constexpr int kFirstShift = 1;
-/// A flip, or the split of an edge, has to be worth this many variances of the noise: the best of ten
-/// thousand that follow nothing but noise seem to gain about as much.
+/// The split of an edge has to be worth this many variances of the noise. The most: the best of ten thousand
+/// that follow nothing but noise seem to gain about as much. But where noise is small beside the edges, up to
+/// about kSmallNoise edge lengths, little can crumple, and more is won by the right ones than lost by others.
+constexpr float kLeastSplitVariances = 4;
+constexpr float kMostSplitVariances = 16;
+constexpr float kSmallNoise = 0.06F;
+/// A flip has to be worth this many.
 constexpr float kFlipVariances = 6;
-constexpr float kSplitVariances = 16;
 
 /// Share of the vertices that one redistribution may move, and how many last rounds are without any.
 constexpr double kShiftedShare = 0.05;
 constexpr int kShiftEvery = 1;
 constexpr int kQuietRounds = 3;
-/// Rounds without gain after which no more are made.
-constexpr int kPatience = 4;
 /// How often a change of the connectivity is tried again without what made the surface cut itself.
 constexpr int kTries = 3;
-
-struct Split {
-    Followed fitted;
-    Followed held;
-};
-
-/// The points to fit to and those held back: all of a cloud, or a random choice.
-Split choose_points(const TargetSpace& target, std::size_t wanted, Random& random) {
-    std::vector<Vec> all;
-    if (target.has_faces()) {
-        for (std::size_t i = 0; i < wanted; ++i) all.push_back(vec(target.sample(random)));
-    } else {
-        const auto& positions = target.positions();
-        std::vector<std::uint32_t> order(positions.size());
-        std::iota(order.begin(), order.end(), 0U);
-        wanted = std::min(wanted, order.size());
-        for (std::size_t i = 0; i < wanted; ++i) {
-            std::swap(order[i], order[i + random.below(static_cast<std::uint32_t>(order.size() - i))]);
-            all.push_back(vec(positions[order[i]]));
-        }
-    }
-    const std::size_t held = std::min(all.size() / kHeldShare, kMostHeld);
-    Split split;
-    split.held.points.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(held));
-    split.fitted.points.assign(all.begin() + static_cast<std::ptrdiff_t>(held), all.end());
-    return split;
-}
 
 class Fit {
 public:
@@ -113,6 +85,7 @@ private:
     double move(const FacePoints& ties, Surface& surface, int round);
     template <class Change>
     auto guarded(const Change& change);
+    float least_gain(const Surface& surface) const;
     bool shift_vertices(const Surface& surface, const FacePoints& ties, FitReport& report);
     void follow(const Surface& surface, FacePoints& ties) const;
 
@@ -245,6 +218,13 @@ void Fit::follow(const Surface& surface, FacePoints& ties) const {
     });
 }
 
+/// What the split of an edge has to gain, as a sum of squared distances.
+float Fit::least_gain(const Surface& surface) const {
+    const float small = kSmallNoise * mean_edge(surface);
+    return noise_ * std::min(kMostSplitVariances,
+                             kLeastSplitVariances * (1 + noise_ / std::max(small * small, 1e-20F)));
+}
+
 /// Carries out \p change(barred), barred being vertices to leave alone; if then the guard objects, it is
 /// undone and tried again without the vertices objected to. \return what it does
 template <class Change>
@@ -266,8 +246,7 @@ auto Fit::guarded(const Change& change) {
 bool Fit::shift_vertices(const Surface& surface, const FacePoints& ties, FitReport& report) {
     const int most =
         std::max(1, static_cast<int>(kShiftedShare * static_cast<double>(network_.vertex_count())));
-    const Redistribution plan =
-        plan_redistribution(network_, surface, ties, kSplitVariances * noise_, threads_);
+    const Redistribution plan = plan_redistribution(network_, surface, ties, least_gain(surface), threads_);
     const Shifts done =
         guarded([&](const std::vector<char>& barred) { return redistribute(network_, plan, most, barred); });
     if (done.merges.empty()) return false;
@@ -330,7 +309,6 @@ void Fit::run(FitReport& report, Progress& progress) {
         }
         if (round > 0) aim(surface);
         const double error = move(ties, surface, round);
-        if (round > 0 && error >= best_rms && round + 1 - report.rounds >= kPatience) break;
         if (round == 0 || error < best_rms) {
             best = network_;
             report.origin = origin_;

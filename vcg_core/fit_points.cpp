@@ -17,6 +17,29 @@ constexpr std::size_t kChunk = 512;
 
 }  // namespace
 
+Split choose_points(const TargetSpace& target, std::size_t wanted, Random& random) {
+    std::vector<Vec> all;
+    if (target.has_faces()) {
+        for (std::size_t i = 0; i < wanted; ++i) all.push_back(vec(target.sample(random)));
+    } else {
+        const auto& positions = target.positions();
+        std::vector<std::uint32_t> order(positions.size());
+        std::iota(order.begin(), order.end(), 0U);
+        wanted = std::min(wanted, order.size());
+        for (std::size_t i = 0; i < wanted; ++i) {
+            std::swap(order[i], order[i + random.below(static_cast<std::uint32_t>(order.size() - i))]);
+            all.push_back(vec(positions[order[i]]));
+        }
+    }
+    constexpr std::size_t kHeldShare = 8;
+    constexpr std::size_t kMostHeld = 10000;
+    const std::size_t held = std::min(all.size() / kHeldShare, kMostHeld);
+    Split split;
+    split.held.points.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(held));
+    split.fitted.points.assign(all.begin() + static_cast<std::ptrdiff_t>(held), all.end());
+    return split;
+}
+
 float median(std::vector<float> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());

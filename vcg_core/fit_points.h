@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "fit_solve.h"
+#include "random.h"
+#include "target_space.h"
 
 namespace neuralmesh {
 
@@ -17,6 +19,15 @@ struct Followed {
     std::vector<VertexId> near;
     std::vector<Vec> directions;  ///< along which to measure; only of the points held back
 };
+
+struct Split {
+    Followed fitted;
+    Followed held;
+};
+
+/// The points to fit to and some held back to judge by: \p wanted points of \p target, all of a cloud or a
+/// random choice. One in eight is held back, but at most 10,000.
+Split choose_points(const TargetSpace& target, std::size_t wanted, Random& random);
 
 /// The nearest faces of the points, exactly. O(points log faces)
 std::vector<Hit> exact_hits(const Surface& surface, const Followed& followed, int threads);
