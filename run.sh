@@ -119,15 +119,37 @@ demo() {
     "$python" tests/hosts/demo.py --build "$build" "${arguments[@]}"
 }
 
+# sanitized PRESET TARGET...: the targets as CMakePresets.json's PRESET instruments them, in build/PRESET.
+sanitized() {
+    local preset="$1"
+    shift
+    cmake --preset "$preset" > "$build/configure.log" 2>&1 ||
+        { cat "$build/configure.log" >&2; fail "The configuration of $preset failed."; }
+    cmake --build --preset "$preset" --target "$@" -- --quiet
+}
+
+# Where a wrong access, undefined behaviour or a race ends the program. CMakePresets.json and the filter below name
+# what runs; tests/README.md says what does not, and why.
+sanitizer_tests() {
+    say "Unit tests with the address and undefined-behaviour sanitizers"
+    sanitized sanitize unit_tests fuzz_network fuzz_settings || return 1
+    ctest --preset sanitize --parallel "$(nproc)" || return 1
+    say "Tests of threads with the thread sanitizer"
+    sanitized threads thread_tests || return 1
+    "$build/threads/tests/thread_tests" --gtest_brief=1 \
+        --gtest_filter='Team.*:Learner.IsTheReferenceInBatches:Fit.GivesTheSameBytesForAnyNumberOfThreads'
+}
+
 run_tests() {
     need $compile_packages $demo_packages $test_packages $venv_packages
     need_venv
     compile all
     say "Unit tests"
     ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel "$(nproc)"
+    local file failed=0
+    sanitizer_tests || failed=1
     say "Tests in the hosts"
     # A process for each file: a crash inside a host's libraries ends one file only, and says which.
-    local file failed=0
     for file in tests/hosts/test_*.py; do
         NEURALMESH_BUILD="$here/$build" "$venv/bin/python" -m pytest "$file" -q || failed=1
     done
