@@ -7,73 +7,87 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <unordered_map>
 #include <vector>
 
 #include "lanes.h"
 
 namespace neuralmesh {
 
-/// Counts per cell and level, found by hashing without keys: cells that share a counter make each other look
-/// inhabited, which costs a visit in vain and no more.
+/// Counts what lies in the cells of every level from the first coarser one on, and knows of every cell which
+/// of its 64 children are inhabited. Of the finest level it knows blocks of 4 x 4 x 4 cells only.
 class CellPyramid {
 public:
-    CellPyramid() = default;
-    /// For about \p inhabited cells with coordinates from 0 to \p across - 1 (up to 2^20).
-    CellPyramid(std::size_t inhabited, std::int32_t across);
+    CellPyramid() : CellPyramid(1) {}
+    /// For cells with coordinates from 0 to \p across - 1 (up to 2^20).
+    explicit CellPyramid(std::int32_t across);
 
     bool holds(FourInts cell) const {
         return std::min({cell[0], cell[1], cell[2]}) >= 0 && std::max({cell[0], cell[1], cell[2]}) < across_;
     }
-
-    /// O(levels).
+    /// One more, one less in \p cell. O(levels).
     void add(FourInts cell) { count(cell, 1); }
     void remove(FourInts cell) { count(cell, -1); }
     /// O(1) expected.
     void move(FourInts from, FourInts to);
 
-    /// Calls \p visit(x, y, z) for inhabited cells, near ones first, as long as their distance from \p s, in
-    /// cells and given as if every cell were \p slack larger, is below the \p bound it returns (in cells,
-    /// squared). O(levels) expected where cells lie on a surface.
+    /// Calls \p visit(x, y, z) for cells of inhabited blocks, near ones first, as long as their distance from
+    /// \p s, squared, in cells and given as if every cell were \p slack larger, is below the least bound that
+    /// visit() has returned. O(levels) expected where cells lie on a surface.
     template <class Visit>
     void nearest(const std::array<float, 3>& s, float slack, const Visit& visit) const {
         float bound = std::numeric_limits<float>::infinity();
-        descend(s, slack, FourInts{0, 0, 0, 0}, static_cast<int>(counters_.size()), bound, visit);
+        if (!nodes_.back().empty()) descend(s, slack, {0, 0, 0}, nodes_.size(), bound, visit);
     }
 
     std::size_t bytes() const;
 
 private:
+    using Cell = std::array<std::int32_t, 3>;
+    struct Node {
+        std::uint64_t children = 0;  ///< bit x + 4 y + 16 z
+        std::int32_t count = 0;
+    };
     struct Child {
         float squared_distance;
-        std::int32_t x, y, z;
+        Cell cell;
     };
 
+    static std::uint64_t key_of(const Cell& cell) {
+        return static_cast<std::uint64_t>(cell[0]) | static_cast<std::uint64_t>(cell[1]) << 21 |
+               static_cast<std::uint64_t>(cell[2]) << 42;
+    }
+    static Cell coarser(FourInts cell, std::size_t level) {
+        return {cell[0] >> (2 * level), cell[1] >> (2 * level), cell[2] >> (2 * level)};
+    }
+    std::unordered_map<std::uint64_t, Node>& nodes(std::size_t level) { return nodes_[level - 1]; }
+    const std::unordered_map<std::uint64_t, Node>& nodes(std::size_t level) const {
+        return nodes_[level - 1];
+    }
     void count(FourInts cell, int by);
-    std::int32_t& counter(int level, FourInts cell);
-    bool inhabited(int level, std::int32_t x, std::int32_t y, std::int32_t z) const;
-    int children(const std::array<float, 3>& s, float slack, FourInts cell, int level, float bound,
+    void count(FourInts cell, std::size_t level, int by);
+    int children(const std::array<float, 3>& s, float slack, const Cell& cell, std::size_t level, float bound,
                  std::array<Child, 64>& found) const;
 
     template <class Visit>
-    void descend(const std::array<float, 3>& s, float slack, FourInts cell, int level, float& bound,
-                 const Visit& visit) const {
+    void descend(const std::array<float, 3>& s, float slack, const Cell& cell, std::size_t level,
+                 float& bound, const Visit& visit) const {
         std::array<Child, 64> found;
-        const int n = children(s, slack, cell, level, bound, found);
-        for (int i = 0; i < n && found[static_cast<std::size_t>(i)].squared_distance < bound; ++i) {
-            const Child& c = found[static_cast<std::size_t>(i)];
+        const auto end = found.begin() + children(s, slack, cell, level, bound, found);
+        for (auto c = found.begin(); c != end && c->squared_distance < bound; ++c) {
             if (level == 1) {
-                bound = std::min(bound, visit(c.x, c.y, c.z));
+                bound = std::min(bound, visit(c->cell[0], c->cell[1], c->cell[2]));
             } else {
-                descend(s, slack, FourInts{c.x, c.y, c.z, 0}, level - 1, bound, visit);
+                descend(s, slack, c->cell, level - 1, bound, visit);
             }
         }
     }
 
-    std::int32_t across_ = 0;
-    /// Counters per level, from the grid's own cells to the children of the root.
-    std::vector<std::vector<std::int32_t>> counters_;
+    std::int32_t across_;
+    std::vector<std::unordered_map<std::uint64_t, Node>> nodes_;  ///< from level 1 to that of the one root
 };
 
 }  // namespace neuralmesh

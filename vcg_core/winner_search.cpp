@@ -20,6 +20,8 @@ constexpr float kRounding = 1e-3F;
 constexpr float kFarRounding = 0.1F;
 /// A box of more cells across is dearer than a walk down the pyramid.
 constexpr float kMostAcross = 4;
+/// So many are looked at in the time of a walk down the pyramid.
+constexpr int kFewVertices = 1500;
 
 /// Squared distances from here on are those of nobody.
 constexpr float kFar = 1e30F;
@@ -141,8 +143,7 @@ void WinnerSearch::lay_out() {
         --line_shift_;
     }
     heads_.assign(16 * lines, -1);
-    inhabited_ = CellPyramid(static_cast<std::size_t>(laid_out_for_),
-                             static_cast<std::int32_t>(2 * kOffset * inverse_edge_) + 1);
+    inhabited_ = CellPyramid(static_cast<std::int32_t>(2 * kOffset * inverse_edge_) + 1);
     out_of_range_ = 0;
     for (VertexId v = 0; v < network_.slot_count(); ++v)
         if (network_.alive(v)) add(v);
@@ -268,7 +269,8 @@ VertexId WinnerSearch::winner(const vcg::Point3f& s) const {
         const float reach = std::sqrt(squared_distance_of(best)) + kRounding * edge_;
         if (2 * reach * inverse_edge_ < kMostAcross) return vertex_of(scan_box(s, reach));
     }
-    return vertex_of(out_of_range_ == 0 ? scan_far(s) : scan_all(s));
+    const bool few = network_.slot_count() < kFewVertices;
+    return vertex_of(few || out_of_range_ > 0 ? scan_all(s) : scan_far(s));
 }
 
 }  // namespace neuralmesh
