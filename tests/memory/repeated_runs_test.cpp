@@ -55,6 +55,7 @@ TEST(RepeatedRuns, HundredRunsLeaveNothingBehind) {
         }
         settings.start_mesh = i % 4 == 0 ? kShell : kTetrahedron;
         settings.random_seed = i;
+        settings.threads = 1 + i % 2;
         learn(cloud, settings);
     }
     EXPECT_EQ(allocations::living(), living);
