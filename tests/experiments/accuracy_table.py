@@ -54,6 +54,7 @@ def parse(arguments):
     parser.add_argument("--noise", type=compare_accuracy.numbers(float), default=[0, .3, .1, .6])
     parser.add_argument("--vertices", type=compare_accuracy.numbers(int), default=[500, 2000, 10000])
     parser.add_argument("--models", type=compare_accuracy.numbers(str), help="names of models.py")
+    parser.add_argument("--peers", type=compare_accuracy.numbers(str), default=list(PEERS), help="the first leads")
     parser.add_argument("--only", choices=["accuracy", "topology"], help="one of the two tables")
     parser.add_argument("--small", action="store_true", help="the quick form, for the tests")
     options = parser.parse_args(arguments)
@@ -64,7 +65,7 @@ def parse(arguments):
         parser.error(f"There is no {program}: build it first.")
     options.program = hashlib.sha256(program.read_bytes()).hexdigest()[:12]
     options.cloud_seed, options.measure_samples, options.samples = 1, evaluate.SAMPLES, 200_000
-    options.peers, options.end = PEERS, time.monotonic() + 60 * options.minutes
+    options.end = time.monotonic() + 60 * options.minutes
     options.topology_models = models.TOPOLOGY_MODELS + EXTRA_TOPOLOGY
     if not options.models:
         options.models = [m for m in TABLE_MODELS if options.data or m in models.PUBLIC_MODELS]
@@ -73,7 +74,7 @@ def parse(arguments):
         options.topology_models = (*models.PUBLIC_MODELS, "linked-tori", "two-spheres", "cup")
     if options.small:
         options.samples, options.measure_samples, options.seeds, options.noise = 20_000, 20_000, [1, 2, 3], [0, .3]
-        options.models, options.vertices, options.peers = list(SMALL_MODELS), [500], ("poisson",)
+        options.models, options.vertices, options.peers = list(SMALL_MODELS), [500], ["poisson"]
     return options
 
 
