@@ -49,26 +49,26 @@ void CellPyramid::move(FourInts from, FourInts to) {
     }
 }
 
-int CellPyramid::children(const std::array<float, 3>& s, float slack, const Cell& cell, std::size_t level,
-                          float bound, std::array<Child, 64>& found) const {
-    const auto node = nodes(level).find(key_of(cell));
-    const std::uint64_t inhabited = level == 1 ? ~std::uint64_t{0} : node->second.children;
+CellPyramid::Slices CellPyramid::slices(const std::array<float, 3>& s, float slack, const Cell& cell,
+                                        std::size_t level) {
     const auto size = static_cast<float>(std::int64_t{1} << (2 * (level - 1)));
-    std::array<std::array<float, 4>, 3> squared{};
+    Slices squared{};
     for (std::size_t axis = 0; axis < 3; ++axis)
         for (std::int32_t i = 0; i < 4; ++i) {
             const float d = gap(s[axis], static_cast<float>(4 * cell[axis] + i) * size, size, slack);
             squared[axis][static_cast<std::size_t>(i)] = d * d;
         }
+    return squared;
+}
+
+/// The inhabited children nearer than \p bound, near ones first. \return how many.
+int CellPyramid::near_children(const Slices& squared, const Cell& cell, std::size_t level, float bound,
+                               std::array<Child, 64>& found) const {
     auto end = found.begin();
-    for (int i = 0; i < 64; ++i) {
-        if ((inhabited >> i & 1) == 0) continue;
-        const Cell within = {i & 3, i >> 2 & 3, i >> 4};
-        const float distance = squared[0][static_cast<std::size_t>(within[0])] +
-                               squared[1][static_cast<std::size_t>(within[1])] +
-                               squared[2][static_cast<std::size_t>(within[2])];
-        if (distance >= bound) continue;
-        *end++ = {distance, {4 * cell[0] + within[0], 4 * cell[1] + within[1], 4 * cell[2] + within[2]}};
+    for (std::uint64_t left = nodes(level).at(key_of(cell)).children; left != 0; left &= left - 1) {
+        const int i = __builtin_ctzll(left);
+        const float distance = squared_distance(squared, i);
+        if (distance < bound) *end++ = {distance, child_of(cell, i)};
     }
     std::sort(found.begin(), end,
               [](const Child& a, const Child& b) { return a.squared_distance < b.squared_distance; });

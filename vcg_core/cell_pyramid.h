@@ -34,8 +34,8 @@ public:
     /// O(1) expected.
     void move(FourInts from, FourInts to);
 
-    /// Calls \p visit(x, y, z) for cells of inhabited blocks, near ones first, as long as their distance from
-    /// \p s, squared, in cells and given as if every cell were \p slack larger, is below the least bound that
+    /// Calls \p visit(x, y, z) for cells of inhabited blocks, near blocks first, whose distance from \p s,
+    /// squared, in cells and given as if every cell were \p slack larger, is below the least bound that
     /// visit() has returned. O(levels) expected where cells lie on a surface.
     template <class Visit>
     void nearest(const std::array<float, 3>& s, float slack, const Visit& visit) const {
@@ -56,6 +56,9 @@ private:
         Cell cell;
     };
 
+    /// Squared distances along x, y and z to the four slices of a cell's children.
+    using Slices = std::array<std::array<float, 4>, 3>;
+
     static std::uint64_t key_of(const Cell& cell) {
         return static_cast<std::uint64_t>(cell[0]) | static_cast<std::uint64_t>(cell[1]) << 21 |
                static_cast<std::uint64_t>(cell[2]) << 42;
@@ -63,27 +66,40 @@ private:
     static Cell coarser(FourInts cell, std::size_t level) {
         return {cell[0] >> (2 * level), cell[1] >> (2 * level), cell[2] >> (2 * level)};
     }
+    static Slices slices(const std::array<float, 3>& s, float slack, const Cell& cell, std::size_t level);
+    static float squared_distance(const Slices& squared, int child) {
+        const auto i = static_cast<std::size_t>(child);
+        return squared[0][i & 3] + squared[1][i >> 2 & 3] + squared[2][i >> 4];
+    }
+    static Cell child_of(const Cell& cell, int child) {
+        return {4 * cell[0] + (child & 3), 4 * cell[1] + (child >> 2 & 3), 4 * cell[2] + (child >> 4)};
+    }
     std::unordered_map<std::uint64_t, Node>& nodes(std::size_t level) { return nodes_[level - 1]; }
     const std::unordered_map<std::uint64_t, Node>& nodes(std::size_t level) const {
         return nodes_[level - 1];
     }
     void count(FourInts cell, int by);
     void count(FourInts cell, std::size_t level, int by);
-    int children(const std::array<float, 3>& s, float slack, const Cell& cell, std::size_t level, float bound,
-                 std::array<Child, 64>& found) const;
+    int near_children(const Slices& squared, const Cell& cell, std::size_t level, float bound,
+                      std::array<Child, 64>& found) const;
 
     template <class Visit>
     void descend(const std::array<float, 3>& s, float slack, const Cell& cell, std::size_t level,
                  float& bound, const Visit& visit) const {
-        std::array<Child, 64> found;
-        const auto end = found.begin() + children(s, slack, cell, level, bound, found);
-        for (auto c = found.begin(); c != end && c->squared_distance < bound; ++c) {
-            if (level == 1) {
-                bound = std::min(bound, visit(c->cell[0], c->cell[1], c->cell[2]));
-            } else {
-                descend(s, slack, c->cell, level - 1, bound, visit);
+        const Slices squared = slices(s, slack, cell, level);
+        if (level == 1) {
+            // To look into a cell is cheaper than to put the cells in order.
+            for (int i = 0; i < 64; ++i) {
+                if (squared_distance(squared, i) >= bound) continue;
+                const Cell at = child_of(cell, i);
+                bound = std::min(bound, visit(at[0], at[1], at[2]));
             }
+            return;
         }
+        std::array<Child, 64> found;
+        const auto end = found.begin() + near_children(squared, cell, level, bound, found);
+        for (auto c = found.begin(); c != end && c->squared_distance < bound; ++c)
+            descend(s, slack, c->cell, level - 1, bound, visit);
     }
 
     std::int32_t across_;

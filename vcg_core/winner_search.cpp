@@ -244,7 +244,7 @@ std::uint64_t WinnerSearch::scan_far(const vcg::Point3f& s) const {
                            for (VertexId v = heads_[bucket_of(x, y, z)]; v >= 0; v = slots[v].next_in_cell)
                                best = std::min(best, candidate(slots[v], v, s));
                            // Those at the same distance count, too: the smaller id wins.
-                           return squared_distance_of(best) * to_cells * (1 + kFarRounding);
+                           return squared_distance_of(best) * to_cells * (1 + kRounding * kRounding);
                        });
     return best;
 }
