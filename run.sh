@@ -160,14 +160,19 @@ run_tests() {
 }
 
 bench() {
-    need $compile_packages $test_packages
+    need $compile_packages $demo_packages $test_packages $venv_packages
+    need_venv
     compile all
+    say "Commit $(git rev-parse --short HEAD 2> /dev/null || echo unknown)$(git diff --quiet HEAD 2> /dev/null || echo ', changed')"
     local program
     for program in "$build"/tests/bench_*; do
         [ -x "$program" ] && [ -f "$program" ] || continue
         say "${program##*/}"
-        "$program"
+        "$program" --benchmark_out="$build/${program##*/}.json" --benchmark_out_format=json
     done
+    say "In a host, beside what people use today"
+    "$venv/bin/python" tests/bench/in_host.py --out "$build/in_host.json" \
+        --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
 }
 
 figures() {

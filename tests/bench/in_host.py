@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""Seconds in a host (pymeshlab): the neural mesh against what people use today, on the Stanford bunny's points.
+
+    in_host.py --plugin LIBRARY.so [--turns 3] [--out FILE.json]
+
+prints the least of several turns of each, in processes of their own and in turns, so that all see the same load:
+10,000 vertices by every method and their ratios; a preview of 1,000; and how much of a run with 100,000 vertices is
+spent outside the core, on copying layers (a million points) and on the host's callback.
+"""
+
+import argparse
+import json
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "experiments"))
+import models  # noqa: E402
+import peers  # noqa: E402
+
+import pymeshlab  # noqa: E402
+
+
+def bunny_clouds(folder):
+    """The vertices of the bunny that comes with Debian's glmark2-data, and a million points of its surface."""
+    vertices, faces = models.load_model("bunny")
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.add_mesh(pymeshlab.Mesh(vertices))
+    meshes.save_current_mesh(str(folder / "bunny.ply"))
+    meshes.add_mesh(pymeshlab.Mesh(vertices, faces))
+    meshes.generate_sampling_montecarlo(samplenum=1000000)
+    meshes.save_current_mesh(str(folder / "million.ply"))
+    return folder / "bunny.ply", folder / "million.ply"
+
+
+def fastest(method, cloud, folder, count, plugin, turns):
+    runs = [peers.run(method, cloud, folder / method, [count], plugin=plugin)[count] for _ in range(turns)]
+    return min(runs, key=lambda run: run["seconds"])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--plugin", required=True)
+    parser.add_argument("--turns", type=int, default=3)
+    parser.add_argument("--out", type=Path)
+    options = parser.parse_args()
+    table = {}
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        cloud, million = bunny_clouds(folder)
+        print(f"The bunny's points, seconds, least of {options.turns}")
+        for method in ["neural", *peers.PEERS]:
+            plugin = options.plugin if method == "neural" else None
+            run = fastest(method, cloud, folder, 10000, plugin, options.turns)
+            table[method] = run["seconds"]
+            print(f"  10,000 vertices, {method:15} {run['seconds']:7.2f}   "
+                  f"{run['seconds'] / table['neural']:5.2f} x ours")
+        run = fastest("neural", cloud, folder, 1000, options.plugin, options.turns)
+        table["preview"] = run["seconds"]
+        print(f"   1,000 vertices, neural          {run['seconds']:7.2f}")
+        run = fastest("neural", million, folder, 100000, options.plugin, options.turns)
+        outside = run["seconds"] - run["report"]["seconds"]
+        table["outside_core"] = outside / run["seconds"]
+        print(f" 100,000 vertices, neural          {run['seconds']:7.2f}, of which outside the core {outside:.3f} "
+              f"({100 * outside / run['seconds']:.1f} %)")
+    if options.out:
+        options.out.write_text(json.dumps(table, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
