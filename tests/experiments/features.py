@@ -89,7 +89,9 @@ class Creases:
         cosine = (n[sides[:, 0]] * n[sides[:, 1]]).sum(axis=1)
         step = models.diagonal(v) / 4000
         points = []
-        for a, b in v[ends[cosine < np.cos(np.radians(CREASE_DEGREES))]]:
+        sharp = cosine < np.cos(np.radians(CREASE_DEGREES))
+        self.middles, self.cosines = v[ends[sharp]].mean(axis=1), cosine[sharp]
+        for a, b in v[ends[sharp]]:
             count = int(np.ceil(np.linalg.norm(b - a) / step)) + 1
             points.append(a + (b - a) * np.linspace(0, 1, count)[:, None])
         self.tree = cKDTree(np.vstack(points)) if points else None
@@ -171,6 +173,14 @@ class Oracle:
             if near:
                 turn[i] = 1 - (self.normals[near] @ self.normals[near[0]]).min()
         return turn
+
+    def turn(self, places, radius):
+        """The largest angle in degrees between two true normals within radius of each place."""
+        angles = []
+        for near in self.tree.query_ball_point(places, radius):
+            normals = self.normals[near[:300]]
+            angles.append(np.degrees(np.arccos((normals @ normals.T).min().clip(-1, 1))) if len(near) else 0.0)
+        return np.array(angles)
 
     def of_faces(self, mesh):
         return mesh.dihedral(self.normals[self.tree.query(mesh.positions[mesh.faces].mean(axis=1))[1]])
@@ -257,13 +267,28 @@ class Case:
         return {"model": self.name, "noise": self.noise, "mesh": utility, "stage": fit, **judge(Mesh(paths), *truth)}
 
 
+    def chamfer(self):
+        """Whether the creases are edges of the true mesh: medians of the angle at an edge that counts as a crease, and
+        of the turn of the surface within .5 % of the diagonal around it. None without creases."""
+        creases, _, oracle = self.truth
+        if creases.tree is None:
+            return None
+        some = np.random.default_rng(1).permutation(len(creases.middles))[:1000]
+        return {"edge": float(np.median(np.degrees(np.arccos(creases.cosines[some].clip(-1, 1))))),
+                "surface": float(np.median(oracle.turn(creases.middles[some], models.diagonal(self.surface[0]) / 200)))}
+
+
 def all_rows(options):
+    """The rows of the table, and per model what chamfer() found."""
     kept = paper_runs.Kept(options.out / "features" / "rows.jsonl", options.learn)
-    rows = []
+    rows, chamfers = [], {}
     for name in options.models:
         for noise in options.noise:
             case = Case(name, noise, options)
             try:
+                if name not in chamfers:
+                    chamfers[name] = kept.row(case.chamfer, name=name,
+                                              surface=paper_runs.digest(case.surface[0].tobytes()))
                 key = {"name": name, "noise": noise, "samples": options.samples, "vertices": options.vertices,
                        "surface": paper_runs.digest(case.surface[0].tobytes())}
                 rows += [kept.row(partial(case.row, utility, fit), utility=utility, fit=fit, **key)
@@ -271,7 +296,7 @@ def all_rows(options):
             except models.ModelError as error:
                 print(error, file=sys.stderr)
         print(f"{name}: done", file=sys.stderr, flush=True)
-    return rows
+    return rows, chamfers
 
 
 def best_of(row, names):
@@ -293,7 +318,7 @@ def line_of(row):
             *(f"{figure:.3f}" for figure in figures)]
 
 
-def report(rows):
+def report(rows, chamfers):
     judged_rows = [row for row in rows if "crease measure" in row]
     text = [table(["model", "mesh", "stage", "noise %", "crease measure at 1", "at its best", "ROC area", "eq 6",
                    "best of the final mesh", "dihedral", "spread", "curvature", "cloud", "oracle", "oracle mesh",
@@ -307,6 +332,10 @@ def report(rows):
         if "false positives" in row:
             text.append(f"{row['model']}, {row['mesh']}, {row['stage']}, noise {row['noise']:g} %: no creases, "
                         f"{100 * row['false positives']:.2f} % of the vertices above 1.")
+    for name, angles in chamfers.items():
+        if angles:
+            text.append(f"{name}: an edge that counts as a crease has {angles['edge']:.0f} degrees (median); the surface "
+                        f"turns by {angles['surface']:.0f} within .5 % of the diagonal around it.")
     return "\n".join(text)
 
 
@@ -325,10 +354,10 @@ def parse(arguments):
 def main(arguments=None):
     options = parse(arguments)
     try:
-        rows = all_rows(options)
+        rows, chamfers = all_rows(options)
     except paper_runs.RunError as error:
         sys.exit(str(error))
-    text = report(rows)
+    text = report(rows, chamfers)
     (options.out / "features.md").write_text(text + "\n")
     (options.out / "features.json").write_text(json.dumps(rows, indent=1))
     print(text)
