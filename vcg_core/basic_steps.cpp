@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 
 #include "fit_parallel.h"
 
@@ -15,6 +16,9 @@ namespace {
 
 /// Fewer signals than this are not worth a second thread.
 constexpr int kLeastPerThread = 48;
+/// Batches of each kind in a trial, and from one trial to the next.
+constexpr int kTrial = 32;
+constexpr int kBetweenTrials = 2048;
 /// Signals whose cells, and whose cells' vertices, are on their way into the cache.
 constexpr int kHeadsAhead = 8;
 constexpr int kVerticesAhead = 4;
@@ -32,6 +36,13 @@ void prefetch_ring_of(const Network& network, VertexId winner) {
 
 }  // namespace
 
+bool Pace::together() const { return batch_ < 2 * kTrial ? batch_ >= kTrial : together_ < alone_; }
+
+void Pace::took(double nanoseconds) {
+    if (batch_ < 2 * kTrial) (batch_ < kTrial ? alone_ : together_) += nanoseconds;
+    if (++batch_ == kBetweenTrials) *this = Pace();
+}
+
 BasicSteps::BasicSteps(int threads)
     : team_(thread_count(threads)), scratch_(static_cast<std::size_t>(team_.members())) {}
 
@@ -44,12 +55,17 @@ void BasicSteps::take(const vcg::Point3f* signals, int count, const StepRates& r
         displacements_.resize(size * kStride);
         for (Scratch& s : scratch_) s.order.resize(size);
     }
-    const int chunks = std::clamp(count / kLeastPerThread, 1, team_.members());
+    const int most = std::clamp(count / kLeastPerThread, 1, team_.members());
+    const int chunks = most > 1 && pace_.together() ? most : 1;
+    const auto begin = std::chrono::steady_clock::now();
     team_.run(chunks, [&](int member, int chunk) {
         compute(signals, count * chunk / chunks, count * (chunk + 1) / chunks, rates, network, search,
                 scratch_[static_cast<std::size_t>(member)]);
     });
     apply(count, network, search);
+    // With the application, which pays for what another core has to be asked for.
+    const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - begin;
+    if (most > 1) pace_.took(taken.count() / count);
 }
 
 void BasicSteps::compute(const vcg::Point3f* signals, int begin, int end, const StepRates& rates,

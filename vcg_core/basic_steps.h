@@ -22,6 +22,21 @@ struct StepRates {
     int sweeps;       ///< C_L
 };
 
+/// Whether a team is faster than its caller alone depends on how far apart the cores are and on what else
+/// they do, so it is tried from time to time. What is computed does not depend on it.
+class Pace {
+public:
+    /// Whether the next batch is for the whole team.
+    bool together() const;
+    /// The batch has taken so many nanoseconds per signal.
+    void took(double nanoseconds);
+
+private:
+    int batch_ = 0;
+    double alone_ = 0;
+    double together_ = 0;
+};
+
 /// A batch of Basic Steps. Every signal finds its winner, and every winner and ring its displacement, in the
 /// network as it is when the batch begins; the displacements are then summed. A batch of one is the paper's
 /// step. Results do not depend on how many threads compute them.
@@ -59,6 +74,7 @@ private:
     static constexpr int kStride = 1 + Ring::kMaxValence;
 
     Team team_;
+    Pace pace_;
     std::vector<Scratch> scratch_;  ///< one per member of the team
     std::vector<VertexId> winners_;
     std::vector<float> deltas_;
