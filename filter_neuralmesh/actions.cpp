@@ -62,7 +62,7 @@ std::string sentence_on_topology(const Report& report) {
          << std::lround(100 * report.topology_confidence) << " % says so ("
          << (report.topology_confidence < 0.5   ? "a guess: check it"
              : report.topology_confidence < 0.9 ? "likely"
-                                                : "as good as certain")
+                                                : "clear, but what is finer than the gaps between the points is not seen")
          << ").";
     return told.str();
 }
