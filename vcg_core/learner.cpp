@@ -317,7 +317,7 @@ bool Learner::settle(int per_vertex, Progress& progress) {
 
 std::int64_t Learner::growth_budget() const {
     const std::int64_t per_vertex =
-        4 * std::int64_t{settings_.signals_per_split} + 2 * settings_.min_wins_per_split;
+        4 * std::int64_t{settings_.signals_per_split} + 2 * std::int64_t{settings_.min_wins_per_split};
     return per_vertex * settings_.target_vertices + 100000;
 }
 
