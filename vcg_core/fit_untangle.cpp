@@ -57,7 +57,7 @@ void take_back(const Network& network, const std::vector<Crossing>& crossings, c
 std::vector<Crossing> untangle(Network& network, int threads) {
     Surface surface(network);
     const std::vector<Vec> start = surface.at;
-    const std::vector<Crossing> at_start = crossings_of(surface, threads);
+    std::vector<Crossing> at_start = crossings_of(surface, threads);
     if (at_start.empty()) return at_start;
     const float furthest = mean_edge(surface);
     std::vector<Crossing> crossings = at_start;

@@ -60,9 +60,10 @@ float step_for(const std::vector<Point3f>& points, const Box3f& box, const Shell
     const float side = longest_side(box);
     float step = side / static_cast<float>(options.max_nodes_per_side - 2 * Region::kMargin);
     while (static_cast<double>(Lattice(box, step, Region::kMargin).size()) > max_nodes) step *= 1.05F;
-    for (; step < side / 8; step *= 1.12F) {
+    while (step < side / 8) {
         const Lattice lattice(box, step, Region::kMargin);
         if (points_per_occupied_node(count_points(lattice, points)) >= points_per_node) break;
+        step *= 1.12F;
     }
     return step;
 }
