@@ -60,9 +60,10 @@ std::string sentence_on_topology(const Report& report) {
          << (report.components == 1 ? " component" : " components") << " with " << report.genus
          << (report.genus == 1 ? " handle" : " handles") << "; of what was looked at, "
          << std::lround(100 * report.topology_confidence) << " % says so ("
-         << (report.topology_confidence < 0.5   ? "a guess: check it"
-             : report.topology_confidence < 0.9 ? "likely"
-                                                : "clear, but what is finer than the gaps between the points is not seen")
+         << (report.topology_confidence < 0.5 ? "a guess: check it"
+             : report.topology_confidence < 0.9
+                 ? "likely"
+                 : "clear, but what is finer than the gaps between the points is not seen")
          << ").";
     return told.str();
 }

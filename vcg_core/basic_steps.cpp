@@ -22,8 +22,6 @@ constexpr int kBetweenTrials = 2048;
 /// Signals whose cells, and whose cells' vertices, are on their way into the cache.
 constexpr int kHeadsAhead = 8;
 constexpr int kVerticesAhead = 4;
-/// Vertices from which on the network is not in the cache anyway.
-constexpr int kLeastOutOfCache = 16384;
 
 /// Brings into the cache what gather() will read first around a winner.
 void prefetch_ring_of(const Network& network, VertexId winner) {

@@ -5,7 +5,6 @@
 // and threads, and then added to the network in the order of their signals.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "network.h"
@@ -43,6 +42,8 @@ private:
 class BasicSteps {
 public:
     static constexpr int kMostSignals = 4096;
+    /// Vertices from which on the network is not in the cache anyway.
+    static constexpr int kLeastOutOfCache = 16384;
 
     /// \p threads as in Settings.
     explicit BasicSteps(int threads);

@@ -28,8 +28,7 @@ double voronoi_area(const Network& network, VertexId v) {
 constexpr float kFlatEnough = 0.95F;
 constexpr int kSplitCandidates = 32;  ///< tried before a split is put off
 constexpr std::int64_t kLeastSettling = 60000;
-constexpr int kLeastOutOfCache = 16384;  ///< vertices
-constexpr int kMostAtOnce = 512;         ///< a batch that stays in the cache
+constexpr int kMostAtOnce = 512;    ///< a batch that stays in the cache
 constexpr int kReportEvery = 1000;  ///< signals between two looks at the progress and at the stop criteria
 
 }  // namespace
@@ -107,7 +106,7 @@ const vcg::Point3f* Learner::draw(int count) {
 /// cache lines and pages.
 void Learner::keep_neighbours_near() {
     const int n = network_.vertex_count();
-    if (n < kLeastOutOfCache || n < vertices_in_order_ + vertices_in_order_ / 4) return;
+    if (n < BasicSteps::kLeastOutOfCache || n < vertices_in_order_ + vertices_in_order_ / 4) return;
     vertices_in_order_ = n;
     const std::vector<VertexId> order = network_.along_curve();
     network_.renumber(order);

@@ -208,16 +208,14 @@ void WinnerSearch::relink(VertexId v, FourInts from, FourInts to) {
 }
 
 void WinnerSearch::prefetch_heads(const vcg::Point3f& s) const {
-    const float half = 0.5F * edge_;
-    const FourInts low = cell_of(s - vcg::Point3f(half, half, half));
+    const FourInts low = first_of_nearest(s);
     for (int z = 0; z < 2; ++z)
         for (int y = 0; y < 2; ++y) __builtin_prefetch(&heads_[bucket_of(low[0], low[1] + y, low[2] + z)]);
 }
 
 void WinnerSearch::prefetch_vertices(const vcg::Point3f& s) const {
-    const float half = 0.5F * edge_;
     EightWords buckets;
-    eight_buckets(cell_of(s - vcg::Point3f(half, half, half)), line_shift_, buckets);
+    eight_buckets(first_of_nearest(s), line_shift_, buckets);
     for (int i = 0; i < 8; ++i) __builtin_prefetch(network_.slots() + heads_[buckets[i]]);
 }
 
@@ -258,10 +256,7 @@ std::uint64_t WinnerSearch::scan_all(const vcg::Point3f& s) const {
 }
 
 VertexId WinnerSearch::winner(const vcg::Point3f& s) const {
-    // The 2 x 2 x 2 cells nearest to s reach at least half a cell's edge in all directions.
-    const float half = 0.5F * edge_;
-    Candidate best = scan_eight_cells(network_.slots(), heads_.data(), line_shift_,
-                                      cell_of(s - vcg::Point3f(half, half, half)), s);
+    Candidate best = scan_eight_cells(network_.slots(), heads_.data(), line_shift_, first_of_nearest(s), s);
     const float sure = (0.5F - kRounding) * edge_;
     if (squared_distance_of(best) < sure * sure) return vertex_of(best);
     if (best == kNobody) best = scan_box(s, 2 * edge_);

@@ -64,6 +64,12 @@ private:
         return __builtin_convertvector((position + kOffset) * inverse_edge_, FourInts);
     }
     FourInts cell_of(const vcg::Point3f& p) const { return cell_of(Four{p[0], p[1], p[2], 0}); }
+    /// The first of the 2 x 2 x 2 cells nearest to s, which reach at least half a cell's edge in all
+    /// directions.
+    FourInts first_of_nearest(const vcg::Point3f& s) const {
+        const float half = 0.5F * edge_;
+        return cell_of(s - vcg::Point3f(half, half, half));
+    }
     std::size_t bucket_of(std::int32_t x, std::int32_t y, std::int32_t z) const;
     std::size_t bucket_of(FourInts cell) const { return bucket_of(cell[0], cell[1], cell[2]); }
     void link(VertexId v, std::size_t bucket);
