@@ -128,7 +128,7 @@ void Fit::aim(const Surface& surface) {
         for (std::size_t i = begin; i < end; ++i) {
             const Hit hit = walk_to_nearest(surface, held.points[i], held.near[i]);
             const Triangle& f = surface.faces[index(hit.face)];
-            held.near[i] = nearest_corner(surface, hit);
+            held.near[i] = place_of(surface, hit);
             held.directions[i] =
                 (hit.foot.weights[0] * normals[index(f[0])] + hit.foot.weights[1] * normals[index(f[1])] +
                  hit.foot.weights[2] * normals[index(f[2])])
@@ -146,12 +146,12 @@ double Fit::held_error(const Surface& surface) const {
     for_chunks(held.points.size(), kChunk, threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             // The point of the line nearest to the surface's point nearest to it, and so on: where they meet.
-            VertexId near = held.near[i];
+            Place near = held.near[i];
             float along = 0;
             for (int step = 0; step < kSteps; ++step) {
                 const Vec from = held.points[i] + along * held.directions[i];
                 const Hit hit = walk_to_nearest(surface, from, near);
-                near = nearest_corner(surface, hit);
+                near = place_of(surface, hit);
                 Vec foot = Vec::Zero();
                 for (std::size_t k = 0; k < 3; ++k) foot += hit.foot.weights[k] * surface.corner(hit.face, k);
                 along += (foot - from).dot(held.directions[i]);
@@ -230,11 +230,13 @@ float Fit::least_gain(const Surface& surface) const {
 template <class Change>
 auto Fit::guarded(const Change& change) {
     const Network before = network_;
+    const Surface surface(before);
     std::vector<char> barred(index(network_.slot_count()), 0);
     for (int tries = 0;; ++tries) {
         if (tries == kTries) std::fill(barred.begin(), barred.end(), 1);
         auto done = change(barred);
-        const std::vector<VertexId> objections = guard_.objections(crossings_of(Surface(network_), threads_));
+        const std::vector<VertexId> objections =
+            guard_.objections(crossings_after(Surface(network_), surface, guard_.standing(), threads_));
         if (objections.empty() || tries == kTries) return done;
         for (const VertexId v : objections)
             if (index(v) < barred.size()) barred[index(v)] = 1;
@@ -254,7 +256,7 @@ bool Fit::shift_vertices(const Surface& surface, const FacePoints& ties, FitRepo
     std::iota(heir.begin(), heir.end(), 0);
     for (const Shifts::Merge& merge : done.merges) heir[index(merge.gone)] = merge.into;
     for (Followed* followed : {&points_.fitted, &points_.held})
-        for (VertexId& v : followed->near) v = heir[index(v)];
+        for (Place& place : followed->near) place.vertex = heir[index(place.vertex)];
     for (const Shifts::Insertion& insertion : done.insertions)
         origin_[index(insertion.added)] = origin_[index(insertion.beside)];
     report.moved_vertices += static_cast<int>(done.merges.size());
@@ -328,7 +330,7 @@ void Fit::run(FitReport& report, Progress& progress) {
     points_.held = std::move(at_start);
     const Surface fitted(best);
     const std::vector<Hit> hits = exact_hits(fitted, points_.held, threads_);
-    for (std::size_t i = 0; i < hits.size(); ++i) points_.held.near[i] = nearest_corner(fitted, hits[i]);
+    for (std::size_t i = 0; i < hits.size(); ++i) points_.held.near[i] = place_of(fitted, hits[i]);
     best_rms = held_error(fitted);
     const double edge = static_cast<double>(mean_edge(fitted));
     const double variance = static_cast<double>(noise_);

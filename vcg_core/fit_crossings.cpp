@@ -66,28 +66,82 @@ std::size_t faces_of(const std::vector<Crossing>& crossings) {
     return static_cast<std::size_t>(std::unique(faces.begin(), faces.end()) - faces.begin());
 }
 
+/// Notes the crossing of two faces, if they cross.
+void note(const Surface& surface, int f, int g, std::vector<Crossing>& crossings) {
+    if (!cut_each_other(surface, std::min(f, g), std::max(f, g))) return;
+    Triangle s = surface.faces[index(f)];
+    Triangle t = surface.faces[index(g)];
+    std::sort(s.begin(), s.end());
+    std::sort(t.begin(), t.end());
+    if (t < s) std::swap(s, t);
+    crossings.push_back({s[0], s[1], s[2], t[0], t[1], t[2]});
+}
+
+/// All that \p find(face, crossings) notes for the faces, sorted.
+template <class Find>
+std::vector<Crossing> sorted_crossings(std::size_t faces, int threads, const Find& find) {
+    std::vector<std::vector<Crossing>> found((faces + kChunk - 1) / kChunk);
+    for_chunks(faces, kChunk, threads, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) find(i, found[chunk]);
+    });
+    std::vector<Crossing> all;
+    for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+/// Whether \p surface has the face, whichever way round.
+bool has_face(const Surface& surface, const Triangle& face) {
+    if (index(face[0]) >= surface.at.size()) return false;
+    const auto begin = surface.face_of.begin();
+    return std::any_of(begin + surface.first_face[index(face[0])],
+                       begin + surface.first_face[index(face[0]) + 1], [&](int f) {
+                           const Triangle& t = surface.faces[index(f)];
+                           const auto in_t = [&](VertexId v) { return v == t[0] || v == t[1] || v == t[2]; };
+                           return in_t(face[1]) && in_t(face[2]);
+                       });
+}
+
+/// Whether both have the face, at the same place.
+bool have_same_face(const Surface& a, const Surface& b, const Triangle& face) {
+    return has_face(a, face) && has_face(b, face) && std::all_of(face.begin(), face.end(), [&](VertexId v) {
+               return a.at[index(v)] == b.at[index(v)];
+           });
+}
+
 }  // namespace
 
 std::vector<Crossing> crossings_of(const Surface& surface, int threads) {
     const FaceTree tree(surface);
-    std::vector<std::vector<Crossing>> found((surface.faces.size() + kChunk - 1) / kChunk);
-    const auto note = [&](int f, int g, std::vector<Crossing>& crossings) {
-        if (!cut_each_other(surface, std::min(f, g), std::max(f, g))) return;
-        Triangle s = surface.faces[index(f)];
-        Triangle t = surface.faces[index(g)];
-        std::sort(s.begin(), s.end());
-        std::sort(t.begin(), t.end());
-        if (t < s) std::swap(s, t);
-        crossings.push_back({s[0], s[1], s[2], t[0], t[1], t[2]});
+    return sorted_crossings(surface.faces.size(), threads, [&](std::size_t i, std::vector<Crossing>& found) {
+        tree.for_overlapping(i, [&](int f, int g) { note(surface, f, g, found); });
+    });
+}
+
+std::vector<Crossing> crossings_after(const Surface& surface, const Surface& before,
+                                      const std::vector<Crossing>& known, int threads) {
+    std::vector<int> changed;
+    std::vector<char> is_changed(surface.faces.size(), 0);
+    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+        if (have_same_face(surface, before, surface.faces[f])) continue;
+        is_changed[f] = 1;
+        changed.push_back(static_cast<int>(f));
+    }
+    const FaceTree tree(surface, changed);
+    const auto find = [&](std::size_t i, std::vector<Crossing>& found) {
+        const int f = static_cast<int>(i);
+        tree.for_overlapping(surface, f, [&](int g) {
+            // Two changed faces meet twice, and each meets itself.
+            if (is_changed[i] == 0 || f < g) note(surface, f, g, found);
+        });
     };
-    for_chunks(surface.faces.size(), kChunk, threads,
-               [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-                   for (std::size_t i = begin; i < end; ++i)
-                       tree.for_overlapping(i, [&](int f, int g) { note(f, g, found[chunk]); });
-               });
-    std::vector<Crossing> all;
-    for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
-    std::sort(all.begin(), all.end());
+    std::vector<Crossing> all = sorted_crossings(surface.faces.size(), threads, find);
+    const auto found = static_cast<std::ptrdiff_t>(all.size());
+    for (const Crossing& c : known)
+        if (have_same_face(surface, before, {c[0], c[1], c[2]}) &&
+            have_same_face(surface, before, {c[3], c[4], c[5]}))
+            all.push_back(c);
+    std::inplace_merge(all.begin(), all.begin() + found, all.end());
     return all;
 }
 

@@ -21,6 +21,11 @@ using Crossing = std::array<VertexId, 6>;
 /// never count. Expected O(faces log faces), on \p threads threads, with the same result for any number.
 std::vector<Crossing> crossings_of(const Surface& surface, int threads);
 
+/// The same, from \p known, the crossings of the surface \p before: only faces that are not in \p before, at
+/// the same place, are looked at. Expected O(faces + changed faces log changed faces).
+std::vector<Crossing> crossings_after(const Surface& surface, const Surface& before,
+                                      const std::vector<Crossing>& known, int threads);
+
 /// The promise that a surface does not come to cut itself more than it did.
 class CrossingGuard {
 public:
@@ -32,6 +37,9 @@ public:
     /// of no more faces than those of the constructor. \return nothing then; else the vertices of the new
     /// ones
     std::vector<VertexId> objections(std::vector<Crossing> now);
+
+    /// The crossings of the surface as it was last accepted.
+    const std::vector<Crossing>& standing() const { return standing_; }
 
 private:
     std::vector<Crossing> standing_;

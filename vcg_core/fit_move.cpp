@@ -74,12 +74,14 @@ public:
 
     std::vector<Vec> run(CrossingGuard& guard, int threads) {
         Surface now = surface_;
+        const std::vector<Crossing> at_start = guard.standing();
         int crossed = 0;
         for (int pass = 0;; ++pass) {
             if (shorten(find_offending(), pass)) continue;
             now.at = moved_;
             std::vector<char> offending(moved_.size(), 0);
-            for (const VertexId v : guard.objections(crossings_of(now, threads))) offending[index(v)] = 1;
+            for (const VertexId v : guard.objections(crossings_after(now, surface_, at_start, threads)))
+                offending[index(v)] = 1;
             if (!shorten(offending, crossed++)) return std::move(moved_);
         }
     }

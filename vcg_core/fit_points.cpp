@@ -87,7 +87,7 @@ FacePoints by_face(const Surface& surface, Followed& followed, const std::vector
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
         for (auto i = index(result.first[f]); i < index(result.first[f + 1]); ++i) {
             followed.points[i] = result.ties[i].point;
-            followed.near[i] = nearest_corner(surface, {static_cast<int>(f), result.ties[i].foot});
+            followed.near[i] = place_of(surface, {static_cast<int>(f), result.ties[i].foot});
         }
     }
     return result;

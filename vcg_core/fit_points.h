@@ -13,10 +13,10 @@
 
 namespace neuralmesh {
 
-/// Points and for each the vertex that it was last found near to.
+/// Points and for each where it was last found.
 struct Followed {
     std::vector<Vec> points;
-    std::vector<VertexId> near;
+    std::vector<Place> near;
     std::vector<Vec> directions;  ///< along which to measure; only of the points held back
 };
 
@@ -31,11 +31,11 @@ Split choose_points(const TargetSpace& target, std::size_t wanted, Random& rando
 
 /// The nearest faces of the points, exactly. O(points log faces)
 std::vector<Hit> exact_hits(const Surface& surface, const Followed& followed, int threads);
-/// The nearest faces of the points by walks from the vertices that they were last found near to. O(points)
+/// The nearest faces of the points by walks from where they were last found. O(points)
 std::vector<Hit> walked_hits(const Surface& surface, const Followed& followed, int threads);
 
 /// Ties the points to the faces hit. Sorts them by their faces, which also brings neighbours together in
-/// memory, and notes the vertices that they are near to. Directions are not carried along.
+/// memory, and notes where they are. Directions are not carried along.
 FacePoints by_face(const Surface& surface, Followed& followed, const std::vector<Hit>& hits);
 
 /// Variance of the noise: the median over the faces of that of their points about a plane parallel to the

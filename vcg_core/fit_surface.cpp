@@ -42,33 +42,80 @@ Vec normal_beyond(const Surface& surface, VertexId a, VertexId b) {
     return Vec::Zero();
 }
 
-Hit walk_to_nearest(const Surface& surface, const Vec& p, VertexId start) {
+namespace {
+
+/// Whether the foot lies so deep in its face that no face around can be nearer: what is nearer to the point
+/// than its foot is lies within twice their distance of the foot, and the way to another face leads over an
+/// edge.
+bool settled(const Foot& foot, const Vec& ab, const Vec& ac) {
+    const float least = std::min({foot.weights[0], foot.weights[1], foot.weights[2]});
+    const float longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+    // The least height is 2 area / longest edge, and the foot has least x height to every edge or more.
+    return least > 0 && least * least * ab.cross(ac).squaredNorm() > 4 * foot.squared_distance * longest;
+}
+
+}  // namespace
+
+Place place_of(const Surface& surface, const Hit& hit) {
+    const auto& w = hit.foot.weights;
+    const std::size_t k = w[0] >= w[1] ? (w[0] >= w[2] ? 0 : 2) : (w[1] >= w[2] ? 1 : 2);
+    const VertexId v = surface.faces[index(hit.face)][k];
+    const auto around = surface.face_of.begin() + surface.first_face[index(v)];
+    return {v, static_cast<int>(std::find(around, surface.face_of.end(), hit.face) - around)};
+}
+
+Hit walk_to_nearest(const Surface& surface, const Vec& p, Place start) {
     Hit best{-1, {std::numeric_limits<float>::max(), {1, 0, 0}}};
-    for (VertexId v = start;;) {
+    /// Whether the search is over.
+    const auto look_at = [&](int face) {
+        const Vec& a = surface.corner(face, 0);
+        const Vec ab = surface.corner(face, 1) - a;
+        const Vec ac = surface.corner(face, 2) - a;
+        const Foot foot = foot_on_triangle(ab, ac, p - a);
+        if (!(foot.squared_distance < best.foot.squared_distance)) return false;
+        best = {face, foot};
+        return settled(foot, ab, ac);
+    };
+    VertexId v = start.vertex;
+    const int first = surface.first_face[index(v)] + start.turn;
+    if (first < surface.first_face[index(v) + 1] && look_at(surface.face_of[index(first)])) return best;
+    for (;;) {
         const float before = best.foot.squared_distance;
-        for (int i = surface.first_face[index(v)]; i < surface.first_face[index(v) + 1]; ++i) {
-            const int face = surface.face_of[index(i)];
-            const Foot foot = foot_on_triangle(p, surface.corner(face, 0), surface.corner(face, 1),
-                                               surface.corner(face, 2));
-            if (foot.squared_distance < best.foot.squared_distance) best = {face, foot};
-        }
-        if (!(best.foot.squared_distance < before)) return best;
-        const VertexId next = nearest_corner(surface, best);
-        if (next == v) return best;
+        for (int i = surface.first_face[index(v)]; i < surface.first_face[index(v) + 1]; ++i)
+            if (look_at(surface.face_of[index(i)])) return best;
+        const VertexId next = place_of(surface, best).vertex;
+        if (next == v || (v != start.vertex && !(best.foot.squared_distance < before))) return best;
         v = next;
     }
 }
 
-FaceTree::FaceTree(const Surface& surface)
-    : order_(surface.faces.size()), corners_(surface.faces.size()), boxes_(surface.faces.size()) {
-    std::vector<Vec> centres(order_.size());
-    for (std::size_t f = 0; f < order_.size(); ++f)
-        centres[f] = surface.corner(static_cast<int>(f), 0) + surface.corner(static_cast<int>(f), 1) +
-                     surface.corner(static_cast<int>(f), 2);
-    std::iota(order_.begin(), order_.end(), 0);
+namespace {
+
+std::vector<int> all_faces(const Surface& surface) {
+    std::vector<int> faces(surface.faces.size());
+    std::iota(faces.begin(), faces.end(), 0);
+    return faces;
+}
+
+}  // namespace
+
+FaceTree::FaceTree(const Surface& surface) : FaceTree(surface, all_faces(surface)) {}
+
+FaceTree::FaceTree(const Surface& surface, std::vector<int> faces)
+    : order_(std::move(faces)), corners_(order_.size()), boxes_(order_.size()) {
+    std::vector<Vec> centres(surface.faces.size());
+    for (const int f : order_)
+        centres[index(f)] = surface.corner(f, 0) + surface.corner(f, 1) + surface.corner(f, 2);
     nodes_.reserve(order_.size());
     if (!order_.empty()) build(centres, 0, static_cast<int>(order_.size()));
     set_boxes(surface);
+}
+
+FaceTree::Box FaceTree::box_of(const Surface& surface, int face) {
+    const Vec& a = surface.corner(face, 0);
+    const Vec& b = surface.corner(face, 1);
+    const Vec& c = surface.corner(face, 2);
+    return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
 }
 
 int FaceTree::build(const std::vector<Vec>& centres, int begin, int end) {
@@ -99,10 +146,8 @@ int FaceTree::build(const std::vector<Vec>& centres, int begin, int end) {
 void FaceTree::set_boxes(const Surface& surface) {
     for (std::size_t i = 0; i < order_.size(); ++i) {
         const Vec& a = surface.corner(order_[i], 0);
-        const Vec& b = surface.corner(order_[i], 1);
-        const Vec& c = surface.corner(order_[i], 2);
-        corners_[i] = {a, b - a, c - a};
-        boxes_[i] = {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
+        corners_[i] = {a, surface.corner(order_[i], 1) - a, surface.corner(order_[i], 2) - a};
+        boxes_[i] = box_of(surface, order_[i]);
     }
     for (std::size_t n = nodes_.size(); n-- > 0;) {
         Node& node = nodes_[n];

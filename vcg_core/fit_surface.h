@@ -97,16 +97,19 @@ struct Hit {
     Foot foot;
 };
 
-/// The nearest face of \p p that a walk finds: from the faces around the vertex \p start on to those around
-/// the corner nearest to the foot, as long as that brings it closer. Not exact across thin gaps; five times
-/// as fast as a tree if the start is near.
-Hit walk_to_nearest(const Surface& surface, const Vec& p, VertexId start);
+/// Where a walk to a nearest face begins: a vertex, and which of the faces around it comes first.
+struct Place {
+    VertexId vertex = 0;
+    int turn = 0;
+};
 
-/// The corner of the hit face that is nearest to the foot: where to start the walk next time.
-inline VertexId nearest_corner(const Surface& surface, const Hit& hit) {
-    const auto& w = hit.foot.weights;
-    return surface.faces[index(hit.face)][w[0] >= w[1] ? (w[0] >= w[2] ? 0U : 2U) : (w[1] >= w[2] ? 1U : 2U)];
-}
+/// The corner of the hit face that is nearest to the foot, and that face: where to start the walk next time.
+Place place_of(const Surface& surface, const Hit& hit);
+
+/// The nearest face of \p p that a walk finds: from the faces around the vertex \p start on to those around
+/// the corner nearest to the foot, as long as that brings it closer. Not exact across thin gaps; many times
+/// as fast as a tree if the start is near. Any turn is allowed.
+Hit walk_to_nearest(const Surface& surface, const Vec& p, Place start);
 
 /// Nearest face by a tree of bounding boxes. vcglib's grids lose against it where the faces' sizes vary by
 /// hundreds, as here.
@@ -114,13 +117,23 @@ class FaceTree {
 public:
     /// O(faces log faces).
     explicit FaceTree(const Surface& surface);
+    /// Of some of its faces.
+    FaceTree(const Surface& surface, std::vector<int> faces);
     /// The nearest face of \p p, the one of smallest index among equals. Exact in float.
     /// O(log faces) expected near the surface.
     Hit nearest(const Vec& p) const;
     /// Calls \p visit(f, g) for every face g whose bounding box has a point in common with that of f, the
     /// \p i-th face in the order of the tree, and that comes after it there: for all i each pair once.
     template <class Visit>
-    void for_overlapping(std::size_t i, const Visit& visit) const;
+    void for_overlapping(std::size_t i, const Visit& visit) const {
+        for_overlapping(boxes_[i], static_cast<int>(i) + 1, [&](int g) { visit(order_[i], g); });
+    }
+    /// Calls \p visit(g) for every face g whose bounding box has a point in common with that of \p face of
+    /// \p surface.
+    template <class Visit>
+    void for_overlapping(const Surface& surface, int face, const Visit& visit) const {
+        for_overlapping(box_of(surface, face), 0, visit);
+    }
 
 private:
     static constexpr int kLeaf = 4;
@@ -141,8 +154,11 @@ private:
         }
     };
 
+    static Box box_of(const Surface& surface, int face);
     int build(const std::vector<Vec>& centres, int begin, int end);
     void set_boxes(const Surface& surface);
+    template <class Visit>
+    void for_overlapping(const Box& box, int first, const Visit& visit) const;
 
     std::vector<int> order_;
     std::vector<Corners> corners_;  ///< in order_
@@ -150,13 +166,12 @@ private:
     std::vector<Node> nodes_;
 };
 
+/// Of the faces from the \p first in the order of the tree on.
 template <class Visit>
-void FaceTree::for_overlapping(std::size_t i, const Visit& visit) const {
-    const Box& box = boxes_[i];
-    const int first = static_cast<int>(i) + 1;
+void FaceTree::for_overlapping(const Box& box, int first, const Visit& visit) const {
     std::array<int, kStack> stack;
     int height = 0;
-    stack[index(height++)] = 0;
+    if (!nodes_.empty()) stack[index(height++)] = 0;
     while (height > 0) {
         const int n = stack[index(--height)];
         const Node& node = nodes_[index(n)];
@@ -167,7 +182,7 @@ void FaceTree::for_overlapping(std::size_t i, const Visit& visit) const {
             continue;
         }
         for (int j = std::max(first, node.begin); j < node.end; ++j)
-            if (!box.apart(boxes_[index(j)].low, boxes_[index(j)].high)) visit(order_[i], order_[index(j)]);
+            if (!box.apart(boxes_[index(j)].low, boxes_[index(j)].high)) visit(order_[index(j)]);
     }
 }
 

@@ -99,6 +99,38 @@ TEST(Crossings, AreIndifferentToTheScale) {
     EXPECT_EQ(cut_faces(network), faces);
 }
 
+// Vertices move, edges are flipped, vertices go and others take their ids.
+TEST(Crossings, AreKnownAfterAChangeFromThoseBefore) {
+    Network network = crumpled_sphere(0.2);
+    Random random(3);
+    const auto some = [&] {
+        return static_cast<VertexId>(random.below(static_cast<std::uint32_t>(network.slot_count())));
+    };
+    for (int change = 0; change < 30; ++change) {
+        const Surface before(network);
+        const std::vector<Crossing> known = crossings_of(before, 1);
+        const VertexId v = some();
+        if (network.alive(v)) network.set_position(v, network.position(v) * 0.9F);
+        for (int i = 0; i < 5; ++i) {
+            const VertexId a = some();
+            const VertexId b = network.ring(a).valence > 0 ? network.ring(a)[0] : some();
+            if (network.can_flip(a, b)) network.flip(a, b);
+            const VertexId gone = some();
+            if (!network.alive(gone) || !network.can_collapse(gone, network.ring(gone)[0])) continue;
+            network.collapse(gone, network.ring(gone)[0]);
+            const VertexId split = some();
+            if (network.alive(split) && network.can_split(split, 0, 3))
+                network.split(split, 0, 3, network.position(split) * 1.02F);
+        }
+        ASSERT_EQ(network.validate(), "");
+        const Surface surface(network);
+        const std::vector<Crossing> all = crossings_of(surface, 1);
+        EXPECT_FALSE(all.empty());
+        EXPECT_EQ(crossings_after(surface, before, known, 1), all) << change;
+        EXPECT_EQ(crossings_after(surface, before, known, 3), all) << change;
+    }
+}
+
 TEST(CrossingGuard, ObjectsToWhatIsNewBeyondWhatWasThere) {
     const Crossing a{0, 1, 2, 3, 4, 5};
     const Crossing b{6, 7, 8, 9, 10, 11};
