@@ -30,13 +30,14 @@ constexpr std::size_t kLeastPoints = 64;
 constexpr float kOutlierDeviations = 6;
 /// ... but not within this share of the mean edge length.
 constexpr float kOutlierEdges = 0.5F;
-/// Bending weights tried in the first round; later ones try the neighbours of the last choice.
+/// Bending weights tried in the first round; later ones try the last choice and one on either side.
 constexpr float kFirstWeights[] = {0.01F, 0.1F, 1.0F, 8.0F, 50.0F};
-constexpr float kWeightStep = 2.5F;
+constexpr float kWeightDown = 8;
+constexpr float kWeightUp = 2.5F;
 /// Least bending weight: falls by the factor from round to round, since in the first ones points may still be
 /// tied to the wrong faces.
 constexpr float kFirstLeastWeight = 0.3F;
-constexpr float kLeastWeightDecay = 0.25F;
+constexpr float kLeastWeightDecay = 0.1F;
 constexpr float kLastLeastWeight = 1e-3F;
 /// What an edge's gap is likely to be on surfaces of no noise, in edge lengths: the least bending weight
 /// under noise is what Bayes' rule makes of it.
@@ -63,6 +64,9 @@ constexpr float kFlipVariances = 6;
 constexpr double kShiftedShare = 0.05;
 constexpr int kShiftEvery = 1;
 constexpr int kQuietRounds = 3;
+/// The fit is over when two rounds bring less than this share of the error, but not in the first ones.
+constexpr double kLeastProgress = 0.001;
+constexpr int kFirstRounds = 5;
 /// How often a change of the connectivity is tried again without what made the surface cut itself.
 constexpr int kTries = 3;
 
@@ -166,7 +170,7 @@ double Fit::held_error(const Surface& surface) const {
 
 /// Solves for several bending weights, takes what brings the points held back closest. \return their error
 double Fit::move(const FacePoints& ties, Surface& surface, int round) {
-    std::vector<float> weights{weight_, weight_ / kWeightStep, weight_ * kWeightStep};
+    std::vector<float> weights{weight_, weight_ / kWeightDown, weight_ * kWeightUp};
     if (round == 0) weights.assign(std::begin(kFirstWeights), std::end(kFirstWeights));
     float least = kFirstLeastWeight;
     for (int i = 0; i < round; ++i) least *= kLeastWeightDecay;
@@ -282,7 +286,7 @@ void settle_origins(const Network& before, const Network& after, std::vector<Ver
 }
 
 /// Small meshes are cheap, and there every vertex counts.
-int automatic_rounds(int vertices) { return std::min(20, std::max(10, 40000 / std::max(vertices, 1))); }
+int automatic_rounds(int vertices) { return std::min(20, std::max(8, 40000 / std::max(vertices, 1))); }
 
 void Fit::run(FitReport& report, Progress& progress) {
     const int rounds = options_.rounds > 0 ? options_.rounds : automatic_rounds(network_.vertex_count());
@@ -292,6 +296,8 @@ void Fit::run(FitReport& report, Progress& progress) {
     origin_ = report.origin;
     guard_ = CrossingGuard(untangle(network_, threads_));
     double best_rms = 0;
+    double last_error = 0;
+    double error_before = 0;
     for (int round = 0; round < rounds; ++round) {
         const std::string text = "Fitting to the points, round " + std::to_string(round + 1);
         if (!progress(static_cast<double>(round) / rounds, text.c_str())) break;
@@ -318,6 +324,9 @@ void Fit::run(FitReport& report, Progress& progress) {
             report.rounds = round + 1;
             report.bending_weight = static_cast<double>(weight_);
         }
+        if (round >= kFirstRounds && error > (1 - kLeastProgress) * error_before) break;
+        error_before = last_error;
+        last_error = error;
         if (options_.flip_edges && round + 1 < rounds) {
             follow(surface, ties);
             const std::vector<EdgeFlip> found =

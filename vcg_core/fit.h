@@ -16,8 +16,8 @@ namespace neuralmesh {
 
 /// What the fit may do. The defaults were found by experiment.
 struct FitOptions {
-    int rounds =
-        0;  ///< of least squares, each with new nearest faces; 0: 20 up to 2,000 vertices, 10 from 4,000 on
+    int rounds = 0;  ///< of least squares at most, each with new nearest faces; 0: 20 up to 2,000 vertices, 8
+                     ///< from 5,000 on
     bool flip_edges = true;
     /// Move vertices from where they are of little use to where the error is large (Hoppe et al. 1993). Off:
     /// every vertex keeps its place in the mesh, for meshes whose density is to follow something else than
