@@ -99,6 +99,16 @@ void UtilityCounters::enter(VertexId v, double key) {
     }
 }
 
+/// enter() for a key above the present one: no sibling need be looked at.
+void UtilityCounters::raise(VertexId v, double key) {
+    auto i = static_cast<std::size_t>(v);
+    for (auto& level : tournament_) {
+        if (level[i] >= key) return;
+        level[i] = key;
+        i /= kWidth;
+    }
+}
+
 double UtilityCounters::scaled(double key) const {
     if (key == kZero) return 0;
     const std::int64_t exponent = floor_of(key);
@@ -114,7 +124,13 @@ void UtilityCounters::win(VertexId v, double amount) {
     const auto i = static_cast<std::size_t>(v);
     const double now = scaled(keys_[i]) + amount * unit_mantissa_;
     keys_[i] = now >= std::numeric_limits<double>::min() ? key_of(now, unit_exponent_) : kZero;
-    if (++wins_[i] >= maturity_) enter(v, keys_[i]);
+    if (++wins_[i] >= maturity_) {
+        if (keys_[i] > tournament_[0][i]) {
+            raise(v, keys_[i]);
+        } else {
+            enter(v, keys_[i]);  // so old and raised by so little that it has become 0
+        }
+    }
     unit_mantissa_ /= decay_;
     while (unit_mantissa_ >= 2) {
         unit_mantissa_ /= 2;

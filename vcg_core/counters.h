@@ -55,6 +55,13 @@ public:
     /// eq 4: adds \p amount (>= 0) to v's counter, then multiplies all counters by alpha. Amortised O(1),
     /// O(log n) at worst.
     void win(VertexId v, double amount);
+    /// Brings into the cache what win(v) will touch.
+    void prefetch(VertexId v) const {
+        const auto i = static_cast<std::size_t>(v);
+        __builtin_prefetch(&keys_[i], 1);
+        __builtin_prefetch(&wins_[i], 1);
+        __builtin_prefetch(&tournament_[0][i], 1);
+    }
     /// The counter of v now. 0 for a vertex that never won.
     double value(VertexId v) const;
     /// Wins of v since its birth or last split.
@@ -82,6 +89,7 @@ private:
 
     double scaled(double key) const;
     void enter(VertexId v, double key);
+    void raise(VertexId v, double key);
 
     double decay_;
     int maturity_;
@@ -103,6 +111,7 @@ public:
         float& n_c = values_[static_cast<std::size_t>(v)];
         n_c = decay_ * n_c + (1 - decay_) * static_cast<float>(n_delta);
     }
+    void prefetch(VertexId v) const { __builtin_prefetch(&values_[static_cast<std::size_t>(v)], 1); }
     float value(VertexId v) const { return values_[static_cast<std::size_t>(v)]; }
     /// As UtilityCounters::renumber().
     void renumber(const std::vector<VertexId>& order) { values_ = picked(values_, order); }
