@@ -11,12 +11,9 @@
 #include <thread>
 #include <vector>
 
-namespace neuralmesh {
+#include "team.h"
 
-/// \p threads, or the number of the machine's cores if it is not positive.
-inline int thread_count(int threads) {
-    return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
+namespace neuralmesh {
 
 /// Calls \p body(chunk, begin, end) for every chunk of \p size indices of [0, count), on up to \p threads
 /// threads. The chunks are the same for any number of threads; a body writes only what belongs to its chunk.

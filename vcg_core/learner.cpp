@@ -28,8 +28,19 @@ double voronoi_area(const Network& network, VertexId v) {
 constexpr float kFlatEnough = 0.95F;
 constexpr int kSplitCandidates = 32;  ///< tried before a split is put off
 constexpr std::int64_t kLeastSettling = 60000;
-constexpr int kMostAtOnce = 512;    ///< a batch that stays in the cache
-constexpr int kReportEvery = 1000;  ///< signals between two looks at the progress and at the stop criteria
+constexpr int kMostAtOnce = 512;       ///< a batch that stays in the cache
+constexpr int kLeastInOrder = 2048;    ///< vertices of a network that more than one thread may share
+constexpr int kTypicalSignals = 4096;  ///< place a border between two threads' regions to about 1 %
+constexpr int kCountersAhead = 8;      ///< signals whose counters are on their way into the cache
+constexpr int kReportEvery = 1000;     ///< signals between two looks at the progress and at the stop criteria
+
+/// From random numbers of its own, so that those of the learning do not depend on the threads.
+std::vector<vcg::Point3f> typical_signals(const TargetSpace& target, int threads) {
+    std::vector<vcg::Point3f> drawn;
+    Random random(1);
+    for (int i = 0; threads != 1 && i < kTypicalSignals; ++i) drawn.push_back(target.sample(random));
+    return drawn;
+}
 
 }  // namespace
 
@@ -41,8 +52,8 @@ Learner::Learner(const TargetSpace& target, const Settings& settings, Network st
       utility_counters_(settings.counter_decay, settings.min_wins_per_split),
       feature_counters_(settings.feature_decay),
       mean_delta_(settings.normalization_window),
-      steps_(settings.threads),
-      random_(static_cast<std::uint64_t>(settings.random_seed)),
+      steps_(settings.threads, typical_signals(target, settings.threads)),
+      drawn_(target, settings.random_seed, BasicSteps::kMostSignals),
       last_active_(static_cast<std::size_t>(network_.slot_count()), 0),
       vertices_at_collapse_(network_.vertex_count()) {
     if (network_.vertex_count() > settings.target_vertices)
@@ -61,7 +72,9 @@ StopReason Learner::run(int per_vertex, Progress& progress) {
     const std::int64_t bound = signals_ + signal_bound();
     while (network_.vertex_count() < settings_.target_vertices) {
         const int count = batch_size();
-        basic_steps(draw(count), count);
+        basic_steps(drawn_.take(count), count);
+        const auto draw = [&] { drawn_.draw_ahead(count); };
+        const auto drawing = steps_.beside(draw);
         for (int i = 0; i < count; ++i) {
             learn_counters(i);
             if (signals_ % settings_.signals_per_split == 0) vertex_split();
@@ -96,18 +109,16 @@ int Learner::batch_size() const {
     return to_the_letter() ? 1 : std::clamp(network_.vertex_count() / kVerticesPerSignal, 1, kMostAtOnce);
 }
 
-const vcg::Point3f* Learner::draw(int count) {
-    drawn_.resize(static_cast<std::size_t>(count));
-    for (vcg::Point3f& s : drawn_) s = target_.sample(random_);
-    return drawn_.data();
-}
-
-/// A network that outgrows the caches is put in order from time to time, so that what a step visits shares
-/// cache lines and pages.
+/// A network that outgrows a core's first cache, and may then be shared by threads, is put in order from time
+/// to time, so that what a step visits shares cache lines and pages, and what the threads visit does not.
 void Learner::keep_neighbours_near() {
     const int n = network_.vertex_count();
-    if (n < BasicSteps::kLeastOutOfCache || n < vertices_in_order_ + vertices_in_order_ / 4) return;
-    vertices_in_order_ = n;
+    if (n >= kLeastInOrder && n >= vertices_in_order_ + vertices_in_order_ / 4) put_in_order();
+}
+
+void Learner::put_in_order() {
+    vertices_in_order_ = network_.vertex_count();
+    changes_in_order_ = splits_ + collapses_;
     const std::vector<VertexId> order = network_.along_curve();
     network_.renumber(order);
     utility_counters_.renumber(order);
@@ -123,6 +134,10 @@ void Learner::basic_steps(const vcg::Point3f* signals, int count) {
 }
 
 void Learner::learn_counters(int i) {
+    const VertexId soon = steps_.winner(std::min(i + kCountersAhead, steps_.count() - 1));
+    utility_counters_.prefetch(soon);
+    feature_counters_.prefetch(soon);
+    __builtin_prefetch(&last_active_[static_cast<std::size_t>(soon)], 1);
     const VertexId w = steps_.winner(i);
     const double delta = steps_.delta(i);  // eq 2
     mean_delta_.add(delta);
@@ -294,6 +309,8 @@ bool Learner::flip_regularises(VertexId a, VertexId b) const {
 }
 
 bool Learner::settle(int per_vertex, Progress& progress) {
+    // For long, as the connectivity stays as it is.
+    if (network_.vertex_count() >= kLeastInOrder && changes_in_order_ != splits_ + collapses_) put_in_order();
     const bool observing = settings_.feature_measure == kCreaseMeasure;
     const std::int64_t begin = signals_;
     const std::int64_t end =
@@ -303,8 +320,12 @@ bool Learner::settle(int per_vertex, Progress& progress) {
     feature_statistic_ = FeatureStatistic();
     while (signals_ < end) {
         const int count = static_cast<int>(std::min<std::int64_t>(batch_size(), end - signals_));
-        basic_steps(draw(count), count);
-        for (int i = 0; i < count; ++i) learn_counters(i);
+        basic_steps(drawn_.take(count), count);
+        {
+            const auto draw = [&] { drawn_.draw_ahead(count); };
+            const auto drawing = steps_.beside(draw);
+            for (int i = 0; i < count; ++i) learn_counters(i);
+        }
         if (observing && signals_ >= next_moment) {
             feature_statistic_.observe(network_);
             next_moment += network_.vertex_count();

@@ -13,8 +13,8 @@
 #include "network.h"
 #include "neural_mesh.h"
 #include "progress.h"
-#include "random.h"
 #include "settings.h"
+#include "signals.h"
 #include "target_space.h"
 #include "turn_mean.h"
 #include "winner_search.h"
@@ -88,8 +88,8 @@ private:
     };
 
     bool to_the_letter() const { return settings_.min_wins_per_split == 0; }
-    const vcg::Point3f* draw(int count);
     void keep_neighbours_near();
+    void put_in_order();
     bool due_for_report();
     bool report(const char* doing, Progress& progress) const;
     bool due_for_collapse() const;
@@ -111,8 +111,7 @@ private:
     WindowMean mean_delta_;
     TurnMean turn_mean_;
     BasicSteps steps_;
-    Random random_;
-    std::vector<vcg::Point3f> drawn_;
+    Signals drawn_;
     /// Per vertex the signal of its last win, or of its birth.
     std::vector<std::int64_t> last_active_;
     std::int64_t signals_ = 0;
@@ -122,6 +121,7 @@ private:
     std::int64_t last_report_ = 0;
     int vertices_at_collapse_ = 0;
     int vertices_in_order_ = 0;
+    std::int64_t changes_in_order_ = -1;  ///< splits and collapses until then
     bool forced_ = false;
 };
 

@@ -32,7 +32,7 @@ struct alignas(64) Ring {
     std::array<VertexId, kMaxValence> neighbours;
     std::uint8_t valence;  ///< 0: the slot is free
     std::uint8_t open;     ///< 1: boundary vertex
-    std::uint16_t unused;
+    std::uint16_t region;  ///< whose thread moves the vertex (see BasicSteps); no part of the mesh
 
     int find(VertexId v) const {
         for (int i = 0; i < valence; ++i)
@@ -86,6 +86,8 @@ public:
     const Ring& ring(VertexId v) const { return rings_[static_cast<std::size_t>(v)]; }
     vcg::Point3f position(VertexId v) const { return slots()[v].point(); }
     void set_position(VertexId v, const vcg::Point3f& p);
+    /// Regions are for threads to share the work; a new vertex has that of the vertex it was split from.
+    void set_region(VertexId v, int region) { ring_of(v).region = static_cast<std::uint16_t>(region); }
     /// Raw slots for the hot loops. slots()[-1] is nobody's: far from everything, and last in any cell.
     Slot* slots() { return slots_.data() + 1; }
     const Slot* slots() const { return slots_.data() + 1; }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Claims by one atomic word; spinning, then sleeping.
+// Claims by the bits of one atomic word; spinning, then sleeping.
 #include "team.h"
 
+#include <algorithm>
 #include <system_error>
 
 #ifdef __SSE2__
@@ -24,15 +25,10 @@ void relax() {
 #endif
 }
 
-constexpr std::uint64_t kChunkMask = 0xffff;
-int next_of(std::uint64_t ticket) { return static_cast<int>(ticket & kChunkMask); }
-int chunks_of(std::uint64_t ticket) { return static_cast<int>(ticket >> 16 & kChunkMask); }
-std::uint64_t round_of(std::uint64_t ticket) { return ticket >> 32; }
-
 }  // namespace
 
 Team::Team(int members) {
-    for (int i = 1; i < members; ++i) {
+    for (int i = 1; i < std::min(members, kMost); ++i) {
         try {
             helpers_.emplace_back(&Team::help, this, i);
         } catch (const std::system_error&) {
@@ -51,15 +47,26 @@ Team::~Team() {
 }
 
 void Team::start(Call call, const void* body, int chunks) {
+    // The caller's own chunk is not up for claims, which would pass the word to and fro between the cores.
+    offer(call, body, (bit(chunks - 1) - 1) << 1);
+    call(body, 0, 0);
+    finish();
+}
+
+/// Puts the chunks whose bits are set up for claims.
+void Team::offer(Call call, const void* body, std::uint64_t chunks) {
     call_ = call;
     body_ = body;
-    open_.store(chunks, std::memory_order_relaxed);
-    const std::uint64_t round = round_of(ticket_.load(std::memory_order_relaxed)) + 1;
-    ticket_.store(round << 32 | static_cast<std::uint64_t>(chunks) << 16);
+    open_.store(__builtin_popcountll(chunks), std::memory_order_relaxed);
+    unclaimed_.store(chunks);
     if (asleep_.load() > 0) {
         const std::lock_guard<std::mutex> lock(mutex_);
         wake_.notify_all();
     }
+}
+
+/// Does what nobody has claimed, and waits for the rest.
+void Team::finish() {
     work(0);
     for (int turn = 0; open_.load(std::memory_order_acquire) > 0; ++turn) {
         if (turn < kSpins) {
@@ -70,16 +77,16 @@ void Team::start(Call call, const void* body, int chunks) {
     }
 }
 
-/// Does chunks until there is none left. \return whether there was one.
+/// Does chunks until there is none left, its own first. \return whether there was one.
 bool Team::work(int member) {
     bool worked = false;
     for (;;) {
-        const std::uint64_t seen = ticket_.load(std::memory_order_relaxed);
-        // Looked at first, so that the counter of claims in vain cannot run over.
-        if (next_of(seen) >= chunks_of(seen)) return worked;
-        const std::uint64_t claim = ticket_.fetch_add(1, std::memory_order_acq_rel);
-        if (next_of(claim) >= chunks_of(claim)) return worked;
-        call_(body_, member, next_of(claim));
+        const std::uint64_t seen = unclaimed_.load(std::memory_order_relaxed);
+        if (seen == 0) return worked;
+        const std::uint64_t wanted = (seen & bit(member)) != 0 ? bit(member) : seen & -seen;
+        // Whoever comes late may claim of the next round: what is called is read after the claim.
+        if ((unclaimed_.fetch_and(~wanted, std::memory_order_acq_rel) & wanted) == 0) continue;
+        call_(body_, member, __builtin_ctzll(wanted));
         open_.fetch_sub(1, std::memory_order_release);
         worked = true;
     }
@@ -98,10 +105,7 @@ void Team::help(int member) {
         }
         std::unique_lock<std::mutex> lock(mutex_);
         asleep_.fetch_add(1);
-        wake_.wait(lock, [this] {
-            const std::uint64_t ticket = ticket_.load();
-            return over_.load() || next_of(ticket) < chunks_of(ticket);
-        });
+        wake_.wait(lock, [this] { return over_.load() || unclaimed_.load() != 0; });
         asleep_.fetch_sub(1);
         turns = 0;
     }

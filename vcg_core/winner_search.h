@@ -47,6 +47,26 @@ public:
         if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0) relink(v, from, to);
         store_xyz(slot, where);
     }
+    /// A vertex that has moved from one cell to another, of which the grid does not know yet.
+    struct Crossing {
+        FourInts from;
+        FourInts to;
+        VertexId vertex;
+    };
+    /// As move(), but does no more about a vertex that leaves its cell than to add it to \p crossings, which
+    /// are to be handed to follow() before the next search: so threads may move different vertices at once.
+    void move(VertexId v, Four where, std::vector<Crossing>& crossings) {
+        Slot* slot = &network_.slots()[v];
+        const FourInts from = cell_of(load_xyz(slot));
+        const FourInts to = cell_of(where);
+        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0)
+            crossings.push_back({from, to, v});
+        store_xyz(slot, where);
+    }
+    /// Those of one vertex must come in their order. O(1) expected for each.
+    void follow(const std::vector<Crossing>& crossings) {
+        for (const Crossing& c : crossings) relink(c.vertex, c.from, c.to);
+    }
     void move(VertexId v, const vcg::Point3f& where) { move(v, Four{where[0], where[1], where[2], 0}); }
     /// Lays the grid out anew if the network has outgrown it.
     void keep_up();

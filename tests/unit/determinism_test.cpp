@@ -64,6 +64,24 @@ TEST(Determinism, SameSeedSameBytesWhateverTheThreads) {
     }
 }
 
+/// So many vertices that the threads have regions of their own.
+TEST(Determinism, SameBytesWhereThreadsShareTheNetwork) {
+    const shapes::Cloud cloud = shapes::torus_cloud(20000, 0.005);
+    Settings settings;
+    settings.target_vertices = 5000;
+    settings.signals_per_split = 40;
+    settings.min_wins_per_split = 10;
+    settings.settling_signals_per_vertex = 20;
+    settings.fit_to_points = false;
+    settings.threads = 1;
+    const NeuralMesh first = learn(cloud, settings);
+    for (const int threads : {2, 3, 8}) {
+        SCOPED_TRACE(threads);
+        settings.threads = threads;
+        expect_same(first, learn(cloud, settings));
+    }
+}
+
 TEST(Determinism, AnotherSeedGivesAnotherMesh) {
     const shapes::Cloud cloud = shapes::sphere_cloud(1500);
     for (Settings settings : variants()) {

@@ -346,6 +346,13 @@ TEST(Network, StaysAManifoldOverTenThousandRandomOperations) {
     }
 }
 
+TEST(Network, ANewVertexIsOfItsParentsRegion) {
+    Network network = referee::network_of(shapes::torus_grid(6, 5));
+    network.set_region(7, 3);
+    EXPECT_EQ(network.ring(network.split(7, 0, 4, network.position(7))).region, 3);
+    EXPECT_EQ(network.ring(network.split(8, 0, 4, network.position(8))).region, 0);
+}
+
 TEST(Network, UsesTheIdsOfRemovedVerticesAgain) {
     Network network = network_of(shapes::icosphere(1));
     const int slots = network.slot_count();

@@ -37,9 +37,9 @@ TEST(Team, DoesEveryChunkOnce) {
 TEST(Team, WakesWhoHasGoneToSleep) {
     Team team(3);
     for (int round = 0; round < 20; ++round) {
-        std::vector<int> done(200, 0);
+        std::vector<int> done(Team::kMost, 0);
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
-        team.run(200, [&](int, int chunk) { ++done[static_cast<std::size_t>(chunk)]; });
+        team.run(Team::kMost, [&](int, int chunk) { ++done[static_cast<std::size_t>(chunk)]; });
         for (const int count : done) ASSERT_EQ(count, 1);
     }
 }
@@ -56,6 +56,26 @@ TEST(Team, HelpersTakePart) {
         }
     });
     EXPECT_TRUE(helped);
+}
+
+TEST(Team, DoesOneThingBesideTheCaller) {
+    for (const int members : {1, 2, 5}) {
+        Team team(members);
+        int done = 0;
+        for (int round = 0; round < 3000; ++round) {
+            const auto body = [&] { ++done; };
+            { const Team::Beside beside = team.beside(body); }
+            ASSERT_EQ(done, round + 1);
+        }
+    }
+}
+
+TEST(Team, AHelperDoesItWhileTheCallerGoesOn) {
+    Team team(2);
+    std::atomic<bool> helped{false};
+    const auto body = [&] { helped = true; };
+    const Team::Beside beside = team.beside(body);
+    while (!helped) std::this_thread::yield();
 }
 
 }  // namespace

@@ -228,5 +228,24 @@ TEST(WinnerSearch, IsLinearSearchFarFromTheMesh) {
     }
 }
 
+TEST(WinnerSearch, FollowsMovesThatItIsToldOfLater) {
+    Network network = in_frame(shapes::torus_grid(24, 16));
+    WinnerSearch search(network);
+    Random random(5);
+    for (int round = 0; round < 30; ++round) {
+        // Two lists, as of two threads; a vertex always in the same.
+        std::vector<WinnerSearch::Crossing> crossings[2];
+        for (int i = 0; i < 300; ++i) {
+            const VertexId v = random_vertex(network, random);
+            const vcg::Point3f p = network.position(v) + random_point(random, 0.05F);
+            search.move(v, Four{p[0], p[1], p[2], 0}, crossings[v % 2]);
+        }
+        EXPECT_GT(crossings[0].size(), 20U);
+        search.follow(crossings[1]);
+        search.follow(crossings[0]);
+        expect_exact(network, search, random, 60);
+    }
+}
+
 }  // namespace
 }  // namespace neuralmesh
