@@ -106,7 +106,9 @@ bool Learner::due_for_report() {
 }
 
 int Learner::batch_size() const {
-    return to_the_letter() ? 1 : std::clamp(network_.vertex_count() / kVerticesPerSignal, 1, kMostAtOnce);
+    if (to_the_letter()) return 1;
+    return std::clamp(network_.vertex_count() / kVerticesPerSignal, 1,
+                      std::min(kMostAtOnce, crowding_.limit()));
 }
 
 /// A network that outgrows a core's first cache, and may then be shared by threads, is put in order from time
@@ -131,6 +133,8 @@ void Learner::basic_steps(const vcg::Point3f* signals, int count) {
     const StepRates rates{static_cast<float>(settings_.learning_rate),
                           static_cast<float>(settings_.smoothing_rate), settings_.smoothing_steps};
     steps_.take(signals, count, rates, network_, search_);
+    batch_begin_ = signals_;
+    batch_end_ = signals_ + count;
 }
 
 void Learner::learn_counters(int i) {
@@ -148,7 +152,10 @@ void Learner::learn_counters(int i) {
     const double n_delta = m_delta > 0 ? delta / m_delta : 1;  // eq 3
     utility_counters_.win(w, settings_.utility_counter == kNormalCounter ? n_delta : 1);
     feature_counters_.win(w, n_delta);
-    last_active_[static_cast<std::size_t>(w)] = ++signals_;
+    std::int64_t& last_active = last_active_[static_cast<std::size_t>(w)];
+    if (last_active > batch_begin_) crowding_.repeated(w);
+    last_active = ++signals_;
+    if (signals_ == batch_end_) crowding_.end_batch(static_cast<int>(batch_end_ - batch_begin_));
 }
 
 bool Learner::vertex_split() {

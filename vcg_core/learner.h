@@ -9,6 +9,7 @@
 
 #include "basic_steps.h"
 #include "counters.h"
+#include "crowding.h"
 #include "features.h"
 #include "network.h"
 #include "neural_mesh.h"
@@ -48,7 +49,7 @@ public:
         learn_counters(0);
     }
     /// Signals that run() takes from one state of the network: one for every kVerticesPerSignal vertices, so
-    /// that they seldom meet; one by one to the letter of the paper.
+    /// that they seldom meet, fewer where they do meet; one by one to the letter of the paper.
     int batch_size() const;
     static constexpr int kVerticesPerSignal = 32;
     /// Splits the mature vertex with the highest utility counter along its longest edge, halving its star;
@@ -112,9 +113,12 @@ private:
     TurnMean turn_mean_;
     BasicSteps steps_;
     Signals drawn_;
+    Crowding crowding_;
     /// Per vertex the signal of its last win, or of its birth.
     std::vector<std::int64_t> last_active_;
     std::int64_t signals_ = 0;
+    std::int64_t batch_begin_ = 0;
+    std::int64_t batch_end_ = 0;
     std::int64_t splits_ = 0;
     std::int64_t collapses_ = 0;
     std::int64_t last_collapse_ = 0;
