@@ -55,6 +55,7 @@ private:
 struct Start {
     Network network;
     int signals_to_land;
+    bool encloses_space;  ///< else the shell has two layers with nothing between them
 };
 
 /// The paper's start: a tetrahedron in the middle of the cloud, which lies around the origin.
@@ -62,7 +63,7 @@ Start tetrahedron() {
     constexpr float a = 0.1F;
     return {Network({{a, a, a}, {-a, -a, a}, {-a, a, -a}, {a, -a, -a}},
                     {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}),
-            0};
+            0, true};
 }
 
 Start start_of(const TargetSpace& target, const Settings& settings, Report& report, Progress& progress) {
@@ -83,7 +84,7 @@ Start start_of(const TargetSpace& target, const Settings& settings, Report& repo
         return tetrahedron();
     }
     report.topology_confidence = shell.confidence;
-    return {Network(shell.positions, shell.faces), kSignalsToLand};
+    return {Network(shell.positions, shell.faces), kSignalsToLand, shell.encloses_space};
 }
 
 void write_geometry(const Network& network, const Frame& frame, NeuralMesh& mesh) {
@@ -154,7 +155,18 @@ NeuralMesh reconstruct(const TargetSpace& target, const Settings& settings, Prog
     Part learning(run, 0.1, settings.fit_to_points ? 0.8 : 1);
     Part fitting(run, 0.8, 1);
     Start first = start_of(target, settings, mesh.report, starting);
-    Learner learner(target, settings, std::move(first.network));
+    Settings learned = settings;
+    // The layers of a sheet come to lie in each other, folded: area vectors cancel, and what is left of them
+    // is no normal to smooth at right angles to. It throws vertices off the sheet, which win no signal any
+    // more.
+    if (!first.encloses_space && settings.smoothing_steps > 0) {
+        learned.smoothing_steps = 0;
+        mesh.report.warnings.push_back(
+            "Between the two sides of such a surface there is no room to smooth it in: it was learned as "
+            "with "
+            "smoothing_steps 0, and its triangles are less even than otherwise.");
+    }
+    Learner learner(target, learned, std::move(first.network));
     if (!run.stopped()) mesh.report.stop_reason = learner.run(first.signals_to_land, learning);
 
     Network network = learner.network();

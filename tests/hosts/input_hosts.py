@@ -170,9 +170,8 @@ def try_out(build, server, pymeshlab, host, layer, folder):
     return in_library(build, host.split()[1], layer, folder)
 
 
-def judge(build, layer, outcome, margin):
-    """AssertionError where the outcome is not what inputs.py asks for, the mesh being allowed to lie outside the points'
-    box by `margin` diagonals of it. Writes beside the result."""
+def judge(build, layer, outcome):
+    """AssertionError where the outcome is not what inputs.py asks for. Writes beside the result."""
     assert outcome.unchanged, "the input layer has changed"
     if layer.refused:
         assert layer.refused in outcome.sentence, outcome.sentence or "it was learned"
@@ -189,17 +188,17 @@ def judge(build, layer, outcome, margin):
     assert (found["genus"], found["components"]) == (told["genus"], told["components"])
     assert 0 <= told["rms_error"] < layer.rms, f"{told['rms_error']} % from the points, as it tells"
     assert found["rms_to_mesh"] < layer.rms, f"{found['rms_to_mesh']} % from the points"
-    _judge_place(layer, models.load_mesh(outcome.mesh)[0], margin)
+    _judge_place(layer, models.load_mesh(outcome.mesh)[0])
 
 
-def _judge_place(layer, vertices, margin):
+def _judge_place(layer, vertices):
     """All vertices finite and in the box of the points, somewhat larger, and across it."""
     assert np.isfinite(vertices).all(), "vertices that are not finite"
     points = layer.learned_points()
     low, high = points.min(0), points.max(0)
     # Hosts in single precision round the coordinates of the result.
     rounding = np.spacing(np.abs(points).max().astype("f4"))
-    margin = margin * np.linalg.norm(high - low) + rounding
+    margin = layer.margin * np.linalg.norm(high - low) + rounding
     assert (vertices >= low - margin).all() and (vertices <= high + margin).all(), "vertices outside the points' box"
     if layer.outliers:
         points = points[:-layer.outliers]

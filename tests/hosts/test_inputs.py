@@ -24,5 +24,4 @@ def test_a_right_mesh_or_a_sentence(build, server, pymeshlab, first_of, tmp_path
     outcome = input_hosts.try_out(build, server, pymeshlab, host, INPUTS[name], tmp_path)
     told = outcome.sentence or [outcome.told[key] for key in COUNTS]
     assert told == first_of.setdefault(name, told), "another result than in the first host"
-    margin = inputs.KNOWN_MARGIN if INPUTS[name].known else INPUTS[name].margin
-    input_hosts.judge(build, INPUTS[name], outcome, margin)
+    input_hosts.judge(build, INPUTS[name], outcome)
