@@ -2,8 +2,8 @@
 // Copyright the Neural Mesh authors
 
 // How the cost grows: with the vertices, with the points, with outliers and with threads; and whole runs as a
-// person waits for them. The clouds are points of a bumpy torus made here, point by point, so that nothing but the
-// core holds them. The largest rows take minutes.
+// person waits for them. The clouds are points of a bumpy torus made here, point by point, so that nothing
+// but the core holds them. The largest rows take minutes.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -34,7 +34,8 @@ TargetSpace cloud(std::size_t points, bool outliers = false) {
     return TargetSpace::points(points, [&](std::size_t i) { return point(i, outliers); });
 }
 
-/// Learned once per number of vertices, quickly: what it costs to learn on it is measured, not how it came about.
+/// Learned once per number of vertices, quickly: what it costs to learn on it is measured, not how it came
+/// about.
 const Network& learned(int vertices) {
     static std::map<int, Network> networks;
     const auto known = networks.find(vertices);
@@ -54,23 +55,17 @@ const Network& learned(int vertices) {
     return networks.emplace(vertices, learner.network()).first->second;
 }
 
-/// Whole Basic Steps, counters included, on a mesh that does not grow.
+/// Whole Basic Steps, signals drawn and counters learned, on a mesh that does not grow.
 void settle(benchmark::State& state, const TargetSpace& target, int vertices, int threads) {
-    constexpr std::int64_t kSignals = 200000;
     Settings settings;
     settings.target_vertices = vertices;
     settings.threads = threads;
     Learner learner(target, settings, learned(vertices));
-    Random random(3);
-    std::vector<vcg::Point3f> drawn(BasicSteps::kMostSignals);
-    const int count = learner.batch_size();
-    std::int64_t signals = 0;
-    for (auto _ : state)
-        for (std::int64_t done = 0; done < kSignals; done += count, signals += count) {
-            for (int i = 0; i < count; ++i) drawn[static_cast<std::size_t>(i)] = target.sample(random);
-            learner.basic_steps(drawn.data(), count);
-            for (int i = 0; i < count; ++i) learner.learn_counters(i);
-        }
+    NoProgress progress;
+    learner.settle(1, progress);  // into order and into the caches
+    const std::int64_t before = learner.signals();
+    for (auto _ : state) learner.settle(1, progress);
+    const std::int64_t signals = learner.signals() - before;
     state.SetItemsProcessed(signals);
     state.counters["ns_per_signal"] = benchmark::Counter(
         static_cast<double>(signals) * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
@@ -91,7 +86,8 @@ void signals_by_points(benchmark::State& state) {
     const auto points = static_cast<std::size_t>(state.range(0));
     const TargetSpace target = cloud(points);
     state.counters["bytes_per_point"] =
-        static_cast<double>(target.positions().capacity() * sizeof(vcg::Point3f)) / static_cast<double>(points);
+        static_cast<double>(target.positions().capacity() * sizeof(vcg::Point3f)) /
+        static_cast<double>(points);
     settle(state, target, 10000, 1);
 }
 BENCHMARK(signals_by_points)->Arg(100000)->Arg(1000000)->Arg(10000000)->Unit(benchmark::kMillisecond);
