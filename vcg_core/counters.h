@@ -12,12 +12,12 @@
 
 namespace neuralmesh {
 
-/// The values at \p order's places, in its order.
+/// The values at \p order's places, in its order; \p none where that is -1.
 template <class T>
-std::vector<T> picked(const std::vector<T>& values, const std::vector<VertexId>& order) {
+std::vector<T> picked(const std::vector<T>& values, const std::vector<VertexId>& order, T none) {
     std::vector<T> result;
     result.reserve(std::max(values.capacity(), order.size()));
-    for (const VertexId v : order) result.push_back(values[static_cast<std::size_t>(v)]);
+    for (const VertexId v : order) result.push_back(v < 0 ? none : values[static_cast<std::size_t>(v)]);
     return result;
 }
 
@@ -73,7 +73,8 @@ public:
     void remove(VertexId v);
     /// v has been tried in vain: it counts as immature until its next win. O(log n).
     void pass_over(VertexId v) { enter(v, kNone); }
-    /// Vertex order[i] is vertex i from now on, those not named are gone. O(n).
+    /// Vertex order[i] is vertex i from now on, those not named are gone; where order[i] is -1 there is none
+    /// yet. O(n).
     void renumber(const std::vector<VertexId>& order);
     /// From now on highest() passes nobody over. O(n).
     void waive_maturity();
@@ -114,7 +115,7 @@ public:
     void prefetch(VertexId v) const { __builtin_prefetch(&values_[static_cast<std::size_t>(v)], 1); }
     float value(VertexId v) const { return values_[static_cast<std::size_t>(v)]; }
     /// As UtilityCounters::renumber().
-    void renumber(const std::vector<VertexId>& order) { values_ = picked(values_, order); }
+    void renumber(const std::vector<VertexId>& order) { values_ = picked(values_, order, 0.0F); }
     /// A new vertex starts from its parent's knowledge of the place.
     void inherit(VertexId from, VertexId to) { values_[static_cast<std::size_t>(to)] = value(from); }
 

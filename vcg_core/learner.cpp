@@ -42,6 +42,18 @@ std::vector<vcg::Point3f> typical_signals(const TargetSpace& target, int threads
     return drawn;
 }
 
+/// \p ids with \p gaps times -1 spread evenly between them.
+std::vector<VertexId> with_gaps(const std::vector<VertexId>& ids, int gaps) {
+    std::vector<VertexId> result;
+    result.reserve(ids.size() + static_cast<std::size_t>(gaps));
+    const auto size = static_cast<std::int64_t>(ids.size());
+    for (std::int64_t i = 0; i < size; ++i) {
+        result.push_back(ids[static_cast<std::size_t>(i)]);
+        if ((i + 1) * gaps / size > i * gaps / size) result.push_back(-1);
+    }
+    return result;
+}
+
 }  // namespace
 
 Learner::Learner(const TargetSpace& target, const Settings& settings, Network start)
@@ -115,17 +127,19 @@ int Learner::batch_size() const {
 /// to time, so that what a step visits shares cache lines and pages, and what the threads visit does not.
 void Learner::keep_neighbours_near() {
     const int n = network_.vertex_count();
-    if (n >= kLeastInOrder && n >= vertices_in_order_ + vertices_in_order_ / 4) put_in_order();
+    if (n >= kLeastInOrder && n >= vertices_in_order_ + vertices_in_order_ / 4)
+        put_in_order(std::min(n / 4, settings_.target_vertices - n));
 }
 
-void Learner::put_in_order() {
+/// With free ids between for \p more vertices.
+void Learner::put_in_order(int more) {
     vertices_in_order_ = network_.vertex_count();
     changes_in_order_ = splits_ + collapses_;
-    const std::vector<VertexId> order = network_.along_curve();
+    const std::vector<VertexId> order = with_gaps(network_.along_curve(), more);
     network_.renumber(order);
     utility_counters_.renumber(order);
     feature_counters_.renumber(order);
-    last_active_ = picked(last_active_, order);
+    last_active_ = picked(last_active_, order, std::int64_t{0});
     search_.lay_out();
 }
 
@@ -317,7 +331,8 @@ bool Learner::flip_regularises(VertexId a, VertexId b) const {
 
 bool Learner::settle(int per_vertex, Progress& progress) {
     // For long, as the connectivity stays as it is.
-    if (network_.vertex_count() >= kLeastInOrder && changes_in_order_ != splits_ + collapses_) put_in_order();
+    if (network_.vertex_count() >= kLeastInOrder && changes_in_order_ != splits_ + collapses_)
+        put_in_order(0);
     const bool observing = settings_.feature_measure == kCreaseMeasure;
     const std::int64_t begin = signals_;
     const std::int64_t end =

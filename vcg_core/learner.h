@@ -90,7 +90,7 @@ private:
 
     bool to_the_letter() const { return settings_.min_wins_per_split == 0; }
     void keep_neighbours_near();
-    void put_in_order();
+    void put_in_order(int more);
     bool due_for_report();
     bool report(const char* doing, Progress& progress) const;
     bool due_for_collapse() const;

@@ -78,15 +78,13 @@ void Network::set_position(VertexId v, const vcg::Point3f& p) {
     slot.z = p[2];
 }
 
-VertexId Network::new_vertex(const vcg::Point3f& where) {
-    VertexId v = 0;
-    if (free_.empty()) {
-        v = slot_count();
+VertexId Network::new_vertex(VertexId parent, const vcg::Point3f& where) {
+    VertexId v = slot_count();
+    if (free_.count() > 0) {
+        v = free_.take(parent);
+    } else {
         rings_.push_back(Ring{});
         slots_.push_back(Slot{0, 0, 0, -1});
-    } else {
-        v = free_.back();
-        free_.pop_back();
     }
     set_position(v, where);
     ++vertex_count_;
@@ -113,7 +111,7 @@ bool Network::can_split(VertexId v, int first, int count) const {
 VertexId Network::split(VertexId v, int first, int count, const vcg::Point3f& where) {
     if (!alive(v) || !can_split(v, first, count))
         throw TopologyError("This vertex split would break the network; ask can_split() first.");
-    const VertexId u = new_vertex(where);
+    const VertexId u = new_vertex(v, where);
     Ring& rv = ring_of(v);
     Ring& ru = ring_of(u);
     const bool takes_start = rv.open != 0 && first == 0;
@@ -196,7 +194,7 @@ void Network::collapse(VertexId gone, VertexId kept) {
     for (int j = from; j < to; ++j) replace(ring_of(rg[j]), gone, kept);
     replace(ring_of(kept), gone, rg.neighbours.data() + from, to - from);
     ring_of(gone) = Ring{};
-    free_.push_back(gone);
+    free_.add(gone);
     --vertex_count_;
 }
 
@@ -231,23 +229,29 @@ std::vector<VertexId> Network::compact() {
 
 std::vector<VertexId> Network::renumber(const std::vector<VertexId>& order) {
     std::vector<VertexId> moved(rings_.size(), -1);
-    for (std::size_t i = 0; i < order.size(); ++i)
-        moved[static_cast<std::size_t>(order[i])] = static_cast<VertexId>(i);
+    FreeIds free;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        if (order[i] >= 0) {
+            moved[static_cast<std::size_t>(order[i])] = static_cast<VertexId>(i);
+        } else {
+            free.add(static_cast<VertexId>(i));
+        }
+    }
     std::vector<Ring> rings;
     std::vector<Slot> slots_in_order;
     rings.reserve(std::max(rings_.capacity(), order.size()));
     slots_in_order.reserve(std::max(slots_.capacity(), order.size() + 1));
     slots_in_order.push_back(kNobody);
     for (const VertexId old : order) {
-        rings.push_back(ring(old));
-        slots_in_order.push_back(slots()[old]);
+        rings.push_back(old < 0 ? Ring{} : ring(old));
+        slots_in_order.push_back(old < 0 ? Slot{0, 0, 0, -1} : slots()[old]);
         Ring& r = rings.back();
         for (int i = 0; i < r.valence; ++i) *at(r, i) = moved[static_cast<std::size_t>(r[i])];
         r.repeat();
     }
     rings_.swap(rings);
     slots_.swap(slots_in_order);
-    free_.clear();
+    free_ = std::move(free);
     return moved;
 }
 

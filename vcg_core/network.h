@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "error.h"
+#include "free_ids.h"
 #include "lanes.h"
 
 namespace neuralmesh {
@@ -68,8 +69,9 @@ struct alignas(16) Slot {
     vcg::Point3f point() const { return {x, y, z}; }
 };
 
-/// A simplicial, oriented 2-manifold with boundary. Vertex ids are stable; ids of removed vertices are
-/// used again. Every operation below keeps the manifold or throws before it has changed anything.
+/// A simplicial, oriented 2-manifold with boundary. Vertex ids are stable; free ids, of
+/// removed vertices for one, are used again. Every operation below keeps the manifold or throws before it has
+/// changed anything.
 class Network {
 public:
     Network() = default;
@@ -94,7 +96,7 @@ public:
     void reserve(int vertices);
     /// Memory in use, without what is reserved for growth.
     std::size_t bytes() const {
-        return rings_.size() * sizeof(Ring) + slots_.size() * sizeof(Slot) + free_.size() * sizeof(VertexId);
+        return rings_.size() * sizeof(Ring) + slots_.size() * sizeof(Slot) + free_.bytes();
     }
 
     bool adjacent(VertexId a, VertexId b) const { return ring(a).find(b) >= 0; }
@@ -126,7 +128,8 @@ public:
     /// Gives new ids, so that the used ones are 0 .. vertex_count() - 1, in unchanged order. Whatever holds
     /// ids, a WinnerSearch for one, must be made anew. \return for every old slot its new id, or -1.
     std::vector<VertexId> compact();
-    /// The same in another order: \p order[i] is the old id of vertex i, every used id once. O(vertices).
+    /// The same in another order: \p order[i] is the old id of vertex i, every used id once, or -1 where i is
+    /// to be free. A new vertex takes a free id near that of the one it is split from. O(vertices).
     std::vector<VertexId> renumber(const std::vector<VertexId>& order);
     /// The used ids along a curve that visits near places soon after each other (Morton 1966), so that
     /// vertices near in space come to lie near in memory. O(vertices log vertices).
@@ -153,13 +156,13 @@ public:
 
 private:
     Ring& ring_of(VertexId v) { return rings_[static_cast<std::size_t>(v)]; }
-    VertexId new_vertex(const vcg::Point3f& where);
+    VertexId new_vertex(VertexId parent, const vcg::Point3f& where);
 
     std::vector<Ring> rings_;
     static constexpr Slot kNobody{1e18F, 1e18F, 1e18F, -1};
 
     std::vector<Slot> slots_{kNobody};  ///< of vertex v at v + 1
-    std::vector<VertexId> free_;
+    FreeIds free_;
     int vertex_count_ = 0;
 };
 
