@@ -71,12 +71,17 @@ void BasicSteps::make_room(int count) {
 }
 
 /// How many regions the batch is worth; sees to it that every vertex has one.
-int BasicSteps::regions_for(int count, Network& network) {
+int BasicSteps::regions_for(int count, Network& network, WinnerSearch& search) {
     const int most = std::clamp(count / kLeastPerThread, 1, team_.members());
     if (most == 1) return 1;
     const int n = network.vertex_count();
-    if (most > slabs_.count() || n > vertices_in_slabs_ + vertices_in_slabs_ / 4) {
-        slabs_.cut(std::max(most, slabs_.count()));
+    const bool too_few = most > slabs_.count();
+    if (too_few) {
+        slabs_.cut(most);
+        const Slabs::Range half = slabs_.range(most / 2);
+        search.divide(half.axis, half.begin);
+    }
+    if (too_few || n > vertices_in_slabs_ + vertices_in_slabs_ / 4) {
         vertices_in_slabs_ = n;
         for (VertexId v = 0; v < network.slot_count(); ++v)
             if (network.alive(v)) network.set_region(v, slabs_.of(network.position(v)));
@@ -88,7 +93,7 @@ void BasicSteps::take(const vcg::Point3f* signals, int count, const StepRates& r
                       WinnerSearch& search) {
     make_room(count);
     count_ = count;
-    const int most = regions_for(count, network);
+    const int most = regions_for(count, network, search);
     regions_ = most > 1 && pace_.together() ? most : 1;
     const auto begin = std::chrono::steady_clock::now();
     const Batch batch{signals, count, regions_, rates, network, search};

@@ -108,7 +108,7 @@ private:
 
     Part& part_of(int region) { return parts_[static_cast<std::size_t>(region)]; }
     void make_room(int count);
-    int regions_for(int count, Network& network);
+    int regions_for(int count, Network& network, WinnerSearch& search);
     void compute(const Batch& batch, int region);
     void take_signals(const Batch& batch, int region);
     static void find_winners(const Batch& batch, bool out_of_cache, Part& part);

@@ -55,28 +55,35 @@ VertexId vertex_of(Candidate c) { return static_cast<VertexId>(c & 0xffffffff); 
 
 /// Index of the list head of a cell, or of eight cells: 4 x 2 x 2 neighbouring cells share a cache line.
 template <class Ints>
-[[gnu::always_inline]] inline void bucket_of(const Ints& x, const Ints& y, const Ints& z, int line_shift,
-                                             Ints& bucket) {
+[[gnu::always_inline]] inline void bucket_of(const Ints& x, const Ints& y, const Ints& z,
+                                             const WinnerSearch::CellLists& lists, Ints& bucket) {
     const Ints hash = (x >> 2) * 0x9e3779b1u ^ (y >> 1) * 0x85ebca77u ^ (z >> 1) * 0xc2b2ae3du;
-    const Ints line = (hash * 0x27d4eb2fu) >> line_shift;
+    Ints line = (hash * 0x27d4eb2fu) >> lists.shift;
+    if (lists.beyond != 0) {
+        const Ints along = (x & lists.along_x) | (y & lists.along_y) | (z & lists.along_z);
+        // The highest bit of the difference of two numbers below 2^31: set where the cell is not beyond.
+        line += (((along - lists.first_beyond) >> 31) - 1u) & lists.beyond;
+    }
     bucket = line << 4 | (x & 3u) | (y & 1u) << 2 | (z & 1u) << 3;
 }
 
 /// The buckets of the 2 x 2 x 2 cells from \p low on.
-[[gnu::always_inline]] inline void eight_buckets(FourInts low, int line_shift, EightWords& buckets) {
+[[gnu::always_inline]] inline void eight_buckets(FourInts low, const WinnerSearch::CellLists& lists,
+                                                 EightWords& buckets) {
     const EightWords one_x = {0, 1, 0, 1, 0, 1, 0, 1};
     const EightWords one_y = {0, 0, 1, 1, 0, 0, 1, 1};
     const EightWords one_z = {0, 0, 0, 0, 1, 1, 1, 1};
     bucket_of(one_x + static_cast<std::uint32_t>(low[0]), one_y + static_cast<std::uint32_t>(low[1]),
-              one_z + static_cast<std::uint32_t>(low[2]), line_shift, buckets);
+              one_z + static_cast<std::uint32_t>(low[2]), lists, buckets);
 }
 
 /// The nearest vertex in the 2 x 2 x 2 cells from \p low on. The eight lists are walked abreast, to the end
 /// of the longest and without a branch per vertex: which cells are empty is unpredictable.
-NEURALMESH_MULTIVERSIONED Candidate scan_eight_cells(const Slot* slots, const VertexId* heads, int line_shift,
-                                                     FourInts low, const vcg::Point3f& s) {
+NEURALMESH_MULTIVERSIONED Candidate scan_eight_cells(const Slot* slots, const VertexId* heads,
+                                                     const WinnerSearch::CellLists& lists, FourInts low,
+                                                     const vcg::Point3f& s) {
     EightWords buckets;
-    eight_buckets(low, line_shift, buckets);
+    eight_buckets(low, lists, buckets);
     std::uint32_t b[8];
     std::memcpy(b, &buckets, sizeof b);
     EightInts ids = {heads[b[0]], heads[b[1]], heads[b[2]], heads[b[3]],
@@ -136,11 +143,19 @@ void WinnerSearch::lay_out() {
     // Below 1e-5 of the diagonal a cell coordinate would no longer be exact in float.
     edge_ = std::max(kCellEdge * mean_edge_length(network_), 1e-5F);
     inverse_edge_ = 1 / edge_;
-    std::size_t lines = 2;
-    line_shift_ = 31;
+    std::size_t lines = 4;
+    lists_ = CellLists();
+    lists_.shift = 30;
     while (16 * lines < 4 * static_cast<std::size_t>(laid_out_for_)) {
         lines *= 2;
-        --line_shift_;
+        --lists_.shift;
+    }
+    if (divided_) {
+        // The two halves of the table.
+        ++lists_.shift;
+        lists_.beyond = static_cast<std::uint32_t>(lines / 2);
+        (axis_ == 0 ? lists_.along_x : axis_ == 1 ? lists_.along_y : lists_.along_z) = ~0u;
+        lists_.first_beyond = static_cast<std::uint32_t>((place_ + kOffset) * inverse_edge_);
     }
     heads_.assign(16 * lines, -1);
     inhabited_ = CellPyramid(static_cast<std::int32_t>(2 * kOffset * inverse_edge_) + 1);
@@ -149,10 +164,17 @@ void WinnerSearch::lay_out() {
         if (network_.alive(v)) add(v);
 }
 
+void WinnerSearch::divide(int axis, float place) {
+    divided_ = true;
+    axis_ = axis;
+    place_ = std::clamp(place, -1.0F, 1.0F);
+    lay_out();
+}
+
 std::size_t WinnerSearch::bucket_of(std::int32_t x, std::int32_t y, std::int32_t z) const {
     std::uint32_t bucket = 0;
     neuralmesh::bucket_of(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                          static_cast<std::uint32_t>(z), line_shift_, bucket);
+                          static_cast<std::uint32_t>(z), lists_, bucket);
     return bucket;
 }
 
@@ -215,7 +237,7 @@ void WinnerSearch::prefetch_heads(const vcg::Point3f& s) const {
 
 void WinnerSearch::prefetch_vertices(const vcg::Point3f& s) const {
     EightWords buckets;
-    eight_buckets(first_of_nearest(s), line_shift_, buckets);
+    eight_buckets(first_of_nearest(s), lists_, buckets);
     for (int i = 0; i < 8; ++i) __builtin_prefetch(network_.slots() + heads_[buckets[i]]);
 }
 
@@ -256,7 +278,7 @@ std::uint64_t WinnerSearch::scan_all(const vcg::Point3f& s) const {
 }
 
 VertexId WinnerSearch::winner(const vcg::Point3f& s) const {
-    Candidate best = scan_eight_cells(network_.slots(), heads_.data(), line_shift_, first_of_nearest(s), s);
+    Candidate best = scan_eight_cells(network_.slots(), heads_.data(), lists_, first_of_nearest(s), s);
     const float sure = (0.5F - kRounding) * edge_;
     if (squared_distance_of(best) < sure * sure) return vertex_of(best);
     if (best == kNobody) best = scan_box(s, 2 * edge_);

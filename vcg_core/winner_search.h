@@ -25,6 +25,17 @@ namespace neuralmesh {
 /// Memory: 8 to 16 bytes per vertex; the list links live in the network's slots.
 class WinnerSearch {
 public:
+    /// Which list a cell has.
+    struct CellLists {
+        int shift = 0;             ///< of the hash, to the number of a cache line
+        std::uint32_t beyond = 0;  ///< added to that of a cell beyond the plane
+        /// The mask of the plane's axis is all ones, and its first cell beyond.
+        std::uint32_t along_x = 0;
+        std::uint32_t along_y = 0;
+        std::uint32_t along_z = 0;
+        std::uint32_t first_beyond = 0;
+    };
+
     /// Keeps a reference to \p network. O(vertices).
     explicit WinnerSearch(Network& network);
 
@@ -68,6 +79,10 @@ public:
         for (const Crossing& c : crossings) relink(c.vertex, c.from, c.to);
     }
     void move(VertexId v, const vcg::Point3f& where) { move(v, Four{where[0], where[1], where[2], 0}); }
+    /// From now on cells on different sides of the plane where coordinate \p axis is \p place never share a
+    /// list: for two threads, one on each side, which else would look at each other's vertices all over the
+    /// mesh. O(vertices).
+    void divide(int axis, float place);
     /// Lays the grid out anew if the network has outgrown it.
     void keep_up();
 
@@ -105,7 +120,10 @@ private:
     std::vector<VertexId> heads_;
     CellPyramid inhabited_;
     int out_of_range_ = 0;  ///< vertices so far away that the pyramid does not hold them
-    int line_shift_ = 0;
+    CellLists lists_;
+    bool divided_ = false;
+    int axis_ = 0;  ///< of the plane that divides the lists
+    float place_ = 0;
     int laid_out_for_ = 0;
     float edge_ = 1;
     float inverse_edge_ = 1;

@@ -228,6 +228,23 @@ TEST(WinnerSearch, IsLinearSearchFarFromTheMesh) {
     }
 }
 
+TEST(WinnerSearch, IsLinearSearchOnBothSidesOfADivision) {
+    for (const int axis : {0, 1, 2})
+        for (const float place : {-5.0F, 0.02F, std::numeric_limits<float>::infinity()}) {
+            Network network = in_frame(shapes::torus_grid(24, 16));
+            WinnerSearch search(network);
+            Random random(6);
+            search.divide(axis, place);
+            expect_exact(network, search, random, 200);
+            for (int i = 0; i < 800; ++i) {
+                split_somewhere(network, search, random);
+                const VertexId v = random_vertex(network, random);
+                search.move(v, network.position(v) + random_point(random, 0.1F));
+            }
+            expect_exact(network, search, random, 200);
+        }
+}
+
 TEST(WinnerSearch, FollowsMovesThatItIsToldOfLater) {
     Network network = in_frame(shapes::torus_grid(24, 16));
     WinnerSearch search(network);
