@@ -17,8 +17,8 @@ namespace {
 constexpr int kLeastPerThread = 48;
 /// Batches of each kind in a trial, of these at first those that only fill the other core's cache, and
 /// batches from one trial to the next.
-constexpr int kTrial = 32;
-constexpr int kWarming = 12;
+constexpr int kTrial = 24;
+constexpr int kWarming = 8;
 constexpr int kBetweenTrials = 2048;
 /// Signals whose cells, and whose cells' vertices, are on their way into the cache.
 constexpr int kHeadsAhead = 8;
@@ -74,15 +74,15 @@ void BasicSteps::make_room(int count) {
 int BasicSteps::regions_for(int count, Network& network, WinnerSearch& search) {
     const int most = std::clamp(count / kLeastPerThread, 1, team_.members());
     if (most == 1) return 1;
-    const int n = network.vertex_count();
     const bool too_few = most > slabs_.count();
     if (too_few) {
         slabs_.cut(most);
         const Slabs::Range half = slabs_.range(most / 2);
         search.divide(half.axis, half.begin);
     }
-    if (too_few || n > vertices_in_slabs_ + vertices_in_slabs_ / 4) {
-        vertices_in_slabs_ = n;
+    if (too_few || !assigned_) {
+        assigned_ = true;
+        pace_ = Pace();
         for (VertexId v = 0; v < network.slot_count(); ++v)
             if (network.alive(v)) network.set_region(v, slabs_.of(network.position(v)));
     }

@@ -59,6 +59,10 @@ public:
     void take(const vcg::Point3f* signals, int count, const StepRates& rates, Network& network,
               WinnerSearch& search);
 
+    /// Vertices are given their regions anew, and whether the team pays is tried anew: to be called when the
+    /// network has become another, in size or in order.
+    void reconsider() { assigned_ = false; }
+
     /// Of the last batch, how many signals, and per signal: its winner, and delta of eq 2, with the normal
     /// before and after the whole step.
     int count() const { return count_; }
@@ -121,9 +125,9 @@ private:
     Team team_;
     Pace pace_;
     Slabs slabs_;
-    int vertices_in_slabs_ = 0;
-    int count_ = 0;    ///< of signals of the last batch
-    int regions_ = 1;  ///< of the last batch
+    bool assigned_ = false;  ///< every vertex has a region
+    int count_ = 0;          ///< of signals of the last batch
+    int regions_ = 1;        ///< of the last batch
     std::vector<Part> parts_;
     std::vector<VertexId> winners_;
     std::vector<float> deltas_;

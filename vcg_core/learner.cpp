@@ -141,6 +141,7 @@ void Learner::put_in_order(int more) {
     feature_counters_.renumber(order);
     last_active_ = picked(last_active_, order, std::int64_t{0});
     search_.lay_out();
+    steps_.reconsider();
 }
 
 void Learner::basic_steps(const vcg::Point3f* signals, int count) {
