@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // The fit to the points: learning leaves every vertex somewhat behind its signals, least squares take it the
-// rest of the way. Called once, after the learning; the number of vertices stays what it is.
+// rest of the way. Called once, after the learning; vertices that it can do without are taken out.
 #pragma once
 
 #include <cstdint>
@@ -23,10 +23,13 @@ struct FitOptions {
     /// every vertex keeps its place in the mesh, for meshes whose density is to follow something else than
     /// the error.
     bool redistribute = true;
+    /// If the network has more vertices, it is first reduced to so many: those whose removal costs least go.
+    /// 0: it keeps what it has.
+    int target_vertices = 0;
     /// Points used: all, or if there are more, a random choice of this many per vertex, but at least
     /// min_points.
-    int points_per_vertex = 40;
-    int min_points = 50000;
+    int points_per_vertex = 100;
+    int min_points = 100000;
 };
 
 /// Figures of a fit. Errors are root mean squares over points held back from it, in the core's frame, along
@@ -54,11 +57,13 @@ struct FitReport {
 /// learning has followed of their noise, see rms_before). Where the surface cuts itself it is smoothed first,
 /// and it does not come to cut itself in more faces than before.
 ///
-/// The number of vertices, components, handles and boundary loops stays. The same bytes for any \p threads
-/// (0: as many as the machine has). Stops early, with the best mesh so far, when \p progress asks for it;
-/// fractions run from 0 to 1. Exact nearest faces: O(points log faces) a round, in all about 2.5 s of
-/// processor time for 10k vertices and 200k points. Sources: Hoppe, DeRose, Duchamp, McDonald, Stuetzle,
-/// "Mesh Optimization" (1993); the linearisation is Gauss-Newton's for distances (point to plane).
+/// The number of components, handles and boundary loops stays, and that of vertices unless
+/// options.target_vertices asks for less; \p network has more than that only if it was asked to stop, or if
+/// nothing more can be taken out without harm to the surface. "Before" is after the reduction. The same bytes
+/// for any \p threads (0: as many as the machine has). Stops early, with the best mesh so far, when \p
+/// progress asks for it; fractions run from 0 to 1. Exact nearest faces: O(points log faces) a round, in all
+/// about 2.5 s of processor time for 10k vertices and 200k points. Sources: Hoppe, DeRose, Duchamp, McDonald,
+/// Stuetzle, "Mesh Optimization" (1993); the linearisation is Gauss-Newton's for distances (point to plane).
 FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOptions& options, int threads,
                         std::uint64_t seed, Progress& progress);
 

@@ -258,6 +258,18 @@ int split_position(const Network& network, VertexId a, VertexId b) {
     return network.can_split(a, first, 3) ? first : -1;
 }
 
+/// Carries out the collapse if it touches nothing that is touched. \return whether it did
+bool collapse_untouched(Network& network, const Merger& merger, std::vector<char>& touched) {
+    const Ring ring = network.ring(merger.gone);
+    bool free = touched[index(merger.gone)] == 0;
+    for (int i = 0; i < ring.valence; ++i) free = free && touched[index(ring[i])] == 0;
+    if (!free || !network.can_collapse(merger.gone, merger.into)) return false;
+    touched[index(merger.gone)] = 1;
+    for (int i = 0; i < ring.valence; ++i) touched[index(ring[i])] = 1;
+    network.collapse(merger.gone, merger.into);
+    return true;
+}
+
 }  // namespace
 
 Redistribution plan_redistribution(const Network& network, const Surface& surface, const FacePoints& points,
@@ -268,10 +280,12 @@ Redistribution plan_redistribution(const Network& network, const Surface& surfac
     plan.mergers.resize(index(network.slot_count()));
     std::vector<float> estimates(plan.mergers.size());
     for_chunks(estimates.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) estimates[v] = judge.estimate(static_cast<VertexId>(v));
+        for (std::size_t v = begin; v < end; ++v)
+            estimates[v] = network.alive(static_cast<VertexId>(v)) ? judge.estimate(static_cast<VertexId>(v))
+                                                                   : std::numeric_limits<float>::max();
     });
     std::vector<float> sorted = estimates;
-    const auto last = static_cast<std::size_t>(kJudged * static_cast<float>(sorted.size()));
+    const auto last = static_cast<std::size_t>(kJudged * static_cast<float>(network.vertex_count()));
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(last), sorted.end());
     for_chunks(plan.mergers.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
@@ -309,14 +323,7 @@ Shifts redistribute(Network& network, const Redistribution& plan, int most, cons
         if (result.merges.size() >= chosen.size() || merger.into < 0 ||
             merger.cost >= chosen[result.merges.size()].gain)
             break;
-        const Ring ring = network.ring(merger.gone);
-        bool free = touched[index(merger.gone)] == 0;
-        for (int i = 0; i < ring.valence; ++i) free = free && touched[index(ring[i])] == 0;
-        if (!free || !network.can_collapse(merger.gone, merger.into)) continue;
-        touched[index(merger.gone)] = 1;
-        for (int i = 0; i < ring.valence; ++i) touched[index(ring[i])] = 1;
-        network.collapse(merger.gone, merger.into);
-        result.merges.push_back({merger.gone, merger.into});
+        if (collapse_untouched(network, merger, touched)) result.merges.push_back({merger.gone, merger.into});
     }
     for (std::size_t i = 0; i < result.merges.size(); ++i) {
         const EdgeSplit& split = chosen[i];
@@ -325,6 +332,17 @@ Shifts redistribute(Network& network, const Redistribution& plan, int most, cons
         result.insertions.push_back({added, split.a});
     }
     return result;
+}
+
+std::vector<Shifts::Merge> reduce(Network& network, const Redistribution& plan, int most,
+                                  const std::vector<char>& barred) {
+    std::vector<char> touched = barred;
+    std::vector<Shifts::Merge> merges;
+    for (const Merger& merger : plan.mergers) {
+        if (static_cast<int>(merges.size()) >= most || merger.into < 0) break;
+        if (collapse_untouched(network, merger, touched)) merges.push_back({merger.gone, merger.into});
+    }
+    return merges;
 }
 
 }  // namespace neuralmesh

@@ -49,4 +49,9 @@ Redistribution plan_redistribution(const Network& network, const Surface& surfac
 /// Topology and number of vertices stay.
 Shifts redistribute(Network& network, const Redistribution& plan, int most, const std::vector<char>& barred);
 
+/// Carries out the cheapest collapses, no two of which touch each other or a vertex that is \p barred, at
+/// most \p most. Topology stays.
+std::vector<Shifts::Merge> reduce(Network& network, const Redistribution& plan, int most,
+                                  const std::vector<char>& barred);
+
 }  // namespace neuralmesh

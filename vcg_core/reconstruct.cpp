@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "distance.h"
@@ -87,6 +88,33 @@ Start start_of(const TargetSpace& target, const Settings& settings, Report& repo
     return {Network(shell.positions, shell.faces), kSignalsToLand, shell.encloses_space};
 }
 
+/// The layers of a sheet come to lie in each other, folded: area vectors cancel, and what is left of them is
+/// no normal to smooth at right angles to. It throws vertices off the sheet, which win no signal any more.
+Settings settings_for(const Start& start, Settings settings, Report& report) {
+    if (start.encloses_space || settings.smoothing_steps == 0) return settings;
+    settings.smoothing_steps = 0;
+    report.warnings.push_back(
+        "Between the two sides of such a surface there is no room to smooth it in: it was learned as with "
+        "smoothing_steps 0, and its triangles are less even than otherwise.");
+    return settings;
+}
+
+/// The fit judges better than the learning where vertices are wanted, so the network grows beyond its size
+/// and the fit takes out what it misses least. For large meshes that is not worth the time. Found by
+/// experiment.
+int vertices_to_learn(const TargetSpace& target, const Settings& settings) {
+    constexpr int kMostBeyond = 2500;
+    constexpr std::size_t kPointsPerVertex = 10;
+    const int n = settings.target_vertices;
+    if (!settings.fit_to_points || settings.utility_counter != kNormalCounter ||
+        settings.start_mesh == kTetrahedron || settings.stop_below_mean_counter > 0)
+        return n;
+    const int wanted = n + std::max(0, std::min(3 * n, kMostBeyond - n / 2));
+    if (target.has_faces()) return wanted;
+    const std::size_t places = target.positions().size() / kPointsPerVertex;
+    return std::max(n, static_cast<int>(std::min(places, static_cast<std::size_t>(wanted))));
+}
+
 void write_geometry(const Network& network, const Frame& frame, NeuralMesh& mesh) {
     std::vector<VertexId> index(static_cast<std::size_t>(network.slot_count()), -1);
     for (VertexId v = 0; v < network.slot_count(); ++v) {
@@ -144,48 +172,59 @@ void write_report(const Learner& learner, const Network& network, Report& report
                                   "signals_per_split or min_wins_per_split, or raise signals_per_collapse.");
 }
 
+/// The learner as it ended and the network as the fit left it.
+struct Grown {
+    std::optional<Learner> learner;
+    Network network;
+    FitReport fit;
+};
+
+/// Grows the network of \p start and fits it. \return why learning ended
+StopReason grow(const TargetSpace& target, const Settings& settings, const Settings& learned,
+                const Start& start, Run& run, Grown& grown) {
+    Part learning(run, 0.1, settings.fit_to_points ? 0.8 : 1);
+    Part fitting(run, 0.8, 1);
+    grown.learner.emplace(target, learned, start.network);
+    const StopReason reason = grown.learner->run(start.signals_to_land, learning);
+    grown.network = grown.learner->network();
+    FitOptions options;
+    // A mesh that is to follow the density of the cloud must not follow the error instead.
+    options.redistribute = settings.utility_counter == kNormalCounter;
+    options.target_vertices = settings.target_vertices;
+    if (settings.fit_to_points && !run.stopped())
+        grown.fit = fit_to_points(grown.network, target, options, settings.threads,
+                                  static_cast<std::uint64_t>(settings.random_seed) + 3, fitting);
+    return run.stopped() ? StopReason::cancelled : reason;
+}
+
 }  // namespace
 
 NeuralMesh reconstruct(const TargetSpace& target, const Settings& settings, Progress& progress) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto begin = std::chrono::steady_clock::now();
     settings.check();
     NeuralMesh mesh;
     Run run(progress);
     Part starting(run, 0, 0.1);
-    Part learning(run, 0.1, settings.fit_to_points ? 0.8 : 1);
-    Part fitting(run, 0.8, 1);
-    Start first = start_of(target, settings, mesh.report, starting);
-    Settings learned = settings;
-    // The layers of a sheet come to lie in each other, folded: area vectors cancel, and what is left of them
-    // is no normal to smooth at right angles to. It throws vertices off the sheet, which win no signal any
-    // more.
-    if (!first.encloses_space && settings.smoothing_steps > 0) {
-        learned.smoothing_steps = 0;
-        mesh.report.warnings.push_back(
-            "Between the two sides of such a surface there is no room to smooth it in: it was learned as "
-            "with "
-            "smoothing_steps 0, and its triangles are less even than otherwise.");
-    }
-    Learner learner(target, learned, std::move(first.network));
-    if (!run.stopped()) mesh.report.stop_reason = learner.run(first.signals_to_land, learning);
+    const Start start = start_of(target, settings, mesh.report, starting);
+    const Settings learned = settings_for(start, settings, mesh.report);
+    Settings more = learned;
+    more.target_vertices = vertices_to_learn(target, settings);
+    Grown grown;
+    mesh.report.stop_reason = grow(target, settings, more, start, run, grown);
+    const bool too_many = grown.network.vertex_count() > settings.target_vertices || grown.learner->forced();
+    if (too_many && !run.stopped() && more.target_vertices > settings.target_vertices)
+        mesh.report.stop_reason = grow(target, settings, learned, start, run, grown);
 
-    Network network = learner.network();
-    FitReport fit;
-    FitOptions options;
-    // A mesh that is to follow the density of the cloud must not follow the error instead.
-    options.redistribute = settings.utility_counter == kNormalCounter;
-    if (settings.fit_to_points && !run.stopped())
-        fit = fit_to_points(network, target, options, settings.threads,
-                            static_cast<std::uint64_t>(settings.random_seed) + 3, fitting);
-    if (run.stopped()) mesh.report.stop_reason = StopReason::cancelled;
+    Network& network = grown.network;
     network.orient_outward();
     write_geometry(network, target.frame(), mesh);
     // A fit that was taken back leaves the network of the learning.
-    write_counters(learner, network, fit.improved ? fit.origin : std::vector<VertexId>(), settings, mesh);
-    write_report(learner, network, mesh.report);
+    write_counters(*grown.learner, network, grown.fit.improved ? grown.fit.origin : std::vector<VertexId>(),
+                   settings, mesh);
+    write_report(*grown.learner, network, mesh.report);
     Random random(static_cast<std::uint64_t>(settings.random_seed) + 1);
     mesh.report.rms_error = 100 * rms_distance(target, network, kDistanceSamples, random);
-    mesh.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    mesh.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return mesh;
 }
 

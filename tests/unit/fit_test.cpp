@@ -11,6 +11,7 @@
 
 #include "shapes.h"
 #include "vcg_core/distance.h"
+#include "vcg_core/fit_surface.h"
 
 namespace neuralmesh {
 namespace {
@@ -106,9 +107,11 @@ TEST(Fit, GivesTheSameBytesForAnyNumberOfThreads) {
     Network one = network_of(shapes::torus_grid(40, 20), target, 1.05, 0.005);
     Network two = one;
     Network five = one;
-    fit(one, target, {}, 1);
-    fit(two, target, {}, 2);
-    fit(five, target, {}, 5);
+    FitOptions options;
+    options.target_vertices = 500;
+    fit(one, target, options, 1);
+    fit(two, target, options, 2);
+    fit(five, target, options, 5);
     EXPECT_TRUE(same_bytes(one, two));
     EXPECT_TRUE(same_bytes(one, five));
 }
@@ -236,6 +239,56 @@ class Stop : public Progress {
 public:
     bool operator()(double, const char*) override { return false; }
 };
+
+TEST(Fit, TakesOutTheVerticesItMissesLeast) {
+    // On a cube the eight corners suffice; of the vertices in its sides none is missed.
+    const TargetSpace target = target_of(shapes::box_cloud(20000));
+    Network network = network_of(shapes::icosphere(3), target, 0.6);
+    const int before = network.vertex_count();
+    FitOptions options;
+    options.target_vertices = 60;
+    const FitReport report = fit(network, target, options);
+    EXPECT_LT(5 * 60, before) << "far fewer than the ids in use";
+    EXPECT_EQ(network.vertex_count(), 60);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.genus(), 0);
+    EXPECT_TRUE(report.improved);
+    EXPECT_LT(rms(target, network), 1e-3);
+    for (VertexId v = 0; v < network.slot_count(); ++v)
+        EXPECT_EQ(report.origin[static_cast<std::size_t>(v)] >= 0, network.alive(v));
+}
+
+TEST(Fit, TakesOutNoMoreThanTheTopologyAllows) {
+    // A torus has at least seven vertices, and a tetrahedron's four are fewer than it can come down to.
+    const TargetSpace target = target_of(shapes::torus_cloud(8000, 0));
+    Network network = network_of(shapes::torus_grid(20, 10), target);
+    FitOptions options;
+    options.target_vertices = 4;
+    fit(network, target, options);
+    EXPECT_GT(network.vertex_count(), 4);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.genus(), 1);
+}
+
+// The walk looks at few faces, the tree is exact: on a smooth surface both find the same.
+TEST(Fit, WalksToTheFaceThatTheTreeFinds) {
+    const TargetSpace target = target_of(shapes::torus_cloud(8000, 0.01));
+    const Network network = network_of(shapes::torus_grid(40, 20), target, 1, 0.002);
+    const Surface surface(network);
+    const FaceTree tree(surface);
+    int differ = 0;
+    for (const vcg::Point3f& p : target.positions()) {
+        const Hit exact = tree.nearest(vec(p));
+        const Place there = place_of(surface, exact);
+        EXPECT_EQ(surface.face_of[index(surface.first_face[index(there.vertex)] + there.turn)], exact.face);
+        for (const Place start : {there, Place{there.vertex, 99}, Place{network.ring(there.vertex)[0], 1}}) {
+            const Hit found = walk_to_nearest(surface, vec(p), start);
+            EXPECT_GE(found.foot.squared_distance, exact.foot.squared_distance);
+            differ += found.foot.squared_distance > exact.foot.squared_distance ? 1 : 0;
+        }
+    }
+    EXPECT_EQ(differ, 0);
+}
 
 TEST(Fit, StopsWhenAskedTo) {
     const TargetSpace target = target_of(shapes::sphere_cloud(5000));
