@@ -34,6 +34,7 @@ constexpr int kFirstRounds = 5;
 /// a walk from the vertex beside which it was put in comes to. So a counter stays where it was learned.
 void settle_origins(const Network& before, const Network& after, std::vector<VertexId>& origin) {
     for (VertexId v = 0; v < after.slot_count(); ++v) {
+        if (!after.alive(v)) origin[index(v)] = -1;
         if (!after.alive(v) || origin[index(v)] == v) continue;
         const Vec here = vec(after.position(v));
         const auto distance = [&](VertexId u) { return (vec(before.position(u)) - here).squaredNorm(); };

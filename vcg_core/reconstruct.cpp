@@ -102,12 +102,12 @@ Settings settings_for(const Start& start, Settings settings, Report& report) {
 /// The fit judges better than the learning where vertices are wanted, so the network grows beyond its size
 /// and the fit takes out what it misses least. For large meshes that is not worth the time. Found by
 /// experiment.
-int vertices_to_learn(const TargetSpace& target, const Settings& settings) {
+int vertices_to_learn(const TargetSpace& target, const Start& start, const Settings& settings) {
     constexpr int kMostBeyond = 2500;
     constexpr std::size_t kPointsPerVertex = 10;
     const int n = settings.target_vertices;
     if (!settings.fit_to_points || settings.utility_counter != kNormalCounter ||
-        settings.start_mesh == kTetrahedron || settings.stop_below_mean_counter > 0)
+        settings.start_mesh == kTetrahedron || !start.encloses_space || settings.stop_below_mean_counter > 0)
         return n;
     const int wanted = n + std::max(0, std::min(3 * n, kMostBeyond - n / 2));
     if (target.has_faces()) return wanted;
@@ -208,7 +208,7 @@ NeuralMesh reconstruct(const TargetSpace& target, const Settings& settings, Prog
     const Start start = start_of(target, settings, mesh.report, starting);
     const Settings learned = settings_for(start, settings, mesh.report);
     Settings more = learned;
-    more.target_vertices = vertices_to_learn(target, settings);
+    more.target_vertices = vertices_to_learn(target, start, settings);
     Grown grown;
     mesh.report.stop_reason = grow(target, settings, more, start, run, grown);
     const bool too_many = grown.network.vertex_count() > settings.target_vertices || grown.learner->forced();
