@@ -132,7 +132,8 @@ FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOp
     const double learned_share = target.has_faces() ? 0.0
                                                     : kLearnedShare * network.vertex_count() /
                                                           static_cast<double>(target.positions().size());
-    FitSteps steps(network, std::move(points), threads);
+    Team team(thread_count(threads));
+    FitSteps steps(network, std::move(points), team);
     steps.untangle_surface();
     if (to_be_reduced) {
         const bool reduced = steps.reduce_to(vertices, progress);

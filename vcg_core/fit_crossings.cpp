@@ -79,9 +79,9 @@ void note(const Surface& surface, int f, int g, std::vector<Crossing>& crossings
 
 /// All that \p find(face, crossings) notes for the faces, sorted.
 template <class Find>
-std::vector<Crossing> sorted_crossings(std::size_t faces, int threads, const Find& find) {
+std::vector<Crossing> sorted_crossings(std::size_t faces, Team& team, const Find& find) {
     std::vector<std::vector<Crossing>> found((faces + kChunk - 1) / kChunk);
-    for_chunks(faces, kChunk, threads, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    for_chunks(faces, kChunk, team, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) find(i, found[chunk]);
     });
     std::vector<Crossing> all;
@@ -111,15 +111,15 @@ bool have_same_face(const Surface& a, const Surface& b, const Triangle& face) {
 
 }  // namespace
 
-std::vector<Crossing> crossings_of(const Surface& surface, int threads) {
+std::vector<Crossing> crossings_of(const Surface& surface, Team& team) {
     const FaceTree tree(surface);
-    return sorted_crossings(surface.faces.size(), threads, [&](std::size_t i, std::vector<Crossing>& found) {
+    return sorted_crossings(surface.faces.size(), team, [&](std::size_t i, std::vector<Crossing>& found) {
         tree.for_overlapping(i, [&](int f, int g) { note(surface, f, g, found); });
     });
 }
 
 std::vector<Crossing> crossings_after(const Surface& surface, const Surface& before,
-                                      const std::vector<Crossing>& known, int threads) {
+                                      const std::vector<Crossing>& known, Team& team) {
     std::vector<int> changed;
     std::vector<char> is_changed(surface.faces.size(), 0);
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
@@ -135,7 +135,7 @@ std::vector<Crossing> crossings_after(const Surface& surface, const Surface& bef
             if (is_changed[i] == 0 || f < g) note(surface, f, g, found);
         });
     };
-    std::vector<Crossing> all = sorted_crossings(surface.faces.size(), threads, find);
+    std::vector<Crossing> all = sorted_crossings(surface.faces.size(), team, find);
     const auto found = static_cast<std::ptrdiff_t>(all.size());
     for (const Crossing& c : known)
         if (have_same_face(surface, before, {c[0], c[1], c[2]}) &&

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fit_surface.h"
+#include "team.h"
 
 namespace neuralmesh {
 
@@ -18,13 +19,13 @@ using Crossing = std::array<VertexId, 6>;
 /// All pairs of faces of \p surface that cut each other, sorted: faces without a common corner that have a
 /// point in common, and faces with one common corner where the edge opposite to it of one goes through the
 /// other (vcglib's definition, but for its tolerances, which depend on the scale). Faces with a common edge
-/// never count. Expected O(faces log faces), on \p threads threads, with the same result for any number.
-std::vector<Crossing> crossings_of(const Surface& surface, int threads);
+/// never count. Expected O(faces log faces), by \p team, with the same result for any number.
+std::vector<Crossing> crossings_of(const Surface& surface, Team& team);
 
 /// The same, from \p known, the crossings of the surface \p before: only faces that are not in \p before, at
 /// the same place, are looked at. Expected O(faces + changed faces log changed faces).
 std::vector<Crossing> crossings_after(const Surface& surface, const Surface& before,
-                                      const std::vector<Crossing>& known, int threads);
+                                      const std::vector<Crossing>& known, Team& team);
 
 /// The promise that a surface does not come to cut itself more than it did.
 class CrossingGuard {

@@ -134,13 +134,13 @@ private:
 }  // namespace
 
 std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface, const FacePoints& points,
-                                 float least_gain, int threads) {
+                                 float least_gain, Team& team) {
     constexpr std::size_t kChunk = 256;
     const Support support(network, surface, points);
     const Judge judge(surface, points, support);
     const auto slots = index(network.slot_count());
     std::vector<std::vector<EdgeFlip>> found((slots + kChunk - 1) / kChunk);
-    for_chunks(slots, kChunk, threads, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    for_chunks(slots, kChunk, team, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) {
             const auto a = static_cast<VertexId>(s);
             const Ring& ring = network.ring(a);

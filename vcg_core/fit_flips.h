@@ -5,6 +5,7 @@
 #pragma once
 
 #include "fit_solve.h"
+#include "team.h"
 
 namespace neuralmesh {
 
@@ -17,10 +18,10 @@ struct EdgeFlip {
 /// The inner edges of \p network, best first, with which flipped the sum of the squared distances of the
 /// points tied to the edge's two faces drops by more than \p least_gain. No face turns over or becomes a
 /// sliver. Where the points do not care, the flip that makes the larger of the smallest angles wins. \p
-/// surface and \p points are those of the network. O(points x 3), on \p threads threads, with the same result
+/// surface and \p points are those of the network. O(points x 3), by \p team, with the same result
 /// for any number of them.
 std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface, const FacePoints& points,
-                                 float least_gain, int threads);
+                                 float least_gain, Team& team);
 
 /// Flips those of \p found in their order that have no face in common with one flipped before and no corner
 /// that is \p barred (by slot). \return the number of flips

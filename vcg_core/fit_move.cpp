@@ -72,7 +72,7 @@ public:
             if (!shorten(find_offending(), pass)) return std::move(moved_);
     }
 
-    std::vector<Vec> run(CrossingGuard& guard, int threads) {
+    std::vector<Vec> run(CrossingGuard& guard, Team& team) {
         Surface now = surface_;
         const std::vector<Crossing> at_start = guard.standing();
         int crossed = 0;
@@ -80,7 +80,7 @@ public:
             if (shorten(find_offending(), pass)) continue;
             now.at = moved_;
             std::vector<char> offending(moved_.size(), 0);
-            for (const VertexId v : guard.objections(crossings_after(now, surface_, at_start, threads)))
+            for (const VertexId v : guard.objections(crossings_after(now, surface_, at_start, team)))
                 offending[index(v)] = 1;
             if (!shorten(offending, crossed++)) return std::move(moved_);
         }
@@ -155,8 +155,8 @@ private:
 
 std::vector<Vec> MoveLimits::bounded(const std::vector<Vec>& u) const { return Mover(*this, u).run(); }
 
-std::vector<Vec> MoveLimits::uncrossed(const std::vector<Vec>& u, CrossingGuard& guard, int threads) const {
-    return Mover(*this, u).run(guard, threads);
+std::vector<Vec> MoveLimits::uncrossed(const std::vector<Vec>& u, CrossingGuard& guard, Team& team) const {
+    return Mover(*this, u).run(guard, team);
 }
 
 }  // namespace neuralmesh

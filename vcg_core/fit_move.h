@@ -21,7 +21,7 @@ public:
     /// The positions by slot after the displacements \p u, shortened where they break a limit.
     std::vector<Vec> bounded(const std::vector<Vec>& u) const;
     /// The same, shortened on until \p guard, which stands for the surface, has no objections.
-    std::vector<Vec> uncrossed(const std::vector<Vec>& u, CrossingGuard& guard, int threads) const;
+    std::vector<Vec> uncrossed(const std::vector<Vec>& u, CrossingGuard& guard, Team& team) const;
 
 private:
     class Mover;

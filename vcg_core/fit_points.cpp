@@ -56,18 +56,18 @@ float mean_edge(const Surface& surface) {
     return static_cast<float>(sum / (3 * static_cast<double>(surface.faces.size())));
 }
 
-std::vector<Hit> exact_hits(const Surface& surface, const Followed& followed, int threads) {
+std::vector<Hit> exact_hits(const Surface& surface, const Followed& followed, Team& team) {
     const FaceTree tree(surface);
     std::vector<Hit> hits(followed.points.size());
-    for_chunks(hits.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(hits.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) hits[i] = tree.nearest(followed.points[i]);
     });
     return hits;
 }
 
-std::vector<Hit> walked_hits(const Surface& surface, const Followed& followed, int threads) {
+std::vector<Hit> walked_hits(const Surface& surface, const Followed& followed, Team& team) {
     std::vector<Hit> hits(followed.points.size());
-    for_chunks(hits.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(hits.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             hits[i] = walk_to_nearest(surface, followed.points[i], followed.near[i]);
     });

@@ -30,9 +30,9 @@ struct Split {
 Split choose_points(const TargetSpace& target, std::size_t wanted, Random& random);
 
 /// The nearest faces of the points, exactly. O(points log faces)
-std::vector<Hit> exact_hits(const Surface& surface, const Followed& followed, int threads);
+std::vector<Hit> exact_hits(const Surface& surface, const Followed& followed, Team& team);
 /// The nearest faces of the points by walks from where they were last found. O(points)
-std::vector<Hit> walked_hits(const Surface& surface, const Followed& followed, int threads);
+std::vector<Hit> walked_hits(const Surface& surface, const Followed& followed, Team& team);
 
 /// Ties the points to the faces hit. Sorts them by their faces, which also brings neighbours together in
 /// memory, and notes where they are. Directions are not carried along.

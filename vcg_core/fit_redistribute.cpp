@@ -209,9 +209,9 @@ std::array<HatSums, 3> hat_sums(const Surface& surface, const FacePoints& points
 
 /// The inner edges in whose middle a vertex gains at least \p least_gain.
 std::vector<EdgeSplit> edge_splits(const Network& network, const Surface& surface, const FacePoints& points,
-                                   float least_gain, int threads) {
+                                   float least_gain, Team& team) {
     std::vector<std::array<HatSums, 3>> sums(surface.faces.size());
-    for_chunks(sums.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(sums.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) sums[f] = hat_sums(surface, points, static_cast<int>(f));
     });
     std::vector<EdgeSplit> splits;
@@ -273,13 +273,13 @@ bool collapse_untouched(Network& network, const Merger& merger, std::vector<char
 }  // namespace
 
 Redistribution plan_redistribution(const Network& network, const Surface& surface, const FacePoints& points,
-                                   float least_gain, int threads) {
+                                   float least_gain, Team& team) {
     const Support support(network, surface, points);
     const CollapseJudge judge(network, surface, points, support);
     Redistribution plan;
     plan.mergers.resize(index(network.slot_count()));
     std::vector<float> estimates(plan.mergers.size());
-    for_chunks(estimates.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(estimates.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v)
             estimates[v] = network.alive(static_cast<VertexId>(v)) ? judge.estimate(static_cast<VertexId>(v))
                                                                    : std::numeric_limits<float>::max();
@@ -287,7 +287,7 @@ Redistribution plan_redistribution(const Network& network, const Surface& surfac
     std::vector<float> sorted = estimates;
     const auto last = static_cast<std::size_t>(kJudged * static_cast<float>(network.vertex_count()));
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(last), sorted.end());
-    for_chunks(plan.mergers.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(plan.mergers.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
             const auto vertex = static_cast<VertexId>(v);
             plan.mergers[v] = estimates[v] <= sorted[last]
@@ -295,7 +295,7 @@ Redistribution plan_redistribution(const Network& network, const Surface& surfac
                                   : Merger{std::numeric_limits<float>::max(), vertex, -1};
         }
     });
-    plan.splits = edge_splits(network, surface, points, least_gain, threads);
+    plan.splits = edge_splits(network, surface, points, least_gain, team);
     std::stable_sort(plan.mergers.begin(), plan.mergers.end(),
                      [](const auto& x, const auto& y) { return x.cost < y.cost; });
     std::stable_sort(plan.splits.begin(), plan.splits.end(),

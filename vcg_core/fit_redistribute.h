@@ -40,9 +40,9 @@ struct Redistribution {
 
 /// The costs by new feet on the faces that a collapse leaves, the gains, of at least \p least_gain, by linear
 /// least squares over the offset of the new vertex from the middle of its edge. \p surface and \p points are
-/// those of the network. O(points), on \p threads threads, with the same result for any number of them.
+/// those of the network. O(points), by \p team, with the same result for any number of them.
 Redistribution plan_redistribution(const Network& network, const Surface& surface, const FacePoints& points,
-                                   float least_gain, int threads);
+                                   float least_gain, Team& team);
 
 /// Pairs collapses with splits, no two of which touch each other or a vertex that is \p barred (by slot),
 /// and carries them out as long as a split gains more than the collapse costs, at most \p most pairs.

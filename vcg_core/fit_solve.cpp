@@ -72,7 +72,7 @@ FitSystem::FaceSums FitSystem::sum_over(const Surface& surface, const FacePoints
     return sums;
 }
 
-FitSystem::FitSystem(const Network& network, const Surface& surface, const FacePoints& points, int threads)
+FitSystem::FitSystem(const Network& network, const Surface& surface, const FacePoints& points, Team& team)
     : network_(network) {
     const auto slots = index(network.slot_count());
     unit_ = static_cast<float>(points.ties.size()) / static_cast<float>(network.vertex_count());
@@ -85,10 +85,10 @@ FitSystem::FitSystem(const Network& network, const Surface& surface, const FaceP
 
     measure_support(surface, points);
     std::vector<FaceSums> sums(surface.faces.size());
-    for_chunks(sums.size(), kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(sums.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) sums[f] = sum_over(surface, points, static_cast<int>(f));
     });
-    for_chunks(slots, kChunk, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(slots, kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
             if (!network.alive(static_cast<VertexId>(v))) continue;
             gather(sums, surface, static_cast<VertexId>(v));

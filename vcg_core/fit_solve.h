@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fit_surface.h"
+#include "team.h"
 
 namespace neuralmesh {
 
@@ -60,7 +61,7 @@ struct Block {
 /// rounded.
 class FitSystem {
 public:
-    FitSystem(const Network& network, const Surface& surface, const FacePoints& points, int threads);
+    FitSystem(const Network& network, const Surface& surface, const FacePoints& points, Team& team);
 
     /// The displacement of every slot for bending weight \p lambda (relative to the points per vertex), by
     /// conjugate gradients preconditioned with the 3x3 diagonal blocks. O(vertices) per iteration.

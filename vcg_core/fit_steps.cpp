@@ -54,14 +54,14 @@ constexpr int kTries = 3;
 
 }  // namespace
 
-FitSteps::FitSteps(Network& network, Split points, int threads)
-    : network_(network), points_(std::move(points)), threads_(threads), origin_(own_places(network)) {}
+FitSteps::FitSteps(Network& network, Split points, Team& team)
+    : network_(network), points_(std::move(points)), team_(team), origin_(own_places(network)) {}
 
-void FitSteps::untangle_surface() { guard_ = CrossingGuard(untangle(network_, threads_)); }
+void FitSteps::untangle_surface() { guard_ = CrossingGuard(untangle(network_, team_)); }
 
 FacePoints FitSteps::tie(const Surface& surface, bool exact) {
-    const std::vector<Hit> hits = exact ? exact_hits(surface, points_.fitted, threads_)
-                                        : walked_hits(surface, points_.fitted, threads_);
+    const std::vector<Hit> hits =
+        exact ? exact_hits(surface, points_.fitted, team_) : walked_hits(surface, points_.fitted, team_);
     FacePoints ties = by_face(surface, points_.fitted, hits);
     noise_ = noise_variance(surface, ties);
     if (!(outlier_ > 0)) {
@@ -80,7 +80,7 @@ void FitSteps::aim(const Surface& surface) {
     const std::vector<Vec> normals = smoothed_normals(network_, surface);
     Followed& held = points_.held;
     held.directions.resize(held.points.size());
-    for_chunks(held.points.size(), kChunk, threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(held.points.size(), kChunk, team_, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Hit hit = walk_to_nearest(surface, held.points[i], held.near[i]);
             const Triangle& f = surface.faces[index(hit.face)];
@@ -97,7 +97,7 @@ double FitSteps::held_error(const Surface& surface) const {
     constexpr int kSteps = 2;
     const Followed& held = points_.held;
     std::vector<float> squared(held.points.size());
-    for_chunks(held.points.size(), kChunk, threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(held.points.size(), kChunk, team_, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             // The point of the line nearest to the surface's point nearest to it, and so on: where they meet.
             Place near = held.near[i];
@@ -132,9 +132,9 @@ double FitSteps::move(const FacePoints& ties, Surface& surface) {
     weights.erase(std::unique(weights.begin(), weights.end()), weights.end());
     const Surface start = surface;
     const MoveLimits limits(network_, start);
-    const FitSystem system(network_, surface, ties, threads_);
+    const FitSystem system(network_, surface, ties, team_);
     std::vector<std::vector<Vec>> moved(weights.size());
-    for_chunks(weights.size(), 1, threads_, [&](std::size_t i, std::size_t, std::size_t) {
+    for_chunks(weights.size(), 1, team_, [&](std::size_t i, std::size_t, std::size_t) {
         moved[i] = limits.bounded(system.solve(weights[i]));
     });
     std::size_t best = 0;
@@ -148,9 +148,9 @@ double FitSteps::move(const FacePoints& ties, Surface& surface) {
     }
     weight_ = weights[best];
     surface.at = moved[best];
-    if (!guard_.objections(crossings_of(surface, threads_)).empty()) {
+    if (!guard_.objections(crossings_of(surface, team_)).empty()) {
         for (std::size_t v = 0; v < start.at.size(); ++v) moved[best][v] -= start.at[v];
-        surface.at = limits.uncrossed(moved[best], guard_, threads_);
+        surface.at = limits.uncrossed(moved[best], guard_, team_);
         best_rms = held_error(surface);
     }
     for (VertexId v = 0; v < network_.slot_count(); ++v)
@@ -160,7 +160,7 @@ double FitSteps::move(const FacePoints& ties, Surface& surface) {
 
 /// New feet after the vertices have moved, on the same faces.
 void FitSteps::follow(const Surface& surface, FacePoints& ties) const {
-    for_chunks(surface.faces.size(), kChunk, threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(surface.faces.size(), kChunk, team_, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
             const int face = static_cast<int>(f);
             for (int i = ties.first[f]; i < ties.first[f + 1]; ++i) {
@@ -190,7 +190,7 @@ auto FitSteps::guarded(const Change& change) {
         if (tries == kTries) std::fill(barred.begin(), barred.end(), 1);
         auto done = change(barred);
         const std::vector<VertexId> objections =
-            guard_.objections(crossings_after(Surface(network_), surface, guard_.standing(), threads_));
+            guard_.objections(crossings_after(Surface(network_), surface, guard_.standing(), team_));
         if (objections.empty() || tries == kTries) return done;
         for (const VertexId v : objections)
             if (index(v) < barred.size()) barred[index(v)] = 1;
@@ -210,7 +210,7 @@ void FitSteps::move_on(const std::vector<Shifts::Merge>& merges) {
 int FitSteps::shift_vertices(const Surface& surface, const FacePoints& ties) {
     const int most =
         std::max(1, static_cast<int>(kShiftedShare * static_cast<double>(network_.vertex_count())));
-    const Redistribution plan = plan_redistribution(network_, surface, ties, least_gain(surface), threads_);
+    const Redistribution plan = plan_redistribution(network_, surface, ties, least_gain(surface), team_);
     const Shifts done =
         guarded([&](const std::vector<char>& barred) { return redistribute(network_, plan, most, barred); });
     if (done.merges.empty()) return 0;
@@ -229,7 +229,7 @@ bool FitSteps::reduce_to(int vertices, Progress& progress) {
         if (round == 0) find_held(surface);
         if (round > 0) {
             const Redistribution plan =
-                plan_redistribution(network_, surface, ties, std::numeric_limits<float>::max(), threads_);
+                plan_redistribution(network_, surface, ties, std::numeric_limits<float>::max(), team_);
             const int most = std::min(network_.vertex_count() - vertices,
                                       1 + static_cast<int>(kReducedShare * network_.vertex_count()));
             const std::vector<Shifts::Merge> merges = guarded(
@@ -260,19 +260,18 @@ void FitSteps::wait_for_reduction() {
 }
 
 void FitSteps::find_held(const Surface& surface) {
-    by_face(surface, points_.held, exact_hits(surface, points_.held, threads_));
+    by_face(surface, points_.held, exact_hits(surface, points_.held, team_));
 }
 
 void FitSteps::find_again(Followed held, const Surface& surface) {
     points_.held = std::move(held);
-    const std::vector<Hit> hits = exact_hits(surface, points_.held, threads_);
+    const std::vector<Hit> hits = exact_hits(surface, points_.held, team_);
     for (std::size_t i = 0; i < hits.size(); ++i) points_.held.near[i] = place_of(surface, hits[i]);
 }
 
 int FitSteps::flip(const Surface& surface, FacePoints& ties) {
     follow(surface, ties);
-    const std::vector<EdgeFlip> found =
-        find_flips(network_, surface, ties, kFlipVariances * noise_, threads_);
+    const std::vector<EdgeFlip> found = find_flips(network_, surface, ties, kFlipVariances * noise_, team_);
     return guarded([&](const std::vector<char>& barred) { return flip_edges(network_, found, barred); });
 }
 

@@ -16,8 +16,8 @@ namespace neuralmesh {
 /// A network on its way to the points. fit_to_points() takes the steps in their order.
 class FitSteps {
 public:
-    /// A reference to \p network is kept; there are fitted and held-back points.
-    FitSteps(Network& network, Split points, int threads);
+    /// References to \p network and \p team are kept; there are fitted and held-back points.
+    FitSteps(Network& network, Split points, Team& team);
 
     /// Smooths out where the surface cuts itself, and from then on guards what is left of that.
     void untangle_surface();
@@ -64,7 +64,7 @@ private:
     Network& network_;
     Split points_;
     std::vector<Vec> waiting_;  ///< points for after the reduction
-    int threads_;
+    Team& team_;
     float outlier_ = 0;  ///< for the judgement: fixed from the start
     float noise_ = 0;    ///< variance
     float weight_ = 0;

@@ -54,10 +54,10 @@ void take_back(const Network& network, const std::vector<Crossing>& crossings, c
 
 }  // namespace
 
-std::vector<Crossing> untangle(Network& network, int threads) {
+std::vector<Crossing> untangle(Network& network, Team& team) {
     Surface surface(network);
     const std::vector<Vec> start = surface.at;
-    std::vector<Crossing> at_start = crossings_of(surface, threads);
+    std::vector<Crossing> at_start = crossings_of(surface, team);
     if (at_start.empty()) return at_start;
     const float furthest = mean_edge(surface);
     std::vector<Crossing> crossings = at_start;
@@ -70,11 +70,11 @@ std::vector<Crossing> untangle(Network& network, int threads) {
             const float length = move.norm();
             if (length > furthest) surface.at[v] = start[v] + (furthest / length) * move;
         }
-        crossings = crossings_of(surface, threads);
+        crossings = crossings_of(surface, team);
     }
     if (!crossings.empty()) {
         take_back(network, crossings, start, surface.at);
-        crossings = crossings_of(surface, threads);
+        crossings = crossings_of(surface, team);
     }
     if (!CrossingGuard(at_start).objections(crossings).empty()) return at_start;
     for (VertexId v = 0; v < network.slot_count(); ++v)

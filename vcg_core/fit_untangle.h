@@ -11,7 +11,7 @@ namespace neuralmesh {
 
 /// Smooths \p network where its surface cuts itself, in widening surroundings, until it does so no more;
 /// places where that does not help within a few rounds are left as they were. Moves no other vertices, and no
-/// vertex further than a mean edge length. The same result for any \p threads. \return the crossings left
-std::vector<Crossing> untangle(Network& network, int threads);
+/// vertex further than a mean edge length. The same result for any \p team. \return the crossings left
+std::vector<Crossing> untangle(Network& network, Team& team);
 
 }  // namespace neuralmesh

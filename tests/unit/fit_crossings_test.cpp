@@ -30,6 +30,22 @@ class CutFace : public vcg::Face<CutTypes, vcg::face::VertexRef, vcg::face::Norm
                                  vcg::face::BitFlags> {};
 class CutMesh : public vcg::tri::TriMesh<std::vector<CutVertex>, std::vector<CutFace>> {};
 
+std::vector<Crossing> crossings(const Surface& surface, int threads) {
+    Team team(threads);
+    return crossings_of(surface, team);
+}
+
+std::vector<Crossing> after(const Surface& surface, const Surface& before, const std::vector<Crossing>& known,
+                            int threads) {
+    Team team(threads);
+    return crossings_after(surface, before, known, team);
+}
+
+std::vector<Crossing> smoothed_out(Network& network, int threads) {
+    Team team(threads);
+    return untangle(network, team);
+}
+
 /// A sphere of radius 10, where vcglib's tolerances are small, crumpled by \p noise.
 Network crumpled_sphere(double noise, std::uint64_t seed = 5) {
     const Shape sphere = shapes::icosphere(3);
@@ -42,7 +58,7 @@ Network crumpled_sphere(double noise, std::uint64_t seed = 5) {
 
 std::set<Triangle> cut_faces(const Network& network) {
     std::set<Triangle> faces;
-    for (const Crossing& c : crossings_of(Surface(network), 1)) {
+    for (const Crossing& c : crossings(Surface(network), 1)) {
         faces.insert({c[0], c[1], c[2]});
         faces.insert({c[3], c[4], c[5]});
     }
@@ -84,10 +100,10 @@ TEST(Crossings, AreThoseThatVcglibFinds) {
 
 TEST(Crossings, AreTheSameForAnyNumberOfThreads) {
     const Surface surface(crumpled_sphere(0.3));
-    const std::vector<Crossing> one = crossings_of(surface, 1);
+    const std::vector<Crossing> one = crossings(surface, 1);
     EXPECT_TRUE(std::is_sorted(one.begin(), one.end()));
-    EXPECT_EQ(one, crossings_of(surface, 2));
-    EXPECT_EQ(one, crossings_of(surface, 5));
+    EXPECT_EQ(one, crossings(surface, 2));
+    EXPECT_EQ(one, crossings(surface, 5));
 }
 
 TEST(Crossings, AreIndifferentToTheScale) {
@@ -108,7 +124,7 @@ TEST(Crossings, AreKnownAfterAChangeFromThoseBefore) {
     };
     for (int change = 0; change < 30; ++change) {
         const Surface before(network);
-        const std::vector<Crossing> known = crossings_of(before, 1);
+        const std::vector<Crossing> known = crossings(before, 1);
         const VertexId v = some();
         if (network.alive(v)) network.set_position(v, network.position(v) * 0.9F);
         for (int i = 0; i < 5; ++i) {
@@ -124,10 +140,10 @@ TEST(Crossings, AreKnownAfterAChangeFromThoseBefore) {
         }
         ASSERT_EQ(network.validate(), "");
         const Surface surface(network);
-        const std::vector<Crossing> all = crossings_of(surface, 1);
+        const std::vector<Crossing> all = crossings(surface, 1);
         EXPECT_FALSE(all.empty());
-        EXPECT_EQ(crossings_after(surface, before, known, 1), all) << change;
-        EXPECT_EQ(crossings_after(surface, before, known, 3), all) << change;
+        EXPECT_EQ(after(surface, before, known, 1), all) << change;
+        EXPECT_EQ(after(surface, before, known, 3), all) << change;
     }
 }
 
@@ -151,7 +167,7 @@ TEST(Untangle, SmoothsOutACrumpledCap) {
     const Network before = network;
     const std::set<Triangle> faces = cut_faces(network);
     ASSERT_FALSE(faces.empty());
-    EXPECT_TRUE(untangle(network, 1).empty());
+    EXPECT_TRUE(smoothed_out(network, 1).empty());
     EXPECT_TRUE(cut_faces(network).empty());
     EXPECT_EQ(network.validate(), "");
     int moved = 0;
@@ -164,10 +180,10 @@ TEST(Untangle, SmoothsOutACrumpledCap) {
 TEST(Untangle, LeavesAloneWhatItCannotMend) {
     Network network = crumpled_sphere(1.5);
     const Network before = network;
-    const std::size_t crossings = crossings_of(Surface(network), 1).size();
-    EXPECT_LE(untangle(network, 1).size(), crossings);
+    const std::size_t before_it = crossings(Surface(network), 1).size();
+    EXPECT_LE(smoothed_out(network, 1).size(), before_it);
     Network again = before;
-    untangle(again, 3);
+    smoothed_out(again, 3);
     for (VertexId v = 0; v < network.slot_count(); ++v) EXPECT_EQ(network.position(v), again.position(v));
 }
 
