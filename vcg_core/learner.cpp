@@ -57,8 +57,7 @@ std::vector<VertexId> with_gaps(const std::vector<VertexId>& ids, int gaps) {
 }  // namespace
 
 Learner::Learner(const TargetSpace& target, const Settings& settings, Network start)
-    : target_(target),
-      settings_(settings),
+    : settings_(settings),
       network_(std::move(start)),
       search_(network_),
       utility_counters_(settings.counter_decay, settings.min_wins_per_split),

@@ -102,7 +102,6 @@ private:
     bool flip_regularises(VertexId a, VertexId b) const;
     void adopt(VertexId u, VertexId v);
 
-    const TargetSpace& target_;
     const Settings& settings_;
     Network network_;
     WinnerSearch search_;
