@@ -61,8 +61,8 @@ struct Start {
 
 /// The paper's start: a tetrahedron in the middle of the cloud, which lies around the origin.
 Start tetrahedron() {
-    constexpr float a = 0.1F;
-    return {Network({{a, a, a}, {-a, -a, a}, {-a, a, -a}, {a, -a, -a}},
+    constexpr float kA = 0.1F;
+    return {Network({{kA, kA, kA}, {-kA, -kA, kA}, {-kA, kA, -kA}, {kA, -kA, -kA}},
                     {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}),
             0, true};
 }

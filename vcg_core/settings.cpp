@@ -55,8 +55,8 @@ constexpr double kLargestInt = std::numeric_limits<int>::max();
 /// What no int can hold becomes the lowest one, which no row allows.
 int nearest_int(double value) {
     const double rounded = std::round(value);
-    constexpr int lowest = std::numeric_limits<int>::min();
-    return rounded > lowest && rounded <= kLargestInt ? static_cast<int>(rounded) : lowest;
+    constexpr int kLowest = std::numeric_limits<int>::min();
+    return rounded > kLowest && rounded <= kLargestInt ? static_cast<int>(rounded) : kLowest;
 }
 
 std::vector<SettingInfo> common_rows() {
