@@ -181,9 +181,18 @@ using Cloud = std::vector<vcg::Point3d>;
 /// Uniform in [-1, 1).
 inline double signed_unit(Random& random) { return 2 * static_cast<double>(random.unit()) - 1; }
 
+/// Uniform in [-1, 1)^3. One number after the other: in which order arguments are evaluated is the compiler's
+/// choice.
+inline vcg::Point3d in_cube(Random& random) {
+    const double z = signed_unit(random);
+    const double y = signed_unit(random);
+    const double x = signed_unit(random);
+    return {x, y, z};
+}
+
 inline vcg::Point3d in_ball(Random& random) {
     for (;;) {
-        const vcg::Point3d p(signed_unit(random), signed_unit(random), signed_unit(random));
+        const vcg::Point3d p = in_cube(random);
         if (p.SquaredNorm() <= 1 && p.SquaredNorm() > 1e-6) return p;
     }
 }
@@ -206,7 +215,8 @@ inline Cloud torus_cloud(int count, double noise = 0, std::uint64_t seed = 1) {
     Cloud cloud;
     for (int i = 0; i < count; ++i) {
         const double u = static_cast<double>(random.unit());
-        cloud.push_back(torus_point(u, static_cast<double>(random.unit()), 0.4) + in_ball(random) * noise);
+        const double v = static_cast<double>(random.unit());
+        cloud.push_back(torus_point(u, v, 0.4) + in_ball(random) * noise);
     }
     return cloud;
 }
@@ -217,7 +227,7 @@ inline Cloud box_cloud(int count, const vcg::Point3d& edges = {1, 1, 1}, double 
     Random random(seed);
     Cloud cloud;
     for (int i = 0; i < count; ++i) {
-        vcg::Point3d p(signed_unit(random), signed_unit(random), signed_unit(random));
+        vcg::Point3d p = in_cube(random);
         p[static_cast<int>(random.below(3))] = random.below(2) == 0 ? -1 : 1;
         for (int k = 0; k < 3; ++k) p[k] *= edges[k] / 2;
         cloud.push_back(p + in_ball(random) * noise);
