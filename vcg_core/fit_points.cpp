@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "fit_parallel.h"
+#include "parallel.h"
 
 namespace neuralmesh {
 

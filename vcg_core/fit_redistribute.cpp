@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "fit_parallel.h"
+#include "parallel.h"
 #include "fit_points.h"
 
 namespace neuralmesh {

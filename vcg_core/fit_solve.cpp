@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit_parallel.h"
+#include "parallel.h"
 
 namespace neuralmesh {
 

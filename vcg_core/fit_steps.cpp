@@ -11,7 +11,7 @@
 
 #include "fit_flips.h"
 #include "fit_move.h"
-#include "fit_parallel.h"
+#include "parallel.h"
 #include "fit_untangle.h"
 
 namespace neuralmesh {

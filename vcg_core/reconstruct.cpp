@@ -71,6 +71,7 @@ Start start_of(const TargetSpace& target, const Settings& settings, Report& repo
     if (settings.start_mesh == kTetrahedron) return tetrahedron();
     ShellOptions options;
     options.target_vertices = settings.target_vertices;
+    options.threads = settings.threads;
     Random random(static_cast<std::uint64_t>(settings.random_seed) + 2);
     const StartMesh shell = shell_of(target, options, random, progress);
     report.warnings = shell.warnings;

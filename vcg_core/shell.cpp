@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "network.h"
+#include "parallel.h"
 #include "shell_grow.h"
 #include "shell_mesh.h"
 #include "shell_region.h"
@@ -191,32 +192,35 @@ std::vector<TopologyAt> plain_topologies(const Region& region) {
 /// close.
 Inquiry inquire(const std::vector<Point3f>& points, const Box3f& box, const ShellOptions& options) {
     Inquiry inquiry;
+    Team team(thread_count(options.threads));
     const float step = inquiry.step =
         step_for(points, box, options, options.max_nodes, options.points_per_node);
     const auto look = [&](float at) {
         return examine(points, box, at, options.component_share, ShellOptions::kSpeckPoints);
     };
-    for (const float at : {step, kCoarser * step}) {
-        inquiry.regions.push_back(look(at));
-        inquiry.topologies.push_back(plain_topologies(inquiry.regions.back()));
-    }
+    inquiry.regions.assign(2, Region(Lattice(box, longest_side(box), 0)));
+    for_chunks(2, 1, team, [&](std::size_t i, std::size_t, std::size_t) {
+        inquiry.regions[i] = look(i == 0 ? step : kCoarser * step);
+    });
+    for (const Region& region : inquiry.regions) inquiry.topologies.push_back(plain_topologies(region));
     inquiry.vote(false);
     if (inquiry.verdict.confidence >= kHighConfidence) return inquiry;
     for (std::size_t i = 0; i < inquiry.regions.size(); ++i)
-        inquiry.topologies[i] = grown_topologies(inquiry.regions[i]);
+        inquiry.topologies[i] = grown_topologies(inquiry.regions[i], team);
     inquiry.vote(true);
     const float finer = step_for(points, box, options, kCloserLook * options.max_nodes,
                                  kDensePoints * options.points_per_node);
     if (inquiry.verdict.confidence < kClearConfidence && finer * kCoarser <= step) {
         inquiry.regions.insert(inquiry.regions.begin(), look(finer));
-        inquiry.topologies.insert(inquiry.topologies.begin(), grown_topologies(inquiry.regions.front()));
+        inquiry.topologies.insert(inquiry.topologies.begin(),
+                                  grown_topologies(inquiry.regions.front(), team));
         inquiry.vote(true);
     }
     for (float at = step * kCoarser * kCoarser;
          inquiry.verdict.confidence < kLowConfidence && inquiry.regions.size() < kResolutions;
          at *= kCoarser) {
         inquiry.regions.push_back(look(at));
-        inquiry.topologies.push_back(grown_topologies(inquiry.regions.back()));
+        inquiry.topologies.push_back(grown_topologies(inquiry.regions.back(), team));
         inquiry.vote(true);
     }
     return inquiry;

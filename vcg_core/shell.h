@@ -44,6 +44,8 @@ struct ShellOptions {
     double component_share = 0.01;
     /// Points drawn from a target that is a mesh.
     int samples = 200000;
+    /// As in Settings; the mesh does not depend on it.
+    int threads = 0;
 
     static constexpr int kSpeckPoints = 20;
 };

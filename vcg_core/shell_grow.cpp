@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <numeric>
 
+#include "parallel.h"
+
 namespace neuralmesh {
 namespace {
 
@@ -148,17 +150,19 @@ std::vector<std::uint8_t> grown_solid(const Region& region, int level, long long
     return solid;
 }
 
-std::vector<TopologyAt> grown_topologies(const Region& region) {
+std::vector<TopologyAt> grown_topologies(const Region& region, Team& team) {
     std::vector<TopologyAt> result;
     for (const int level : kStarts) {
         const LevelTopology& plain = region.topologies[static_cast<std::size_t>(level)];
         if (in_pieces(region, level) || (level == 0 && plain.specks > 0)) continue;
-        long long held = 0;
-        const std::vector<std::uint8_t> solid = grown_solid(region, level, held);
-        // No cavities: the Euler characteristic is components minus handles.
-        const int handles = plain.components - euler_characteristic(region.lattice, solid);
-        result.push_back({level, plain.components, handles});
+        result.push_back({level, plain.components, 0});
     }
+    for_chunks(result.size(), 1, team, [&](std::size_t i, std::size_t, std::size_t) {
+        long long held = 0;
+        const std::vector<std::uint8_t> solid = grown_solid(region, result[i].level, held);
+        // No cavities: the Euler characteristic is components minus handles.
+        result[i].genus = result[i].components - euler_characteristic(region.lattice, solid);
+    });
     return result;
 }
 

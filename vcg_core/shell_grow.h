@@ -11,6 +11,7 @@
 #include "shell_field.h"
 #include "shell_region.h"
 #include "shell_vote.h"
+#include "team.h"
 
 namespace neuralmesh {
 
@@ -31,6 +32,6 @@ std::vector<std::uint8_t> grown_solid(const Region& region, int level, long long
 
 /// The topologies of the grown solids at a few levels from 0 to a third of the region's reach. Level 0 is
 /// passed over if isolated groups of points would be lost there. About 0.1 microseconds per node.
-std::vector<TopologyAt> grown_topologies(const Region& region);
+std::vector<TopologyAt> grown_topologies(const Region& region, Team& team);
 
 }  // namespace neuralmesh

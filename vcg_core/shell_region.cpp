@@ -123,7 +123,7 @@ double points_per_occupied_node(const std::vector<std::uint32_t>& counts) {
 
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step, double share,
                long long least) {
-    Region region{Lattice(box, step, Region::kMargin), {}, 0, {}, {}, false, 0, 0, 0, {}};
+    Region region(Lattice(box, step, Region::kMargin));
     const std::vector<std::uint32_t> counts = count_points(region.lattice, points);
     region.counts = without_fringe(region.lattice, counts);
     for (std::size_t i = 0; i < counts.size(); ++i) region.fringe_points += counts[i] - region.counts[i];

@@ -29,6 +29,9 @@ struct Region {
     long long total_points = 0;
     long long enough = 0;                   ///< points that make a component
     std::vector<LevelTopology> topologies;  ///< of every level
+
+    /// On which nothing has been looked at yet.
+    explicit Region(const Lattice& nodes) : lattice(nodes) {}
 };
 
 /// Examines \p points on a lattice over \p box with nodes \p step apart. Two scales of space are sealed: any

@@ -16,7 +16,7 @@
 #include "allocations.h"
 #include "filter_neuralmesh/actions.h"
 #include "tests/unit/shapes.h"
-#include "vcg_core/fit_parallel.h"
+#include "vcg_core/parallel.h"
 
 namespace neuralmesh {
 namespace {
