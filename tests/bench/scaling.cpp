@@ -45,10 +45,10 @@ const Network& learned(int vertices) {
     settings.signals_per_split = 20;
     settings.min_wins_per_split = 5;
     settings.settling_signals_per_vertex = 0;
-    constexpr float a = 0.1F;
+    constexpr float kA = 0.1F;
     const TargetSpace target = cloud(1000000);
     Learner learner(target, settings,
-                    Network({{a, a, a}, {-a, -a, a}, {-a, a, -a}, {a, -a, -a}},
+                    Network({{kA, kA, kA}, {-kA, -kA, kA}, {-kA, kA, -kA}, {kA, -kA, -kA}},
                             {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}));
     NoProgress progress;
     learner.run(0, progress);

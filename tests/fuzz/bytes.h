@@ -58,4 +58,5 @@ inline void expect_sentence(const std::string& what) {
 }  // namespace neuralmesh::fuzz
 
 /// What libFuzzer, or replay.cpp in its place, calls with every input.
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer names it
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

@@ -81,9 +81,9 @@ void run(const Settings& settings) {
         const shapes::Cloud cloud = shapes::sphere_cloud(300, 0.02);
         return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
     }();
-    constexpr float a = 0.1F;
+    constexpr float kA = 0.1F;
     Learner learner(target, settings,
-                    Network({{a, a, a}, {-a, -a, a}, {-a, a, -a}, {a, -a, -a}},
+                    Network({{kA, kA, kA}, {-kA, -kA, kA}, {-kA, kA, -kA}, {kA, -kA, -kA}},
                             {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}));
     Impatient progress;
     const StopReason reason = learner.run(0, progress);

@@ -188,7 +188,9 @@ TEST(Network, ListsEachFaceOnceFromItsSmallestVertex) {
     EXPECT_EQ(canonical(faces).size(), std::set<Triangle>(faces.begin(), faces.end()).size());
 }
 
-void expect_refused(Shape shape, const char* why) { EXPECT_THROW(network_of(shape), TopologyError) << why; }
+void expect_refused(const Shape& shape, const char* why) {
+    EXPECT_THROW(network_of(shape), TopologyError) << why;
+}
 
 TEST(Network, RefusesWhatIsNoOrientedManifold) {
     Shape s = shapes::tetrahedron();

@@ -241,9 +241,9 @@ std::vector<std::pair<const char*, Settings>> hostile_settings() {
 void expect_run_within_bound(const Cloud& cloud, Settings settings) {
     settings.settling_signals_per_vertex = 0;
     const TargetSpace target = target_of(cloud);
-    constexpr float a = 0.1F;
+    constexpr float kA = 0.1F;
     Learner learner(target, settings,
-                    Network({{a, a, a}, {-a, -a, a}, {-a, a, -a}, {a, -a, -a}},
+                    Network({{kA, kA, kA}, {-kA, -kA, kA}, {-kA, kA, -kA}, {kA, -kA, -kA}},
                             {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}));
     NoProgress progress;
     EXPECT_EQ(learner.run(0, progress), StopReason::target_reached);
