@@ -80,8 +80,11 @@ void Network::set_position(VertexId v, const vcg::Point3f& p) {
 
 VertexId Network::new_vertex(VertexId parent, const vcg::Point3f& where) {
     VertexId v = slot_count();
-    if (free_.count() > 0) {
-        v = free_.take(parent);
+    if (gaps_.count() > 0) {
+        v = gaps_.take(parent);
+    } else if (!free_.empty()) {
+        v = free_.back();
+        free_.pop_back();
     } else {
         rings_.push_back(Ring{});
         slots_.push_back(Slot{0, 0, 0, -1});
@@ -194,7 +197,11 @@ void Network::collapse(VertexId gone, VertexId kept) {
     for (int j = from; j < to; ++j) replace(ring_of(rg[j]), gone, kept);
     replace(ring_of(kept), gone, rg.neighbours.data() + from, to - from);
     ring_of(gone) = Ring{};
-    free_.add(gone);
+    if (gaps_.count() > 0) {
+        gaps_.add(gone);
+    } else {
+        free_.push_back(gone);
+    }
     --vertex_count_;
 }
 
@@ -229,12 +236,12 @@ std::vector<VertexId> Network::compact() {
 
 std::vector<VertexId> Network::renumber(const std::vector<VertexId>& order) {
     std::vector<VertexId> moved(rings_.size(), -1);
-    FreeIds free;
+    FreeIds gaps;
     for (std::size_t i = 0; i < order.size(); ++i) {
         if (order[i] >= 0) {
             moved[static_cast<std::size_t>(order[i])] = static_cast<VertexId>(i);
         } else {
-            free.add(static_cast<VertexId>(i));
+            gaps.add(static_cast<VertexId>(i));
         }
     }
     std::vector<Ring> rings;
@@ -251,7 +258,8 @@ std::vector<VertexId> Network::renumber(const std::vector<VertexId>& order) {
     }
     rings_.swap(rings);
     slots_.swap(slots_in_order);
-    free_ = std::move(free);
+    free_.clear();
+    gaps_ = std::move(gaps);
     return moved;
 }
 

@@ -96,7 +96,8 @@ public:
     void reserve(int vertices);
     /// Memory in use, without what is reserved for growth.
     std::size_t bytes() const {
-        return rings_.size() * sizeof(Ring) + slots_.size() * sizeof(Slot) + free_.bytes();
+        return rings_.size() * sizeof(Ring) + slots_.size() * sizeof(Slot) + free_.size() * sizeof(VertexId) +
+               gaps_.bytes();
     }
 
     bool adjacent(VertexId a, VertexId b) const { return ring(a).find(b) >= 0; }
@@ -162,7 +163,8 @@ private:
     static constexpr Slot kNobody{1e18F, 1e18F, 1e18F, -1};
 
     std::vector<Slot> slots_{kNobody};  ///< of vertex v at v + 1
-    FreeIds free_;
+    std::vector<VertexId> free_;
+    FreeIds gaps_;  ///< those that are free in a network whose ids follow places
     int vertex_count_ = 0;
 };
 

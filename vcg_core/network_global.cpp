@@ -197,7 +197,7 @@ std::string Network::validate() const {
     if (count != vertex_count_)
         return "The network is broken: it counts " + std::to_string(vertex_count_) + " vertices but holds " +
                std::to_string(count) + ".";
-    if (count + free_.count() != slot_count())
+    if (count + static_cast<int>(free_.size()) + gaps_.count() != slot_count())
         return "The network is broken: free and used slots do not add up.";
     return {};
 }
