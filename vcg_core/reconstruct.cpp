@@ -189,8 +189,9 @@ StopReason grow(const TargetSpace& target, const Settings& settings, const Setti
     const StopReason reason = grown.learner->run(start.signals_to_land, learning);
     grown.network = grown.learner->network();
     FitOptions options;
-    // A mesh that is to follow the density of the cloud must not follow the error instead.
-    options.redistribute = settings.utility_counter == kNormalCounter;
+    // A mesh that is to follow the density of the cloud must not follow the error instead; and on a sheet the
+    // error is at the rim, where what is put in stands out.
+    options.redistribute = settings.utility_counter == kNormalCounter && start.encloses_space;
     options.target_vertices = settings.target_vertices;
     if (settings.fit_to_points && !run.stopped())
         grown.fit = fit_to_points(grown.network, target, options, settings.threads,
