@@ -5,7 +5,7 @@
 #include "team.h"
 
 #include <algorithm>
-#include <system_error>
+#include <exception>
 
 #ifdef __SSE2__
 #include <emmintrin.h>
@@ -28,11 +28,13 @@ void relax() {
 }  // namespace
 
 Team::Team(int members) {
-    for (int i = 1; i < std::min(members, kMost); ++i) {
+    const int most = std::min(members, kMost);
+    helpers_.reserve(static_cast<std::size_t>(std::max(most - 1, 0)));
+    for (int i = 1; i < most; ++i) {
         try {
             helpers_.emplace_back(&Team::help, this, i);
-        } catch (const std::system_error&) {
-            break;  // fewer do the same work
+        } catch (const std::exception&) {
+            break;  // no memory or no thread left for one more: fewer do the same work
         }
     }
 }
