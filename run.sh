@@ -20,6 +20,7 @@ compile_packages="ca-certificates cmake g++ libeigen3-dev libglew-dev libqt5open
     qtbase5-dev xz-utils"
 venv_packages="python3-venv"
 demo_packages="glmark2-data libgl1-mesa-dri python3-numpy python3-pil xauth xdotool xvfb"
+bench_packages="libcgal-dev"  # CGAL, to time it beside ours
 test_packages="binutils libbenchmark-dev libgtest-dev parallel valgrind"
 python=/usr/bin/python3
 
@@ -160,9 +161,9 @@ run_tests() {
 }
 
 bench() {
-    need $compile_packages $demo_packages $test_packages $venv_packages
+    need $compile_packages $demo_packages $test_packages $bench_packages $venv_packages
     need_venv
-    compile all
+    compile all cgal_peers
     say "Commit $(git rev-parse --short HEAD 2> /dev/null || echo unknown)$(git diff --quiet HEAD 2> /dev/null || echo ', changed')"
     local program
     for program in "$build"/tests/bench_*; do
@@ -171,7 +172,7 @@ bench() {
         "$program" --benchmark_out="$build/${program##*/}.json" --benchmark_out_format=json
     done
     say "In a host, beside what people use today"
-    "$venv/bin/python" tests/bench/in_host.py --out "$build/in_host.json" \
+    "$venv/bin/python" tests/bench/in_host.py --out "$build/in_host.json" --cgal "$build/tests/cgal_peers" \
         --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
 }
 

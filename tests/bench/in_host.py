@@ -4,11 +4,12 @@
 
 """Seconds in a host (pymeshlab): the neural mesh against what people use today, on the Stanford bunny's points.
 
-    in_host.py --plugin LIBRARY.so [--turns 3] [--out FILE.json]
+    in_host.py --plugin LIBRARY.so [--cgal build/tests/cgal_peers] [--turns 3] [--out FILE.json]
 
-prints the least of several turns of each, in processes of their own and in turns, so that all see the same load:
-10,000 vertices by every method and their ratios; a preview of 1,000; and how much of a run with 100,000 vertices is
-spent outside the core, on copying layers (a million points) and on the host's callback.
+prints the least of several turns of each, in processes of their own, one after the other: 10,000 vertices by every
+method with their ratios and errors (the sum of both RMS directions, in % of the diagonal); a preview of 1,000; and how
+much of a run with 100,000 vertices is spent outside the core, on copying layers (a million points) and on the host's
+callback.
 """
 
 import argparse
@@ -18,10 +19,13 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "experiments"))
+import evaluate  # noqa: E402
 import models  # noqa: E402
 import peers  # noqa: E402
 
 import pymeshlab  # noqa: E402
+
+CGAL = ("advancing-front", "alpha-wrap")
 
 
 def bunny_clouds(folder):
@@ -36,14 +40,23 @@ def bunny_clouds(folder):
     return folder / "bunny.ply", folder / "million.ply"
 
 
-def fastest(method, cloud, folder, count, plugin, turns):
-    runs = [peers.run(method, cloud, folder / method, [count], plugin=plugin)[count] for _ in range(turns)]
+def fastest(method, cloud, folder, count, options):
+    plugin = options.plugin if method == "neural" else None
+    command = f"{options.cgal} {method}" if method in CGAL else None
+    runs = [peers.run(method, cloud, folder / method, [count], plugin=plugin, command=command)[count]
+            for _ in range(options.turns)]
     return min(runs, key=lambda run: run["seconds"])
+
+
+def error(mesh):
+    truth = evaluate.Truth(*models.load_model("bunny"))
+    return evaluate.evaluate(*models.load_mesh(mesh), truth)["sum_rms"]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--plugin", required=True)
+    parser.add_argument("--cgal", help="the program cgal_peers, to time CGAL, too")
     parser.add_argument("--turns", type=int, default=3)
     parser.add_argument("--out", type=Path)
     options = parser.parse_args()
@@ -52,16 +65,15 @@ def main():
         folder = Path(name)
         cloud, million = bunny_clouds(folder)
         print(f"The bunny's points, seconds, least of {options.turns}")
-        for method in ["neural", *peers.PEERS]:
-            plugin = options.plugin if method == "neural" else None
-            run = fastest(method, cloud, folder, 10000, plugin, options.turns)
-            table[method] = run["seconds"]
+        for method in ["neural", *peers.PEERS, *(CGAL if options.cgal else ())]:
+            run = fastest(method, cloud, folder, 10000, options)
+            table[method] = {"seconds": run["seconds"], "error": error(folder / method / "10000.ply")}
             print(f"  10,000 vertices, {method:15} {run['seconds']:7.2f}   "
-                  f"{run['seconds'] / table['neural']:5.2f} x ours")
-        run = fastest("neural", cloud, folder, 1000, options.plugin, options.turns)
+                  f"{run['seconds'] / table['neural']['seconds']:5.2f} x ours   error {table[method]['error']:.4f} %")
+        run = fastest("neural", cloud, folder, 1000, options)
         table["preview"] = run["seconds"]
         print(f"   1,000 vertices, neural          {run['seconds']:7.2f}")
-        run = fastest("neural", million, folder, 100000, options.plugin, options.turns)
+        run = fastest("neural", million, folder, 100000, options)
         outside = run["seconds"] - run["report"]["seconds"]
         table["outside_core"] = outside / run["seconds"]
         print(f" 100,000 vertices, neural          {run['seconds']:7.2f}, of which outside the core {outside:.3f} "
