@@ -244,8 +244,8 @@ std::vector<VertexId> Network::renumber(const std::vector<VertexId>& order) {
             gaps.add(static_cast<VertexId>(i));
         }
     }
-    std::vector<Ring> rings;
-    std::vector<Slot> slots_in_order;
+    HugeVector<Ring> rings;
+    HugeVector<Slot> slots_in_order;
     rings.reserve(std::max(rings_.capacity(), order.size()));
     slots_in_order.reserve(std::max(slots_.capacity(), order.size() + 1));
     slots_in_order.push_back(kNobody);

@@ -17,6 +17,7 @@
 
 #include "error.h"
 #include "free_ids.h"
+#include "huge_pages.h"
 #include "lanes.h"
 
 namespace neuralmesh {
@@ -159,10 +160,10 @@ private:
     Ring& ring_of(VertexId v) { return rings_[static_cast<std::size_t>(v)]; }
     VertexId new_vertex(VertexId parent, const vcg::Point3f& where);
 
-    std::vector<Ring> rings_;
+    HugeVector<Ring> rings_;
     static constexpr Slot kNobody{1e18F, 1e18F, 1e18F, -1};
 
-    std::vector<Slot> slots_{kNobody};  ///< of vertex v at v + 1
+    HugeVector<Slot> slots_{kNobody};  ///< of vertex v at v + 1
     std::vector<VertexId> free_;
     FreeIds gaps_;  ///< those that are free in a network whose ids follow places
     int vertex_count_ = 0;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cell_pyramid.h"
+#include "huge_pages.h"
 #include "lanes.h"
 #include "network.h"
 
@@ -117,7 +118,7 @@ private:
     std::uint64_t scan_all(const vcg::Point3f& s) const;
 
     Network& network_;
-    std::vector<VertexId> heads_;
+    HugeVector<VertexId> heads_;
     CellPyramid inhabited_;
     int out_of_range_ = 0;  ///< vertices so far away that the pyramid does not hold them
     CellLists lists_;

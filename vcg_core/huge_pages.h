@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Memory in pages of 2 MB for arrays that are visited all over: with the usual 4 KB a network of a million
+// vertices has more pages than the processor keeps addresses of.
+#pragma once
+
+#include <cstddef>
+#include <new>
+#include <vector>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace neuralmesh {
+
+/// An allocator that asks for large pages where that pays and the system has them. Throws std::bad_alloc.
+template <class T>
+class HugePages {
+public:
+    using value_type = T;
+
+    HugePages() = default;
+    template <class U>
+    HugePages(const HugePages<U>&) {}  // NOLINT(google-explicit-constructor): allocators are converted
+
+    T* allocate(std::size_t count) {
+        const std::size_t bytes = count * sizeof(T);
+        if (count > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_alloc();
+        if (bytes < kLeast) return static_cast<T*>(::operator new(bytes));
+        void* const memory = ::operator new (bytes, std::align_val_t{kPage});
+#ifdef __linux__
+        madvise(memory, bytes / kPage * kPage, MADV_HUGEPAGE);  // a wish: refused, all is as it was
+#endif
+        return static_cast<T*>(memory);
+    }
+    void deallocate(T* memory, std::size_t count) noexcept {
+        if (count * sizeof(T) < kLeast) {
+            ::operator delete(memory);
+        } else {
+            ::operator delete (memory, std::align_val_t{kPage});
+        }
+    }
+
+    template <class U>
+    bool operator==(const HugePages<U>&) const {
+        return true;
+    }
+    template <class U>
+    bool operator!=(const HugePages<U>&) const {
+        return false;
+    }
+
+private:
+    static constexpr std::size_t kPage = std::size_t{1} << 21;
+    static constexpr std::size_t kLeast = 2 * kPage;
+    static_assert(alignof(T) <= __STDCPP_DEFAULT_NEW_ALIGNMENT__, "small arrays are not aligned any further");
+};
+
+template <class T>
+using HugeVector = std::vector<T, HugePages<T>>;
+
+}  // namespace neuralmesh
