@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <new>
 #include <vector>
 
@@ -27,9 +28,9 @@ public:
 
     T* allocate(std::size_t count) {
         const std::size_t bytes = count * sizeof(T);
+        if (bytes < kLeast) return std::allocator<T>().allocate(count);
         if (count > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_alloc();
-        if (bytes < kLeast) return static_cast<T*>(::operator new(bytes));
-        void* const memory = ::operator new (bytes, std::align_val_t{kPage});
+        void* const memory = ::operator new(bytes, std::align_val_t{kPage});
 #ifdef __linux__
         madvise(memory, bytes / kPage * kPage, MADV_HUGEPAGE);  // a wish: refused, all is as it was
 #endif
@@ -37,9 +38,9 @@ public:
     }
     void deallocate(T* memory, std::size_t count) noexcept {
         if (count * sizeof(T) < kLeast) {
-            ::operator delete(memory);
+            std::allocator<T>().deallocate(memory, count);
         } else {
-            ::operator delete (memory, std::align_val_t{kPage});
+            ::operator delete(memory, std::align_val_t{kPage});
         }
     }
 
@@ -55,7 +56,6 @@ public:
 private:
     static constexpr std::size_t kPage = std::size_t{1} << 21;
     static constexpr std::size_t kLeast = 2 * kPage;
-    static_assert(alignof(T) <= __STDCPP_DEFAULT_NEW_ALIGNMENT__, "small arrays are not aligned any further");
 };
 
 template <class T>
