@@ -23,7 +23,7 @@ constexpr double kLearnedShare = 0.8;
 /// A crumpled surface is nearer to points even along a given direction, by about the square of its slopes,
 /// which are those of noise over edges. So a mesh that learning left crumpled must not win by that.
 constexpr double kCrumpling = 3;
-/// The first round with a redistribution, and how many last rounds are without any.
+/// The first round with a redistribution, and how many of the last possible rounds are without any.
 constexpr int kFirstShift = 1;
 constexpr int kQuietRounds = 3;
 /// The fit is over when two rounds bring less than this share of the error, but not in the first ones.

@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // The fit to the points: learning leaves every vertex somewhat behind its signals, least squares take it the
-// rest of the way. Called once, after the learning; vertices that it can do without are taken out.
+// rest of the way. Comes after the learning; vertices that it can do without are taken out.
 #pragma once
 
 #include <cstdint>
@@ -59,7 +59,8 @@ struct FitReport {
 ///
 /// The number of components, handles and boundary loops stays, and that of vertices unless
 /// options.target_vertices asks for less; \p network has more than that only if it was asked to stop, or if
-/// nothing more can be taken out without harm to the surface. "Before" is after the reduction. The same bytes
+/// nothing more can be taken out without harm to the surface,
+/// or if there are hardly any points to fit to. "Before" is after the reduction. The same bytes
 /// for any \p threads (0: as many as the machine has). Stops early, with the best mesh so far, when \p
 /// progress asks for it; fractions run from 0 to 1. Exact nearest faces: O(points log faces) a round, in all
 /// about 2.5 s of processor time for 10k vertices and 200k points. Sources: Hoppe, DeRose, Duchamp, McDonald,

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "parallel.h"
 #include "fit_points.h"
+#include "parallel.h"
 
 namespace neuralmesh {
 

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "parallel.h"
 #include "fit_points.h"
+#include "parallel.h"
 
 namespace neuralmesh {
 
@@ -272,13 +272,12 @@ bool collapse_untouched(Network& network, const Merger& merger, std::vector<char
 
 }  // namespace
 
-Redistribution plan_redistribution(const Network& network, const Surface& surface, const FacePoints& points,
-                                   float least_gain, Team& team) {
+std::vector<Merger> plan_reduction(const Network& network, const Surface& surface, const FacePoints& points,
+                                   Team& team) {
     const Support support(network, surface, points);
     const CollapseJudge judge(network, surface, points, support);
-    Redistribution plan;
-    plan.mergers.resize(index(network.slot_count()));
-    std::vector<float> estimates(plan.mergers.size());
+    std::vector<Merger> mergers(index(network.slot_count()));
+    std::vector<float> estimates(mergers.size());
     for_chunks(estimates.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v)
             estimates[v] = network.alive(static_cast<VertexId>(v)) ? judge.estimate(static_cast<VertexId>(v))
@@ -287,17 +286,23 @@ Redistribution plan_redistribution(const Network& network, const Surface& surfac
     std::vector<float> sorted = estimates;
     const auto last = static_cast<std::size_t>(kJudged * static_cast<float>(network.vertex_count()));
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(last), sorted.end());
-    for_chunks(plan.mergers.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(mergers.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
             const auto vertex = static_cast<VertexId>(v);
-            plan.mergers[v] = estimates[v] <= sorted[last]
-                                  ? judge.cheapest(vertex)
-                                  : Merger{std::numeric_limits<float>::max(), vertex, -1};
+            mergers[v] = estimates[v] <= sorted[last] ? judge.cheapest(vertex)
+                                                      : Merger{std::numeric_limits<float>::max(), vertex, -1};
         }
     });
-    plan.splits = edge_splits(network, surface, points, least_gain, team);
-    std::stable_sort(plan.mergers.begin(), plan.mergers.end(),
+    std::stable_sort(mergers.begin(), mergers.end(),
                      [](const auto& x, const auto& y) { return x.cost < y.cost; });
+    return mergers;
+}
+
+Redistribution plan_redistribution(const Network& network, const Surface& surface, const FacePoints& points,
+                                   float least_gain, Team& team) {
+    Redistribution plan;
+    plan.mergers = plan_reduction(network, surface, points, team);
+    plan.splits = edge_splits(network, surface, points, least_gain, team);
     std::stable_sort(plan.splits.begin(), plan.splits.end(),
                      [](const auto& x, const auto& y) { return x.gain > y.gain; });
     return plan;
@@ -334,11 +339,11 @@ Shifts redistribute(Network& network, const Redistribution& plan, int most, cons
     return result;
 }
 
-std::vector<Shifts::Merge> reduce(Network& network, const Redistribution& plan, int most,
+std::vector<Shifts::Merge> reduce(Network& network, const std::vector<Merger>& mergers, int most,
                                   const std::vector<char>& barred) {
     std::vector<char> touched = barred;
     std::vector<Shifts::Merge> merges;
-    for (const Merger& merger : plan.mergers) {
+    for (const Merger& merger : mergers) {
         if (static_cast<int>(merges.size()) >= most || merger.into < 0) break;
         if (collapse_untouched(network, merger, touched)) merges.push_back({merger.gone, merger.into});
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Takes vertices from where they are of little use to where the error is large.
+// Takes vertices from where they are of little use to where the error is large, or out.
 #pragma once
 
 #include <vector>
@@ -38,7 +38,13 @@ struct Redistribution {
     std::vector<EdgeSplit> splits;  ///< most rewarding first
 };
 
-/// The costs by new feet on the faces that a collapse leaves, the gains, of at least \p least_gain, by linear
+/// The cheapest collapse of every vertex, cheapest first, its cost by new feet on the faces that it leaves.
+/// \p surface and \p points are those of the network. O(points), by \p team, with the same result for any
+/// number of threads.
+std::vector<Merger> plan_reduction(const Network& network, const Surface& surface, const FacePoints& points,
+                                   Team& team);
+
+/// The same, and the gains of splits, of at least \p least_gain, by linear
 /// least squares over the offset of the new vertex from the middle of its edge. \p surface and \p points are
 /// those of the network. O(points), by \p team, with the same result for any number of them.
 Redistribution plan_redistribution(const Network& network, const Surface& surface, const FacePoints& points,
@@ -51,7 +57,7 @@ Shifts redistribute(Network& network, const Redistribution& plan, int most, cons
 
 /// Carries out the cheapest collapses, no two of which touch each other or a vertex that is \p barred, at
 /// most \p most. Topology stays.
-std::vector<Shifts::Merge> reduce(Network& network, const Redistribution& plan, int most,
+std::vector<Shifts::Merge> reduce(Network& network, const std::vector<Merger>& mergers, int most,
                                   const std::vector<char>& barred);
 
 }  // namespace neuralmesh

@@ -11,8 +11,8 @@
 
 #include "fit_flips.h"
 #include "fit_move.h"
-#include "parallel.h"
 #include "fit_untangle.h"
+#include "parallel.h"
 
 namespace neuralmesh {
 
@@ -228,12 +228,11 @@ bool FitSteps::reduce_to(int vertices, Progress& progress) {
         FacePoints ties = tie(surface, round == 0);
         if (round == 0) find_held(surface);
         if (round > 0) {
-            const Redistribution plan =
-                plan_redistribution(network_, surface, ties, std::numeric_limits<float>::max(), team_);
+            const std::vector<Merger> mergers = plan_reduction(network_, surface, ties, team_);
             const int most = std::min(network_.vertex_count() - vertices,
                                       1 + static_cast<int>(kReducedShare * network_.vertex_count()));
             const std::vector<Shifts::Merge> merges = guarded(
-                [&](const std::vector<char>& barred) { return reduce(network_, plan, most, barred); });
+                [&](const std::vector<char>& barred) { return reduce(network_, mergers, most, barred); });
             if (merges.empty()) return false;
             move_on(merges);
             surface = Surface(network_);
@@ -243,6 +242,7 @@ bool FitSteps::reduce_to(int vertices, Progress& progress) {
         move(ties, surface);
     }
     points_.fitted.points.insert(points_.fitted.points.end(), waiting_.begin(), waiting_.end());
+    waiting_ = {};
     origin_ = own_places(network_);
     if (!guard_.standing().empty()) untangle_surface();
     return true;

@@ -30,7 +30,7 @@ public:
         const std::size_t bytes = count * sizeof(T);
         if (bytes < kLeast) return std::allocator<T>().allocate(count);
         if (count > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_alloc();
-        void* const memory = ::operator new(bytes, std::align_val_t{kPage});
+        void* const memory = ::operator new (bytes, std::align_val_t{kPage});
 #ifdef __linux__
         madvise(memory, bytes / kPage * kPage, MADV_HUGEPAGE);  // a wish: refused, all is as it was
 #endif
@@ -40,7 +40,7 @@ public:
         if (count * sizeof(T) < kLeast) {
             std::allocator<T>().deallocate(memory, count);
         } else {
-            ::operator delete(memory, std::align_val_t{kPage});
+            ::operator delete (memory, std::align_val_t{kPage});
         }
     }
 

@@ -105,8 +105,8 @@ StopReason Learner::run(int per_vertex, Progress& progress) {
 
 bool Learner::report(const char* doing, Progress& progress) const {
     char text[96];
-    std::snprintf(text, sizeof text, "%s: %d of %d vertices, %lld signals", doing, network_.vertex_count(),
-                  settings_.target_vertices, static_cast<long long>(signals_));
+    std::snprintf(text, sizeof text, "%s: %d vertices, %lld signals", doing, network_.vertex_count(),
+                  static_cast<long long>(signals_));
     return progress(static_cast<double>(network_.vertex_count()) / settings_.target_vertices, text);
 }
 

@@ -70,9 +70,8 @@ struct alignas(16) Slot {
     vcg::Point3f point() const { return {x, y, z}; }
 };
 
-/// A simplicial, oriented 2-manifold with boundary. Vertex ids are stable; free ids, of
-/// removed vertices for one, are used again. Every operation below keeps the manifold or throws before it has
-/// changed anything.
+/// A simplicial, oriented 2-manifold with boundary. Vertex ids are stable; free ids, of removed vertices for
+/// one, are used again. Every operation below keeps the manifold or throws before it has changed anything.
 class Network {
 public:
     Network() = default;

@@ -13,6 +13,7 @@
 #include "fit.h"
 #include "learner.h"
 #include "shell.h"
+#include "shell_mesh.h"
 
 namespace neuralmesh {
 
@@ -186,6 +187,7 @@ StopReason grow(const TargetSpace& target, const Settings& settings, const Setti
     Part learning(run, 0.1, settings.fit_to_points ? 0.8 : 1);
     Part fitting(run, 0.8, 1);
     grown.learner.emplace(target, learned, start.network);
+    grown.fit = FitReport();  // one of a network that was given up says nothing of this one
     const StopReason reason = grown.learner->run(start.signals_to_land, learning);
     grown.network = grown.learner->network();
     FitOptions options;
@@ -218,6 +220,8 @@ NeuralMesh reconstruct(const TargetSpace& target, const Settings& settings, Prog
         mesh.report.stop_reason = grow(target, settings, learned, start, run, grown);
 
     Network& network = grown.network;
+    // Only a run that was stopped before the fit had taken out enough has more.
+    if (network.vertex_count() > settings.target_vertices) simplify(network, settings.target_vertices);
     network.orient_outward();
     write_geometry(network, target.frame(), mesh);
     // A fit that was taken back leaves the network of the learning.

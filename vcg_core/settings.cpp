@@ -63,7 +63,9 @@ std::vector<SettingInfo> common_rows() {
     using S = Settings;
     return {
         row(&S::target_vertices, "target_vertices", "Target vertices", 4, 20e6,
-            "The mesh grows until it has exactly this many vertices. The time needed grows in proportion."),
+            "The mesh gets exactly this many vertices. From 5,000 on the time needed grows in proportion; "
+            "for fewer "
+            "ones more are learned, and the fit takes some out."),
         row(&S::utility_counter, "utility_counter", "Utility counter", {"Normal counter", "Signal counter"},
             "What makes a vertex worth splitting. Normal counter: how much the surface bends there, so the "
             "mesh "

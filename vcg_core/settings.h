@@ -81,8 +81,8 @@ struct SettingInfo {
 
     /// The parameter's value in \p settings, as a number.
     double value(const Settings& settings) const;
-    /// Stores \p value (rounded where the parameter is an integer) without checking it. An integer out of int's
-    /// range, or NaN, is stored as one that Settings::check() refuses, whatever the parameter.
+    /// Stores \p value (rounded where the parameter is an integer) without checking it. An integer out of
+    /// int's range, or NaN, is stored as one that Settings::check() refuses, whatever the parameter.
     void store(Settings& settings, double value) const;
 };
 

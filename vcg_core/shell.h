@@ -35,7 +35,8 @@ struct ShellOptions {
     /// 8 per component and 8 per handle. More if the topology cannot be kept otherwise.
     int max_vertices = 400;
     int target_vertices = 10000;
-    /// Nodes of the finest lattice: about 30 bytes and 0.3 microseconds each.
+    /// Nodes of the finest lattice: about 30 bytes and 0.3 microseconds each, and up to 9 bytes more for each
+    /// of at most eight threads where parts nearly touch.
     double max_nodes = 5.0e5;
     int max_nodes_per_side = 256;
     /// The lattice is coarse enough if its occupied nodes hold this many points on average.

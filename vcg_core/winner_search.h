@@ -23,7 +23,7 @@ namespace neuralmesh {
 /// The table has a list head per cell, found by hashing, and no keys: cells that share a head share a list.
 /// That costs a few distances to vertices elsewhere, which cannot win, and saves every comparison of keys.
 /// Ties go to the smaller id, so that the answer is that of a linear search to the bit.
-/// Memory: 8 to 16 bytes per vertex; the list links live in the network's slots.
+/// Memory: 8 to 32 bytes per vertex and the pyramid; the list links live in the network's slots.
 class WinnerSearch {
 public:
     /// Which list a cell has.

@@ -73,8 +73,6 @@ class Input:
         return points @ self.matrix[:3, :3].T + self.matrix[:3, 3]
 
 
-
-
 def ball(count=2000, radius=1.0, centre=(0, 0, 0)):
     """Points spread evenly over a sphere."""
     steps = np.arange(count)

@@ -52,6 +52,9 @@ std::vector<Settings> variants() {
         settings.utility_counter = i == 1 || i == 2 ? kSignalCounter : kNormalCounter;
         result.push_back(settings);
     }
+    // The defaults, but for so few vertices that more are learned and some taken out.
+    result.emplace_back();
+    result.back().target_vertices = 60;
     return result;
 }
 

@@ -34,8 +34,10 @@ private:
 
 constexpr int kPatience = 400;  ///< looks, one in a thousand signals while it learns
 
-/// The most signals that a run may take: the start mesh comes down, growth, settling.
-std::int64_t most_signals(const TargetSpace& target, const Settings& settings) {
+/// The most signals that a run may take, which learns up to four times the vertices asked for: the start mesh
+/// comes down, growth, settling.
+std::int64_t most_signals(const TargetSpace& target, Settings settings) {
+    settings.target_vertices *= 4;
     const Learner learner(target, settings, referee::network_of(shapes::tetrahedron()));
     const std::int64_t vertices = settings.target_vertices;
     const auto learning = [&](std::int64_t per_vertex) {

@@ -123,7 +123,8 @@ TEST(Reconstruct, ProgressNeverGoesBack) {
 }
 
 TEST(Reconstruct, CanBeCancelledAtAnyTime) {
-    const TargetSpace target = target_of(shapes::sphere_cloud(3000));
+    // From the shell more than 300 are learned.
+    const TargetSpace target = target_of(shapes::sphere_cloud(12000));
     for (const int start : {kShell, kTetrahedron}) {
         Watch all;
         reconstruct(target, with_target(300, start), all);
@@ -134,6 +135,7 @@ TEST(Reconstruct, CanBeCancelledAtAnyTime) {
             const NeuralMesh mesh = reconstruct(target, with_target(300, start), watch);
             EXPECT_EQ(mesh.report.stop_reason, StopReason::cancelled);
             EXPECT_LE(watch.calls, patience + 3);
+            EXPECT_LE(mesh.report.vertices, 300);
             expect_sound(mesh);
         }
     }
