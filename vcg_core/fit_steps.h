@@ -6,10 +6,11 @@
 
 #include <vector>
 
-#include "fit.h"
 #include "fit_crossings.h"
 #include "fit_points.h"
 #include "fit_redistribute.h"
+#include "progress.h"
+#include "team.h"
 
 namespace neuralmesh {
 
