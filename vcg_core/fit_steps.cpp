@@ -179,12 +179,12 @@ float FitSteps::least_gain(const Surface& surface) const {
                              kLeastSplitVariances * (1 + noise_ / std::max(small * small, 1e-20F)));
 }
 
-/// Carries out \p change(barred), barred being vertices to leave alone; if then the guard objects, it is
-/// undone and tried again without the vertices objected to. \return what it does
+/// Carries out \p change(barred) on the network, whose surface is \p surface, barred being vertices to leave
+/// alone; if then the guard objects, it is undone and tried again without the vertices objected to. \return
+/// what it does
 template <class Change>
-auto FitSteps::guarded(const Change& change) {
+auto FitSteps::guarded(const Surface& surface, const Change& change) {
     const Network before = network_;
-    const Surface surface(before);
     std::vector<char> barred(index(network_.slot_count()), 0);
     for (int tries = 0;; ++tries) {
         if (tries == kTries) std::fill(barred.begin(), barred.end(), 1);
@@ -211,8 +211,8 @@ int FitSteps::shift_vertices(const Surface& surface, const FacePoints& ties) {
     const int most =
         std::max(1, static_cast<int>(kShiftedShare * static_cast<double>(network_.vertex_count())));
     const Redistribution plan = plan_redistribution(network_, surface, ties, least_gain(surface), team_);
-    const Shifts done =
-        guarded([&](const std::vector<char>& barred) { return redistribute(network_, plan, most, barred); });
+    const Shifts done = guarded(
+        surface, [&](const std::vector<char>& barred) { return redistribute(network_, plan, most, barred); });
     if (done.merges.empty()) return 0;
     move_on(done.merges);
     for (const Shifts::Insertion& insertion : done.insertions)
@@ -231,8 +231,9 @@ bool FitSteps::reduce_to(int vertices, Progress& progress) {
             const std::vector<Merger> mergers = plan_reduction(network_, surface, ties, team_);
             const int most = std::min(network_.vertex_count() - vertices,
                                       1 + static_cast<int>(kReducedShare * network_.vertex_count()));
-            const std::vector<Shifts::Merge> merges = guarded(
-                [&](const std::vector<char>& barred) { return reduce(network_, mergers, most, barred); });
+            const std::vector<Shifts::Merge> merges = guarded(surface, [&](const std::vector<char>& barred) {
+                return reduce(network_, mergers, most, barred);
+            });
             if (merges.empty()) return false;
             move_on(merges);
             surface = Surface(network_);
@@ -272,7 +273,8 @@ void FitSteps::find_again(Followed held, const Surface& surface) {
 int FitSteps::flip(const Surface& surface, FacePoints& ties) {
     follow(surface, ties);
     const std::vector<EdgeFlip> found = find_flips(network_, surface, ties, kFlipVariances * noise_, team_);
-    return guarded([&](const std::vector<char>& barred) { return flip_edges(network_, found, barred); });
+    return guarded(surface,
+                   [&](const std::vector<char>& barred) { return flip_edges(network_, found, barred); });
 }
 
 std::vector<VertexId> own_places(const Network& network) {

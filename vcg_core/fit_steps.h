@@ -57,7 +57,7 @@ public:
 private:
     void wait_for_reduction();
     template <class Change>
-    auto guarded(const Change& change);
+    auto guarded(const Surface& surface, const Change& change);
     float least_gain(const Surface& surface) const;
     void move_on(const std::vector<Shifts::Merge>& merges);
     void follow(const Surface& surface, FacePoints& ties) const;

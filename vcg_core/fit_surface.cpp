@@ -54,12 +54,22 @@ bool settled(const Foot& foot, const Vec& ab, const Vec& ac) {
     return least > 0 && least * least * ab.cross(ac).squaredNorm() > 4 * foot.squared_distance * longest;
 }
 
+/// The corner of the hit face that is nearest to the foot.
+VertexId nearest_corner(const Surface& surface, const Hit& hit) {
+    const auto& w = hit.foot.weights;
+    return surface.faces[index(hit.face)][w[0] >= w[1] ? (w[0] >= w[2] ? 0U : 2U) : (w[1] >= w[2] ? 1U : 2U)];
+}
+
+std::vector<int> all_faces(const Surface& surface) {
+    std::vector<int> faces(surface.faces.size());
+    std::iota(faces.begin(), faces.end(), 0);
+    return faces;
+}
+
 }  // namespace
 
 Place place_of(const Surface& surface, const Hit& hit) {
-    const auto& w = hit.foot.weights;
-    const std::size_t k = w[0] >= w[1] ? (w[0] >= w[2] ? 0 : 2) : (w[1] >= w[2] ? 1 : 2);
-    const VertexId v = surface.faces[index(hit.face)][k];
+    const VertexId v = nearest_corner(surface, hit);
     const auto around = surface.face_of.begin() + surface.first_face[index(v)];
     return {v, static_cast<int>(std::find(around, surface.face_of.end(), hit.face) - around)};
 }
@@ -83,21 +93,11 @@ Hit walk_to_nearest(const Surface& surface, const Vec& p, Place start) {
         const float before = best.foot.squared_distance;
         for (int i = surface.first_face[index(v)]; i < surface.first_face[index(v) + 1]; ++i)
             if (look_at(surface.face_of[index(i)])) return best;
-        const VertexId next = place_of(surface, best).vertex;
+        const VertexId next = nearest_corner(surface, best);
         if (next == v || (v != start.vertex && !(best.foot.squared_distance < before))) return best;
         v = next;
     }
 }
-
-namespace {
-
-std::vector<int> all_faces(const Surface& surface) {
-    std::vector<int> faces(surface.faces.size());
-    std::iota(faces.begin(), faces.end(), 0);
-    return faces;
-}
-
-}  // namespace
 
 FaceTree::FaceTree(const Surface& surface) : FaceTree(surface, all_faces(surface)) {}
 

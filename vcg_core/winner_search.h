@@ -51,22 +51,15 @@ public:
     void add(VertexId v);
     /// \p v is about to be removed. O(1) expected.
     void remove(VertexId v);
-    /// Moves \p v to \p where (x, y, z, 0), in the network and in the grid. O(1) expected.
-    void move(VertexId v, Four where) {
-        Slot* slot = &network_.slots()[v];
-        const FourInts from = cell_of(load_xyz(slot));
-        const FourInts to = cell_of(where);
-        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0) relink(v, from, to);
-        store_xyz(slot, where);
-    }
     /// A vertex that has moved from one cell to another, of which the grid does not know yet.
     struct Crossing {
         FourInts from;
         FourInts to;
         VertexId vertex;
     };
-    /// As move(), but does no more about a vertex that leaves its cell than to add it to \p crossings, which
-    /// are to be handed to follow() before the next search: so threads may move different vertices at once.
+    /// Moves \p v to \p where (x, y, z, 0) in the network. If it leaves its cell it is only added to \p
+    /// crossings, which are to be handed to follow() before the next search: so threads may move different
+    /// vertices at once. O(1).
     void move(VertexId v, Four where, std::vector<Crossing>& crossings) {
         Slot* slot = &network_.slots()[v];
         const FourInts from = cell_of(load_xyz(slot));
@@ -79,7 +72,12 @@ public:
     void follow(const std::vector<Crossing>& crossings) {
         for (const Crossing& c : crossings) relink(c.vertex, c.from, c.to);
     }
-    void move(VertexId v, const vcg::Point3f& where) { move(v, Four{where[0], where[1], where[2], 0}); }
+    /// Moves \p v to \p where, in the network and in the grid. O(1) expected.
+    void move(VertexId v, const vcg::Point3f& where) {
+        std::vector<Crossing> crossings;
+        move(v, Four{where[0], where[1], where[2], 0}, crossings);
+        follow(crossings);
+    }
     /// From now on cells on different sides of the plane where coordinate \p axis is \p place never share a
     /// list: for two threads, one on each side, which else would look at each other's vertices all over the
     /// mesh. O(vertices).

@@ -58,35 +58,31 @@ std::vector<Settings> variants() {
     return result;
 }
 
-TEST(Determinism, SameSeedSameBytesWhateverTheThreads) {
-    const shapes::Cloud cloud = shapes::sphere_cloud(1500, 0.01);
-    for (Settings settings : variants()) {
-        settings.threads = 1;
-        const NeuralMesh first = learn(cloud, settings);
-        for (const int threads : {1, 3, 0}) {
-            SCOPED_TRACE(threads);
-            settings.threads = threads;
-            expect_same(first, learn(cloud, settings));
-        }
+void expect_same_with(const std::vector<int>& numbers_of_threads, const shapes::Cloud& cloud,
+                      Settings settings) {
+    settings.threads = 1;
+    const NeuralMesh first = learn(cloud, settings);
+    for (const int threads : numbers_of_threads) {
+        SCOPED_TRACE(threads);
+        settings.threads = threads;
+        expect_same(first, learn(cloud, settings));
     }
+}
+
+TEST(Determinism, SameSeedSameBytesWhateverTheThreads) {
+    for (const Settings& settings : variants())
+        expect_same_with({1, 3, 0}, shapes::sphere_cloud(1500, 0.01), settings);
 }
 
 /// So many vertices that the threads have regions of their own.
 TEST(Determinism, SameBytesWhereThreadsShareTheNetwork) {
-    const shapes::Cloud cloud = shapes::torus_cloud(20000, 0.005);
     Settings settings;
     settings.target_vertices = 5000;
     settings.signals_per_split = 40;
     settings.min_wins_per_split = 10;
     settings.settling_signals_per_vertex = 20;
     settings.fit_to_points = false;
-    settings.threads = 1;
-    const NeuralMesh first = learn(cloud, settings);
-    for (const int threads : {2, 3, 8}) {
-        SCOPED_TRACE(threads);
-        settings.threads = threads;
-        expect_same(first, learn(cloud, settings));
-    }
+    expect_same_with({2, 3, 8}, shapes::torus_cloud(20000, 0.005), settings);
 }
 
 /// FNV-1a.
