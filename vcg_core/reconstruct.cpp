@@ -57,7 +57,8 @@ private:
 struct Start {
     Network network;
     int signals_to_land;
-    bool encloses_space;  ///< else the shell has two layers with nothing between them
+    bool encloses_space;                      ///< else the shell has two layers with nothing between them
+    std::vector<std::uint8_t> outliers = {};  ///< of the target, as in StartMesh
 };
 
 /// The paper's start: a tetrahedron in the middle of the cloud, which lies around the origin.
@@ -75,7 +76,7 @@ Start start_of(const TargetSpace& target, const Settings& settings, Report& repo
     options.threads = settings.threads;
     Random random(static_cast<std::uint64_t>(settings.random_seed) + 2);
     const StartMesh shell = shell_of(target, options, random, progress);
-    report.warnings = shell.warnings;
+    report.warnings.insert(report.warnings.end(), shell.warnings.begin(), shell.warnings.end());
     const auto vertices = static_cast<int>(shell.positions.size());
     if (vertices > settings.target_vertices) {
         report.warnings.push_back("The shell of the cloud, with " + std::to_string(shell.components) +
@@ -84,10 +85,12 @@ Start start_of(const TargetSpace& target, const Settings& settings, Report& repo
                                   std::to_string(settings.target_vertices) +
                                   " asked for: the learning started from a tetrahedron instead. Raise "
                                   "target_vertices to keep the shape.");
-        return tetrahedron();
+        Start start = tetrahedron();
+        start.outliers = shell.outliers;
+        return start;
     }
     report.topology_confidence = shell.confidence;
-    return {Network(shell.positions, shell.faces), kSignalsToLand, shell.encloses_space};
+    return {Network(shell.positions, shell.faces), kSignalsToLand, shell.encloses_space, shell.outliers};
 }
 
 /// The layers of a sheet come to lie in each other, folded: area vectors cancel, and what is left of them is
@@ -154,12 +157,10 @@ void write_counters(const Learner& learner, const Network& network, const std::v
     mesh.report.mean_counter = mean;
 }
 
+/// But for signals, splits and collapses, which grow() counts.
 void write_report(const Learner& learner, const Network& network, Report& report) {
     report.vertices = network.vertex_count();
     report.faces = network.face_count();
-    report.signals = learner.signals();
-    report.splits = learner.splits();
-    report.collapses = learner.collapses();
     report.genus = network.genus();
     report.boundary_loops = network.boundary_loop_count();
     report.components = network.component_count();
@@ -181,9 +182,10 @@ struct Grown {
     FitReport fit;
 };
 
-/// Grows the network of \p start and fits it. \return why learning ended
-StopReason grow(const TargetSpace& target, const Settings& settings, const Settings& learned,
-                const Start& start, Run& run, Grown& grown) {
+/// Grows the network of \p start and fits it, and enters in \p report why learning ended and, added to those
+/// of a growth before, what it took.
+void grow(const TargetSpace& target, const Settings& settings, const Settings& learned, const Start& start,
+          Run& run, Grown& grown, Report& report) {
     Part learning(run, 0.1, settings.fit_to_points ? 0.8 : 1);
     Part fitting(run, 0.8, 1);
     grown.learner.emplace(target, learned, start.network);
@@ -198,26 +200,46 @@ StopReason grow(const TargetSpace& target, const Settings& settings, const Setti
     if (settings.fit_to_points && !run.stopped())
         grown.fit = fit_to_points(grown.network, target, options, settings.threads,
                                   static_cast<std::uint64_t>(settings.random_seed) + 3, fitting);
-    return run.stopped() ? StopReason::cancelled : reason;
+    report.stop_reason = run.stopped() ? StopReason::cancelled : reason;
+    report.signals += grown.learner->signals();
+    report.splits += grown.learner->splits();
+    report.collapses += grown.learner->collapses();
+}
+
+/// Repeated points say nothing of the surface, and would make it dense or a component where they are.
+std::optional<TargetSpace> without_repeats(const TargetSpace& target, Report& report) {
+    std::optional<TargetSpace> once = target.each_place_once();
+    if (once) {
+        const std::size_t all = target.positions().size();
+        report.warnings.push_back(std::to_string(all - once->positions().size()) + " of " +
+                                  std::to_string(all) +
+                                  " points repeat others: every place was learned once.");
+    }
+    return once;
 }
 
 }  // namespace
 
-NeuralMesh reconstruct(const TargetSpace& target, const Settings& settings, Progress& progress) {
+NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progress& progress) {
     const auto begin = std::chrono::steady_clock::now();
     settings.check();
     NeuralMesh mesh;
     Run run(progress);
     Part starting(run, 0, 0.1);
-    const Start start = start_of(target, settings, mesh.report, starting);
+    const std::optional<TargetSpace> once = without_repeats(given, mesh.report);
+    const TargetSpace& places = once ? *once : given;
+    const Start start = start_of(places, settings, mesh.report, starting);
+    const std::optional<TargetSpace> inliers =
+        start.outliers.empty() ? std::nullopt : places.without(start.outliers);
+    const TargetSpace& target = inliers ? *inliers : places;
     const Settings learned = settings_for(start, settings, mesh.report);
     Settings more = learned;
     more.target_vertices = vertices_to_learn(target, start, settings);
     Grown grown;
-    mesh.report.stop_reason = grow(target, settings, more, start, run, grown);
+    grow(target, settings, more, start, run, grown, mesh.report);
     const bool too_many = grown.network.vertex_count() > settings.target_vertices || grown.learner->forced();
     if (too_many && !run.stopped() && more.target_vertices > settings.target_vertices)
-        mesh.report.stop_reason = grow(target, settings, learned, start, run, grown);
+        grow(target, settings, learned, start, run, grown, mesh.report);
 
     Network& network = grown.network;
     // Only a run that was stopped before the fit had taken out enough has more.

@@ -11,6 +11,7 @@
 
 #include "network.h"
 #include "parallel.h"
+#include "shell_cloud.h"
 #include "shell_grow.h"
 #include "shell_mesh.h"
 #include "shell_region.h"
@@ -29,31 +30,6 @@ constexpr double kLowConfidence = 0.5, kClearConfidence = 0.75, kHighConfidence 
 constexpr double kCloserLook = 8, kDensePoints = 2;  // times the nodes, times the points per node
 constexpr double kCoarseShellSteps = 5;  // radius of the shell in steps of the finest usual lattice
 constexpr double kWideOpeningSteps = 4;  // in lattice steps; gaps between points are narrower
-
-float longest_side(const Box3f& box) { return std::max({box.DimX(), box.DimY(), box.DimZ()}); }
-
-/// The box of the cloud without far outliers: while the groups that hold at least a hundredth of the points
-/// each, and nine tenths together, fit into a box half as long, that box is taken.
-Box3f main_box(const std::vector<Point3f>& points) {
-    constexpr int kCells = 32, kRounds = 8;
-    Box3f box;
-    for (const Point3f& p : points) box.Add(p);
-    for (int round = 0; round < kRounds; ++round) {
-        const float side = longest_side(box);
-        double cells = kCells;
-        std::vector<std::uint32_t> counts;
-        Lattice lattice(box, side / static_cast<float>(cells), 1);
-        for (counts = count_points(lattice, points); points_per_occupied_node(counts) < 4 && cells > 4;) {
-            cells *= 0.75;  // connected groups need cells wider than the gaps between points
-            lattice = Lattice(box, side / static_cast<float>(cells), 1);
-            counts = count_points(lattice, points);
-        }
-        const Box3f kept = box_of_large_groups(lattice, counts, 0.01, 0.9);
-        if (kept.IsNull() || longest_side(kept) > 0.5F * side) break;
-        box = kept;
-    }
-    return box;
-}
 
 /// The step of the finest lattice the options allow on which the cloud still looks like a surface.
 float step_for(const std::vector<Point3f>& points, const Box3f& box, const ShellOptions& options,
@@ -101,34 +77,34 @@ IndexedMesh mesh_with_stride(const Lattice& lattice, const std::vector<float>& v
     return marching_tetrahedra(coarse, picked);
 }
 
-/// A closed mesh of the cloud and where it comes from.
-struct Closed {
-    Network network;
-    int level = 0;
-    long long held = 0;  ///< points in it
-};
-
 /// A solid and where it comes from.
 struct Solid {
     int level = 0;
-    long long held = 0;         ///< points in it
-    std::vector<float> values;  ///< for marching tetrahedra
+    std::vector<std::uint8_t> nodes;  ///< 1: in it
+    std::vector<float> values;        ///< for marching tetrahedra
+};
+
+/// A closed mesh of the cloud and the solid it bounds.
+struct Closed {
+    Network network;
+    Solid solid;
 };
 
 /// \p grown: to twice the radius, see shell_grow.h.
 Solid solid_at(const Region& region, int level, bool grown) {
     Solid solid;
     solid.level = grown ? grown_level(level) : level;
-    solid.values = signed_values(
-        region, solid.level,
-        grown ? grown_solid(region, level, solid.held)
-              : solid_of(region.lattice, region.clearance, region.counts, level, region.enough, solid.held));
+    long long held = 0;
+    solid.nodes = grown
+                      ? grown_solid(region, level)
+                      : solid_of(region.lattice, region.clearance, region.counts, level, region.enough, held);
+    solid.values = signed_values(region, solid.level, solid.nodes);
     return solid;
 }
 
-Closed close_solid(const Region& region, const Solid& solid, int stride) {
+Network surface_of(const Region& region, const Solid& solid, int stride) {
     const IndexedMesh mesh = mesh_with_stride(region.lattice, solid.values, stride);
-    return {mesh.faces.empty() ? Network() : Network(mesh.positions, mesh.faces), solid.level, solid.held};
+    return mesh.faces.empty() ? Network() : Network(mesh.positions, mesh.faces);
 }
 
 /// A mesh of the verdict's topology at one of the radii of its run, the smallest if possible, because the
@@ -139,23 +115,22 @@ Closed close(const Region& region, const Verdict& verdict) {
     const auto right = [&](int components, int genus) {
         return components == verdict.components && genus == verdict.genus;
     };
-    Solid solid;
-    const auto on_some_nodes = [&](int level, bool grown, Closed& closed) {
-        solid = solid_at(region, level, grown);
+    Closed closed;
+    const auto on_some_nodes = [&](int level, bool grown) {
+        closed.solid = solid_at(region, level, grown);
         for (const int stride : {3, 2}) {
-            closed = close_solid(region, solid, stride);
+            closed.network = surface_of(region, closed.solid, stride);
             if (right(closed.network.component_count(), closed.network.genus())) return true;
         }
         return false;
     };
-    Closed closed;
     // Smallest radius, about the geometric mean, largest radius.
     for (const int level : {levels.front(), levels[levels.size() / 3], levels.back()}) {
         const LevelTopology& plain = region.topologies[static_cast<std::size_t>(level)];
-        if (right(plain.components, plain.genus) && on_some_nodes(level, false, closed)) return closed;
+        if (right(plain.components, plain.genus) && on_some_nodes(level, false)) return closed;
     }
-    if (on_some_nodes(levels.front(), verdict.grown, closed)) return closed;
-    return close_solid(region, solid, 1);
+    if (!on_some_nodes(levels.front(), verdict.grown)) closed.network = surface_of(region, closed.solid, 1);
+    return closed;
 }
 
 /// The lattices looked at, finest first, and what they say.
@@ -256,8 +231,9 @@ void add_warnings(const Verdict& verdict, bool coarser, long long total, StartMe
     if (result.ignored_points > 0)
         result.warnings.push_back(
             std::to_string(result.ignored_points) + " of " + std::to_string(total) +
-            " points were ignored by the start mesh as outliers: they lie in isolated groups "
-            "that hold less than 1 % of the points or fewer than " +
+            (result.outliers.empty() ? " points were ignored by the start mesh, but not by the learning"
+                                     : " points were ignored") +
+            " as outliers: they lie in isolated groups that hold less than 1 % of the points or fewer than " +
             std::to_string(ShellOptions::kSpeckPoints) + ".");
 }
 
@@ -319,10 +295,15 @@ StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Rando
     result.confidence = verdict.confidence;
     result.persistence = verdict.persistence;
     result.resolution = static_cast<double>(region.lattice.step);
-    result.radius = result.resolution * std::sqrt(static_cast<double>(closed.level));
+    result.radius = result.resolution * std::sqrt(static_cast<double>(closed.solid.level));
     result.widest_opening = region.widest_opening;
     result.encloses_space = region.encloses_space;
-    result.ignored_points = static_cast<long long>(points.size()) - region.fringe_points - closed.held;
+    result.outliers = outliers_of(points, region, closed.solid.nodes, closed.solid.level);
+    result.ignored_points = std::count(result.outliers.begin(), result.outliers.end(), 1);
+    const double total = static_cast<double>(points.size());
+    if (target.has_faces() ||
+        static_cast<double>(result.ignored_points) > ShellOptions::kMostOutliers * total)
+        result.outliers.clear();
     const bool coarser = region.lattice.step > inquiry.step ||
                          result.radius > kCoarseShellSteps * static_cast<double>(inquiry.step);
     add_warnings(verdict, coarser, static_cast<long long>(points.size()), result);

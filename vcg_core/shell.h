@@ -15,11 +15,13 @@
 // Outliers make no component of their own: a group of points that is isolated at the radius chosen counts
 // only if it holds at least 1 % of the points (component_share) and kSpeckPoints of them. The others are left
 // out of the start mesh, and a warning says how many. So of 200,000 points a clump of 1,999 is an outlier.
+// Single points deep inside are outliers, too.
 #pragma once
 
 #include <vcg/space/point3.h>
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -49,6 +51,8 @@ struct ShellOptions {
     int threads = 0;
 
     static constexpr int kSpeckPoints = 20;
+    /// A cloud with a larger share of them is one of another kind than thought: they are to be learned.
+    static constexpr double kMostOutliers = 0.1;
 };
 
 /// A closed, oriented 2-manifold (simplicial, valences 3 to 12) in the core's frame, and what it stands for.
@@ -66,6 +70,9 @@ struct StartMesh {
     double widest_opening = 0;     ///< radius of the widest hole that was sealed; 0: none
     bool encloses_space = true;    ///< false: a sheet, a single scan; the mesh goes around it on both sides
     long long ignored_points = 0;  ///< outliers: they belong to no component
+    /// Those that are not to be learned: 1 for each such point of the cloud. Empty if there are none, too
+    /// many, or if the target has faces.
+    std::vector<std::uint8_t> outliers;
     std::vector<std::string> warnings;  ///< full sentences
 };
 

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <numeric>
 
 #include "parallel.h"
 
@@ -136,15 +135,15 @@ int grown_level(int level) {
     return std::min(Region::kReach * Region::kReach, static_cast<int>(from * kGrowth * kGrowth));
 }
 
-std::vector<std::uint8_t> grown_solid(const Region& region, int level, long long& held) {
+std::vector<std::uint8_t> grown_solid(const Region& region, int level) {
     std::vector<std::uint8_t> solid;
     const LevelTopology& plain = region.topologies[static_cast<std::size_t>(level)];
     if (plain.specks > 0) {
+        long long held = 0;
         solid = solid_of(region.lattice, region.clearance, region.counts, level, region.enough, held);
     } else {  // all of it, and cheaper
         solid.resize(region.clearance.size());
         for (std::size_t i = 0; i < solid.size(); ++i) solid[i] = region.clearance[i] <= level ? 1 : 0;
-        held = std::accumulate(region.counts.begin(), region.counts.end(), 0LL);
     }
     grow_without_bridges(region.lattice, region.clearance, grown_level(level), solid);
     return solid;
@@ -158,8 +157,7 @@ std::vector<TopologyAt> grown_topologies(const Region& region, Team& team) {
         result.push_back({level, plain.components, 0});
     }
     for_chunks(result.size(), 1, team, [&](std::size_t i, std::size_t, std::size_t) {
-        long long held = 0;
-        const std::vector<std::uint8_t> solid = grown_solid(region, result[i].level, held);
+        const std::vector<std::uint8_t> solid = grown_solid(region, result[i].level);
         // No cavities: the Euler characteristic is components minus handles.
         result[i].genus = result[i].components - euler_characteristic(region.lattice, solid);
     });

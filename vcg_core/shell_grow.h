@@ -27,8 +27,8 @@ void grow_without_bridges(const Lattice& lattice, const std::vector<Level>& clea
 /// The squared radius to which the solid at \p level is grown: twice as far; level 0 counts as 0.6.
 int grown_level(int level);
 
-/// The components at \p level that hold enough points, grown to grown_level. \p held: their points.
-std::vector<std::uint8_t> grown_solid(const Region& region, int level, long long& held);
+/// The components at \p level that hold enough points, grown to grown_level.
+std::vector<std::uint8_t> grown_solid(const Region& region, int level);
 
 /// The topologies of the grown solids at a few levels from 0 to a third of the region's reach. Level 0 is
 /// passed over if isolated groups of points would be lost there. About 0.1 microseconds per node.

@@ -19,8 +19,6 @@ constexpr double kLoose = 0.05;            // of the points
 constexpr double kFringe = 0.2;            // of the density next to it
 constexpr std::uint32_t kManyPoints = 40;  // enough for that ratio to mean something
 
-float longest_side(const vcg::Box3f& box) { return std::max({box.DimX(), box.DimY(), box.DimZ()}); }
-
 /// Applies f to every row along x, then y, then z: index of its first node, stride, length.
 template <class F>
 void for_each_row(const Lattice& l, const F& f) {
@@ -93,6 +91,8 @@ void seal_wide_openings(const std::vector<vcg::Point3f>& points, const vcg::Box3
 }
 
 }  // namespace
+
+float longest_side(const vcg::Box3f& box) { return std::max({box.DimX(), box.DimY(), box.DimZ()}); }
 
 bool in_pieces(const Region& region, int level) {
     constexpr int kTogether = 4 * 4;

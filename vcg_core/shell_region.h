@@ -48,6 +48,8 @@ Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, f
 /// come together within four lattice steps. O(1).
 bool in_pieces(const Region& region, int level);
 
+float longest_side(const vcg::Box3f& box);
+
 /// Points per lattice node; points outside the lattice are left out.
 std::vector<std::uint32_t> count_points(const Lattice& lattice, const std::vector<vcg::Point3f>& points);
 

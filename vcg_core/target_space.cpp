@@ -5,18 +5,61 @@
 #include "target_space.h"
 
 #include <algorithm>
+#include <cstring>
 #include <string>
+#include <tuple>
+#include <utility>
 
 namespace neuralmesh {
 
 namespace {
 
+constexpr double kManyRepeats = 0.1;             ///< of the points
+constexpr std::size_t kEnoughForShare = 100000;  ///< points, to estimate that share
 constexpr double kCollinear = 1e-6;  ///< distance from the line, in diagonals, below which points lie on it
 
 double squared_distance_to_line(const vcg::Point3f& p, const vcg::Point3f& a, const vcg::Point3f& direction) {
     const vcg::Point3f d = p - a;
     const float along = d * direction / direction.SquaredNorm();
     return static_cast<double>((d - direction * along).SquaredNorm());
+}
+
+bool by_coordinates(const vcg::Point3f& p, const vcg::Point3f& q) {
+    return std::tie(p[0], p[1], p[2]) < std::tie(q[0], q[1], q[2]);
+}
+
+/// Equal for equal points, 0 and -0 included.
+std::uint32_t hash_of(const vcg::Point3f& p) {
+    std::uint64_t hash = 0;
+    for (int k = 0; k < 3; ++k) {
+        const float x = p[k] + 0.0F;
+        std::uint32_t bits = 0;
+        std::memcpy(&bits, &x, sizeof bits);
+        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 29;
+    }
+    return static_cast<std::uint32_t>(hash >> 32);
+}
+
+/// The share of \p points that repeat others of them.
+double share_of_repeats(std::vector<vcg::Point3f> points) {
+    const auto all = static_cast<double>(points.size());
+    std::sort(points.begin(), points.end(), by_coordinates);
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    return all > 0 ? 1 - static_cast<double>(points.size()) / all : 0;
+}
+
+/// Places that hold few points each show where all points of some places are taken, those that hold many
+/// where some points of all places are.
+double estimated_share_of_repeats(const std::vector<vcg::Point3f>& points) {
+    const std::size_t stride = points.size() / kEnoughForShare + 1;
+    std::vector<vcg::Point3f> of_some_places;
+    std::vector<vcg::Point3f> some_of_all;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (hash_of(points[i]) % stride == 0) of_some_places.push_back(points[i]);
+        if (i % stride == 0) some_of_all.push_back(points[i]);
+    }
+    return std::max(share_of_repeats(std::move(of_some_places)), share_of_repeats(std::move(some_of_all)));
 }
 
 }  // namespace
@@ -48,7 +91,7 @@ void TargetSpace::set_frame(const vcg::Box3d& box, std::size_t not_finite, std::
             "The layer's bounding box is too large or too small for double precision: scale it first.");
 }
 
-void TargetSpace::check_spread() const {
+std::string TargetSpace::lack_of_spread() const {
     const vcg::Point3f& a = positions_.front();
     const auto far = std::max_element(
         positions_.begin(), positions_.end(),
@@ -60,15 +103,18 @@ void TargetSpace::check_spread() const {
         if (distinct.size() < 4 && std::find(distinct.begin(), distinct.end(), p) == distinct.end())
             distinct.push_back(p);
         collinear = collinear && squared_distance_to_line(p, a, direction) < kCollinear * kCollinear;
-        if (!collinear && distinct.size() == 4) return;
+        if (!collinear && distinct.size() == 4) return "";
     }
     if (distinct.size() < 4)
-        throw InputError("The layer has only " + std::to_string(distinct.size()) +
-                         " distinct points: a surface needs at least 4.");
-    throw InputError(
-        "All points of the layer lie on one straight line: a surface cannot be learned from it. Choose a "
-        "layer "
-        "whose points surround a surface.");
+        return "The layer has only " + std::to_string(distinct.size()) +
+               " distinct points: a surface needs at least 4.";
+    return "All points of the layer lie on one straight line: a surface cannot be learned from it. Choose a "
+           "layer whose points surround a surface.";
+}
+
+void TargetSpace::check_spread() const {
+    const std::string lack = lack_of_spread();
+    if (!lack.empty()) throw InputError(lack);
 }
 
 void TargetSpace::accumulate_areas() {
@@ -84,6 +130,26 @@ void TargetSpace::accumulate_areas() {
             "The faces of the layer have no area to draw samples from: switch 'draw from faces' off to learn "
             "its "
             "vertices instead.");
+}
+
+std::optional<TargetSpace> TargetSpace::without(const std::vector<std::uint8_t>& left_out) const {
+    TargetSpace rest;
+    rest.frame_ = frame_;
+    rest.positions_.reserve(static_cast<std::size_t>(std::count(left_out.begin(), left_out.end(), 0)));
+    for (std::size_t i = 0; i < positions_.size(); ++i)
+        if (left_out[i] == 0) rest.positions_.push_back(positions_[i]);
+    if (rest.positions_.empty() || !rest.lack_of_spread().empty()) return std::nullopt;
+    return rest;
+}
+
+std::optional<TargetSpace> TargetSpace::each_place_once() const {
+    if (has_faces() || estimated_share_of_repeats(positions_) <= kManyRepeats) return std::nullopt;
+    TargetSpace once;
+    once.frame_ = frame_;
+    once.positions_ = positions_;
+    std::sort(once.positions_.begin(), once.positions_.end(), by_coordinates);
+    once.positions_.erase(std::unique(once.positions_.begin(), once.positions_.end()), once.positions_.end());
+    return once;
 }
 
 vcg::Point3f TargetSpace::sample(Random& random) const {

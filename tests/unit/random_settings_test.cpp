@@ -34,16 +34,21 @@ private:
 
 constexpr int kPatience = 400;  ///< looks, one in a thousand signals while it learns
 
-/// The most signals that a run may take, which learns up to four times the vertices asked for: the start mesh
-/// comes down, growth, settling.
-std::int64_t most_signals(const TargetSpace& target, Settings settings) {
-    settings.target_vertices *= 4;
+/// The most signals that one growth may take: the start mesh comes down, the network grows, it settles.
+std::int64_t most_of_growth(const TargetSpace& target, const Settings& settings) {
     const Learner learner(target, settings, referee::network_of(shapes::tetrahedron()));
     const std::int64_t vertices = settings.target_vertices;
     const auto learning = [&](std::int64_t per_vertex) {
         return std::max<std::int64_t>(60000, per_vertex * vertices);
     };
     return learning(100) + learner.signal_bound() + learning(settings.settling_signals_per_vertex);
+}
+
+/// Of a run, which learns up to four times the vertices asked for and, if that stalls, begins anew.
+std::int64_t most_signals(const TargetSpace& target, const Settings& settings) {
+    Settings more = settings;
+    more.target_vertices *= 4;
+    return most_of_growth(target, more) + most_of_growth(target, settings);
 }
 
 /// Network's own check beside the referee's, and the box: nothing flies away from the points.

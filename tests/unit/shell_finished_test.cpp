@@ -47,10 +47,49 @@ std::vector<vcg::Point3d> sphere_with_gross_outliers() {
     return cloud;
 }
 
-TEST(ShellFinished, GrossOutliersMakeNoComponents) {
-    const NeuralMesh mesh = finished(sphere_with_gross_outliers(), 500);
+/// All vertices are near the unit sphere.
+void expect_sphere(const NeuralMesh& mesh, double within) {
+    for (const vcg::Point3d& p : mesh.positions) ASSERT_NEAR(p.Norm(), 1, within);
+}
+
+TEST(ShellFinished, GrossOutliersMakeNoComponentsAndPullAtNothing) {
+    for (const int vertices : {500, 2000}) {
+        const NeuralMesh mesh = finished(sphere_with_gross_outliers(), vertices);
+        expect_closed(mesh, vertices, 1, 0);
+        expect_sphere(mesh, 0.05);
+        EXPECT_TRUE(warned_of(mesh, "as outliers"));
+    }
+}
+
+TEST(ShellFinished, PointsDeepInsidePullAtNothing) {
+    Random random(17);
+    std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
+    for (std::size_t i = 0; i < 200; ++i) cloud[i] *= 0.1 + 0.6 * static_cast<double>(random.unit());
+    const NeuralMesh mesh = finished(cloud, 500);
     expect_closed(mesh, 500, 1, 0);
-    EXPECT_TRUE(warned_of(mesh, "as outliers"));
+    expect_sphere(mesh, 0.02);
+    EXPECT_TRUE(warned_of(mesh, "200 of 20000 points were ignored as outliers"));
+}
+
+TEST(ShellFinished, AHalfAThousandTimesSparserIsNoOutlier) {
+    Random random(18);
+    std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 400000, random);
+    std::size_t below = 0;
+    cloud.erase(std::remove_if(cloud.begin(), cloud.end(),
+                               [&](const vcg::Point3d& p) { return p[2] < 0 && ++below % 1000 != 0; }),
+                cloud.end());
+    const NeuralMesh mesh = finished(cloud, 500);
+    expect_closed(mesh, 500, 1, 0);
+    EXPECT_FALSE(warned_of(mesh, "outliers"));
+}
+
+TEST(ShellFinished, RepeatedPointsAreLearnedOnce) {
+    Random random(19);
+    std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 60, random);
+    for (int doubling = 0; doubling < 7; ++doubling) cloud.insert(cloud.end(), cloud.begin(), cloud.end());
+    const NeuralMesh mesh = finished(cloud, 250);
+    expect_closed(mesh, 250, 1, 0);
+    EXPECT_TRUE(warned_of(mesh, "7620 of 7680 points repeat others"));
 }
 
 TEST(ShellFinished, FarClumpsOfFewPointsMakeNoComponents) {
@@ -62,7 +101,7 @@ TEST(ShellFinished, FarClumpsOfFewPointsMakeNoComponents) {
                                0.05 * static_cast<double>(random.unit()), 2);
     const NeuralMesh mesh = finished(cloud, 500);
     expect_closed(mesh, 500, 1, 1);
-    EXPECT_TRUE(warned_of(mesh, "450 of 20450 points were ignored"));
+    EXPECT_TRUE(warned_of(mesh, "450 of 20450 points were ignored as outliers"));
 }
 
 TEST(ShellFinished, AGroupOfOnePercentIsAComponent) {

@@ -235,5 +235,64 @@ TEST(TargetSpace, RefusesFacesWithoutArea) {
     }
 }
 
+TEST(TargetSpace, LeavesPointsOut) {
+    const Cloud cloud = shapes::sphere_cloud(100);
+    const TargetSpace target = cloud_target(cloud);
+    std::vector<std::uint8_t> left_out(100, 0);
+    left_out[0] = left_out[7] = left_out[99] = 1;
+    const std::optional<TargetSpace> rest = target.without(left_out);
+    ASSERT_TRUE(rest.has_value());
+    ASSERT_EQ(rest->positions().size(), 97U);
+    EXPECT_EQ(rest->positions()[0], target.positions()[1]);
+    EXPECT_EQ(rest->positions()[6], target.positions()[8]);
+    EXPECT_EQ(rest->frame().centre, target.frame().centre);
+    EXPECT_EQ(rest->frame().diagonal, target.frame().diagonal);
+}
+
+TEST(TargetSpace, LeavesNothingOutIfNoSurfaceRemains) {
+    Cloud line;
+    for (int i = 0; i < 30; ++i) line.emplace_back(i, 0, 0);
+    line.emplace_back(15, 10, 0);
+    std::vector<std::uint8_t> left_out(31, 0);
+    left_out[30] = 1;
+    EXPECT_FALSE(cloud_target(line).without(left_out).has_value());
+    EXPECT_FALSE(cloud_target(line).without(std::vector<std::uint8_t>(31, 1)).has_value());
+}
+
+/// The places of the cloud, sorted; empty if it is to be taken as it is.
+std::vector<vcg::Point3f> places_once(const Cloud& cloud) {
+    const std::optional<TargetSpace> once = cloud_target(cloud).each_place_once();
+    return once ? once->positions() : std::vector<vcg::Point3f>();
+}
+
+TEST(TargetSpace, TakesAFewRepeatsAsTheyAre) {
+    Cloud cloud = shapes::sphere_cloud(1000);
+    for (int i = 0; i < 100; ++i) cloud.push_back(cloud[static_cast<std::size_t>(i)]);
+    EXPECT_TRUE(places_once(cloud).empty());
+    EXPECT_TRUE(places_once(shapes::sphere_cloud(300000)).empty());
+}
+
+TEST(TargetSpace, TakesEveryPlaceOnceWhereManyRepeat) {
+    Cloud cloud = shapes::sphere_cloud(1000);
+    cloud[0] = {0.0, 0.5, 0.5};
+    for (int i = 0; i < 112; ++i) cloud.push_back(cloud[static_cast<std::size_t>(i)]);
+    EXPECT_EQ(places_once(cloud).size(), 1000U);
+}
+
+/// Where the share of repeats is an estimate: a few places that hold many points, and many that hold two.
+TEST(TargetSpace, SeesRepeatsInLargeClouds) {
+    Cloud heavy = shapes::sphere_cloud(300000);
+    heavy.insert(heavy.end(), 200000, heavy[5]);
+    EXPECT_EQ(places_once(heavy).size(), 300000U);
+    Cloud twice = shapes::sphere_cloud(300000);
+    for (std::size_t i = 0; i < 60000; ++i) twice.push_back(twice[i]);
+    EXPECT_EQ(places_once(twice).size(), 300000U);
+}
+
+TEST(TargetSpace, FacesAreNeverRepeats) {
+    shapes::Shape shape = shapes::cube();
+    EXPECT_FALSE(face_target(shape).each_place_once().has_value());
+}
+
 }  // namespace
 }  // namespace neuralmesh
