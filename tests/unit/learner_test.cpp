@@ -43,7 +43,8 @@ void expect_alike(const Learner& learner, const reference::ReferenceLearner& exp
 
 /// Runs are short, and short of the moment when a crumpled mesh (its star nearly without area) makes float
 /// and double part: from there both learn, but not the same mesh.
-void compare_runs(const shapes::Cloud& cloud, Network start, Settings settings, int signals, int batch = 1) {
+void compare_runs(const shapes::Cloud& cloud, const Network& start, Settings settings, int signals,
+                  int batch = 1) {
     settings.target_vertices = 100000;
     const TargetSpace target = target_of(cloud);
     Learner learner(target, settings, start);
