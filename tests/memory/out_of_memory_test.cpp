@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// No memory at any moment of a run: the caller gets the sentence about memory and finds all as it was,
-// nothing leaks, and the next run gives the bytes it always gives.
+// No memory at sampled moments of a run: the caller gets the sentence about memory and finds all as it was,
+// nothing leaks, and the next run gives the bytes it always gives. NEURALMESH_MEMORY_TRIES=1000 samples more
+// allocations than every test run has the time for.
 #include <gtest/gtest.h>
 #include <vcg/complex/complex.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstdint>
+#include <cstdlib>
 #include <new>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -17,6 +21,7 @@
 #include "filter_neuralmesh/actions.h"
 #include "tests/unit/shapes.h"
 #include "vcg_core/parallel.h"
+#include "vcg_core/random.h"
 
 namespace neuralmesh {
 namespace {
@@ -81,16 +86,30 @@ std::vector<Settings> variants() {
     return {shell, to_the_paper};
 }
 
-/// Steps through \p all allocations: each of the first hundred, then ever wider, some \p tries in all.
-std::vector<long long> sweep(long long all, int tries) {
-    std::vector<long long> result;
-    for (long long n = 0; n < all && n < 100; ++n) result.push_back(n);
-    for (int i = 0; i < tries; ++i) result.push_back(100 + i * (all - 100) / tries);
+/// The first hundred of \p all allocations, and one out of each of \p tries equal parts of the others. Where
+/// in its part differs from part to part and with \p salt, as a loop that allocates at a steady pace would
+/// otherwise fail at the same line every time.
+std::vector<long long> sampled(long long all, int tries, std::uint64_t salt) {
+    constexpr long long kFirst = 100;
+    std::vector<long long> result(kFirst);
+    std::iota(result.begin(), result.end(), 0);
+    Random random(salt);
+    const auto start_of = [&](int part) { return kFirst + part * (all - kFirst) / tries; };
+    for (int i = 0; i < tries; ++i) {
+        const long long size = std::max(start_of(i + 1) - start_of(i), 1LL);
+        result.push_back(start_of(i) + random.below(static_cast<std::uint32_t>(size)));
+    }
     return result;
 }
 
-void expect_the_sentence_wherever_it_fails(const Settings& settings, Failure failure,
-                                           const std::string& words) {
+/// How many parts there are: the variable's number, 25 without one.
+int tries() {
+    const char* text = std::getenv("NEURALMESH_MEMORY_TRIES");
+    return text == nullptr ? 25 : std::max(1, std::atoi(text));
+}
+
+void expect_the_sentence_where_it_fails(const Settings& settings, Failure failure, const std::string& words,
+                                        std::uint64_t salt) {
     Mesh layer;
     fill_with_sphere(layer);
     const std::string before = bytes_of(layer);
@@ -105,7 +124,7 @@ void expect_the_sentence_wherever_it_fails(const Settings& settings, Failure fai
     }
     ASSERT_GT(all, 200);
     int refused = 0;
-    for (const long long nth : sweep(all, 25)) {
+    for (const long long nth : sampled(all, tries(), salt)) {
         SCOPED_TRACE(testing::Message() << "allocation " << nth << " of " << all);
         const long long living = allocations::living();
         {
@@ -133,14 +152,16 @@ void expect_the_sentence_wherever_it_fails(const Settings& settings, Failure fai
 }
 
 TEST(OutOfMemory, OneFailedAllocationBecomesTheSentence) {
+    std::uint64_t salt = 0;
     for (const Settings& settings : variants())
-        expect_the_sentence_wherever_it_fails(settings, Failure::once,
-                                              "There is not enough memory for this mesh");
+        expect_the_sentence_where_it_fails(settings, Failure::once,
+                                           "There is not enough memory for this mesh", ++salt);
 }
 
 TEST(OutOfMemory, NothingLeftAtAllIsStillSaid) {
+    std::uint64_t salt = 100;
     for (const Settings& settings : variants())
-        expect_the_sentence_wherever_it_fails(settings, Failure::from_then_on, "Out of memory.");
+        expect_the_sentence_where_it_fails(settings, Failure::from_then_on, "Out of memory.", ++salt);
 }
 
 TEST(OutOfMemory, ALoopDoesWithTheThreadsItCanHave) {
