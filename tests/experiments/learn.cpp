@@ -8,12 +8,20 @@
 
 #include <cstdio>
 #include <exception>
+#include <stdexcept>
 #include <string>
 
 #include "ply_mesh.h"
 #include "vcg_core/reconstruct.h"
 
 namespace {
+
+void save(const neuralmesh::PlyMesh& mesh, const std::string& path, int mask) {
+    using Exporter = vcg::tri::io::ExporterPLY<neuralmesh::PlyMesh>;
+    const int failed = Exporter::Save(mesh, path.c_str(), mask, true);
+    if (failed != 0)
+        throw std::runtime_error("Cannot write " + path + ": " + Exporter::ErrorMsg(failed) + ".");
+}
 
 int learn(int argc, char** argv) {
     neuralmesh::Settings settings;
@@ -24,8 +32,7 @@ int learn(int argc, char** argv) {
     neuralmesh::PlyMesh out;
     neuralmesh::write_mesh(result, settings, out);
     using Mask = vcg::tri::io::Mask;
-    vcg::tri::io::ExporterPLY<neuralmesh::PlyMesh>::Save(out, argv[2],
-                                                         Mask::IOM_VERTQUALITY | Mask::IOM_VERTCOLOR, true);
+    save(out, argv[2], Mask::IOM_VERTQUALITY | Mask::IOM_VERTCOLOR);
     const neuralmesh::Report& r = result.report;
     for (const std::string& warning : r.warnings) std::fprintf(stderr, "%s\n", warning.c_str());
     std::printf(
@@ -33,7 +40,8 @@ int learn(int argc, char** argv) {
         "\"boundary_loops\":%d,\"components\":%d,\"feature_vertices\":%d,\"rms_error\":%.6g,"
         "\"mean_counter\":%.6g,\"topology_confidence\":%.3g,\"seconds\":%.4g,\"stop_reason\":%d}\n",
         r.vertices, r.faces, r.signals, r.splits, r.collapses, r.genus, r.boundary_loops, r.components,
-        r.feature_vertices, r.rms_error, r.mean_counter, r.topology_confidence, r.seconds, static_cast<int>(r.stop_reason));
+        r.feature_vertices, r.rms_error, r.mean_counter, r.topology_confidence, r.seconds,
+        static_cast<int>(r.stop_reason));
     return 0;
 }
 

@@ -41,13 +41,29 @@ inline TargetSpace target_of_ply(const std::string& path, const Settings& settin
     return target_space_of(mesh, identity, settings);
 }
 
+/// The number that \p text is, or 1 and 0 for true and false where \p kind says so. \return false if it is
+/// none
+inline bool read_value(const std::string& text, SettingInfo::Kind kind, double& value) {
+    if (kind == SettingInfo::Kind::boolean && (text == "true" || text == "false")) {
+        value = text == "true" ? 1 : 0;
+        return true;
+    }
+    char* end = nullptr;
+    value = std::strtod(text.c_str(), &end);
+    return !text.empty() && *end == '\0';
+}
+
 /// Stores \p word, parameter=value with any parameter of the settings table. \throws SettingError if it is
 /// not
 inline void set_parameter(Settings& settings, const std::string& word) {
     const auto equals = word.find('=');
     for (const SettingInfo& info : setting_table()) {
         if (equals == std::string::npos || word.substr(0, equals) != info.id) continue;
-        info.store(settings, std::atof(word.c_str() + equals + 1));
+        double value = 0;
+        if (!read_value(word.substr(equals + 1), info.kind, value))
+            throw SettingError("'" + word + "' does not give " + info.id + " a number" +
+                               (info.kind == SettingInfo::Kind::boolean ? ", true or false." : "."));
+        info.store(settings, value);
         return;
     }
     throw SettingError("'" + word + "' is not parameter=value with a known parameter.");

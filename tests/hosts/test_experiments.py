@@ -5,6 +5,7 @@
 and termination. `./run.sh figures` makes the full ones."""
 
 import json
+import subprocess
 
 import numpy as np
 import pytest
@@ -45,6 +46,42 @@ def test_kept_rows_are_taken_again_and_only_those(tmp_path):
     assert paper_runs.Kept(path, program).row(make, seed=3) == {"row": 2}
     program.write_text("another build")
     assert paper_runs.Kept(path, program).row(make, seed=1) == {"row": 3}
+
+
+# --- the core as a command ----------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def learned(learn, tmp_path_factory):
+    """learned(OUT, WORD...): the finished process of `learn` on a small sphere."""
+    cloud = tmp_path_factory.mktemp("learned") / "cloud.ply"
+    models.save_ply(cloud, models.make_cloud(*models.load_model("sphere"), 1000))
+
+    def run(out, *words):
+        return subprocess.run([str(learn), str(cloud), str(out), "target_vertices=100", "settling_signals_per_vertex=0",
+                               *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+
+    return run
+
+
+def test_a_mesh_that_cannot_be_saved_ends_with_a_sentence(learned, tmp_path):
+    done = learned(tmp_path / "no_such_folder" / "out.ply")
+    assert done.returncode == 1 and done.stdout == ""
+    assert "Cannot write" in done.stderr and "no_such_folder" in done.stderr
+
+
+@pytest.mark.parametrize("word", ["fit_to_points=yes", "fit_to_points=", "learning_rate=,06", "learning_rate=.06x",
+                                  "target_vertices=many", "target_vertices=true", "target_vertex=100"])
+def test_a_word_that_gives_no_parameter_a_value_is_refused(learned, tmp_path, word):
+    done = learned(tmp_path / "out.ply", word)
+    assert done.returncode == 1 and word in done.stderr and done.stderr.strip().endswith(".")
+
+
+def test_true_and_false_are_one_and_zero(learned, tmp_path):
+    for value, number in (("true", "1"), ("false", "0")):
+        assert learned(tmp_path / "word.ply", f"fit_to_points={value}").returncode == 0
+        assert learned(tmp_path / "number.ply", f"fit_to_points={number}").returncode == 0
+        assert (tmp_path / "word.ply").read_bytes() == (tmp_path / "number.ply").read_bytes()
 
 
 # --- Table 1 ------------------------------------------------------------------------------------------------------
