@@ -7,8 +7,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <sstream>
 #include <string>
 
@@ -162,10 +164,17 @@ TargetSpace random_target(Random& random) {
         cloud.size() / 3, [&](std::size_t i, int k) { return cloud[3 * i + static_cast<std::size_t>(k)]; });
 }
 
-/// The number in the variable \p name of the environment, or \p otherwise.
-int number_of(const char* name, int otherwise) {
+/// The whole number in the variable \p name of the environment, or \p otherwise where there is none; a word
+/// or a number below \p low is a failure, for the test would pass having tried nothing.
+int number_of(const char* name, int otherwise, int low) {
     const char* text = std::getenv(name);
-    return text == nullptr ? otherwise : std::atoi(text);
+    if (text == nullptr) return otherwise;
+    int number = 0;
+    const char* end = text + std::strlen(text);
+    const auto read = std::from_chars(text, end, number);
+    if (read.ec == std::errc() && read.ptr == end && number >= low) return number;
+    ADD_FAILURE() << name << " is '" << text << "': a whole number from " << low << " on is expected.";
+    return otherwise;
 }
 
 /// What differs from the defaults.
@@ -178,8 +187,9 @@ std::string changes(const Settings& settings) {
 }
 
 TEST(RandomSettings, KeepThePromisesOnRandomClouds) {
-    const int runs = number_of("NEURALMESH_RANDOM_RUNS", 40);
-    const int first = number_of("NEURALMESH_RANDOM_FIRST", 0);
+    const int runs = number_of("NEURALMESH_RANDOM_RUNS", 40, 1);
+    const int first = number_of("NEURALMESH_RANDOM_FIRST", 0, 0);
+    if (HasFailure()) return;
     int learned = 0;
     for (int i = first; i < first + runs; ++i) {
         Random random(static_cast<std::uint64_t>(i) + 1000);
