@@ -5,23 +5,15 @@
 test run, and the measuring tools themselves on surfaces whose error is known. The large tables are made by
 tests/experiments/compare_accuracy.py."""
 
-import os
-import sys
-from pathlib import Path
-
 import numpy as np
 import pymeshlab
 import pytest
 
-pytest.importorskip("pymeshlab", reason="pymeshlab is not installed; './run.sh test' installs it.")
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "experiments"))
-
-import evaluate  # noqa: E402
-import models  # noqa: E402
-import peers  # noqa: E402
-import shapes  # noqa: E402
+import evaluate
+import meshlabserver
+import models
+import peers
+import shapes
 
 SAMPLES = 30_000
 VERTICES = 2000
@@ -87,9 +79,8 @@ def test_a_peer_that_crashes_is_reported_with_a_sentence(tmp_path):
 
 
 @pytest.fixture(scope="module")
-def plugin():
-    path = Path(os.environ.get("NEURAL_MESH_PLUGIN")
-                or ROOT / "build" / "plugins" / "pymeshlab-2025.7" / "libfilter_neuralmesh.so")
+def plugin(build):
+    path = meshlabserver.plugin_path(build, "pymeshlab-2025.7")
     assert path.exists(), f"There is no plugin at {path}; './run.sh build' makes it."
     return path
 
