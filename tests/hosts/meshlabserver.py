@@ -16,12 +16,16 @@ from pathlib import Path
 
 INSTALLED = Path("/usr/bin/meshlabserver")
 LIBRARIES = Path("/usr/lib/x86_64-linux-gnu/meshlab")
-NEIGHBOURS = ("libio_base.so", "libio_3ds.so", "libfilter_layer.so", "libfilter_select.so")
+NEIGHBOURS = ("libio_*.so", "libfilter_layer.so", "libfilter_select.so")  # every format that MeshLab reads
 HOST = "meshlab-2020.09"
 
 
 class ServerError(RuntimeError):
     """meshlabserver did not do what it was asked; the message holds what it said."""
+
+
+class CheckError(RuntimeError):
+    """vcglib could not read a mesh to check; the message says why."""
 
 
 def plugin_path(build, host=HOST):
@@ -36,8 +40,9 @@ def make_folder(folder, plugin):
     (folder / "plugins").mkdir(parents=True)
     folder.chmod(0o700)
     shutil.copy(INSTALLED, folder / "meshlabserver")
-    for name in NEIGHBOURS:
-        (folder / "plugins" / name).symlink_to(LIBRARIES / "plugins" / name)
+    for pattern in NEIGHBOURS:
+        for neighbour in (LIBRARIES / "plugins").glob(pattern):
+            (folder / "plugins" / neighbour.name).symlink_to(neighbour)
     (folder / "plugins" / "libfilter_neuralmesh.so").symlink_to(Path(plugin).resolve())
     return folder
 
@@ -72,12 +77,13 @@ def run(folder, *arguments, timeout=600):
     return done.returncode, done.stdout
 
 
-def reconstruct(folder, cloud, script, out):
+def reconstruct(folder, cloud, script, out, timeout=600):
     """Runs `script` on `cloud` and saves the result with quality, colour and selection flags.
-    Returns the figures in the log. The exit code tells nothing of a failed save, so the file is looked at."""
+    Returns the figures in the log. The exit code tells nothing of a failed save, so the file is looked at.
+    `timeout` in seconds; None: a user who asks for a million vertices waits for them."""
     out = Path(out)
     out.unlink(missing_ok=True)
-    code, text = run(folder, "-i", cloud, "-o", out, "-m", "vq", "vc", "vf", "-s", script)
+    code, text = run(folder, "-i", cloud, "-o", out, "-m", "vq", "vc", "vf", "-s", script, timeout=timeout)
     if code != 0 or not out.exists():
         raise ServerError(text)
     return figures(text)
@@ -105,7 +111,10 @@ def write_script(build, path, **values):
 
 
 def check_mesh(build, mesh, reference=None):
-    """What vcglib says of a mesh file (tests/hosts/check_mesh.cpp), as a dictionary."""
+    """What vcglib says of a mesh file (tests/hosts/check_mesh.cpp), as a dictionary. CheckError: it cannot read one."""
     files = [str(mesh)] + ([str(reference)] if reference else [])
-    done = subprocess.run([str(Path(build) / "tests" / "check_mesh"), *files], check=True, stdout=subprocess.PIPE)
+    done = subprocess.run([str(Path(build) / "tests" / "check_mesh"), *files], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True, errors="replace", check=False)
+    if done.returncode != 0:
+        raise CheckError(done.stderr.strip() or f"check_mesh ended with code {done.returncode}")
     return json.loads(done.stdout)
