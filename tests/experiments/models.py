@@ -92,9 +92,8 @@ TOPOLOGY_MODELS = ("bunny", "koala", "fandisk", "kitten", "rocker-arm", "eight",
 
 
 def cache_folder():
-    """Where downloaded packages are kept between runs: NEURAL_MESH_CACHE, or the user's cache folder."""
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    folder = Path(os.environ.get("NEURAL_MESH_CACHE") or Path(base) / "neural-mesh" / "models")
+    """Where downloaded packages are kept between runs: in the user's cache folder."""
+    folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "neural-mesh" / "models"
     folder.mkdir(parents=True, exist_ok=True)
     return folder
 
@@ -177,21 +176,6 @@ def load_model(name, data=None):
         else:
             reasons.append(f"Its file {rest} needs a data folder: give --data or set NEURAL_MESH_DATA.")
     raise ModelError(f"The model {name} is not to be had. " + " ".join(reasons))
-
-
-def available(name, data=None):
-    """True if load_model would find the model without a download."""
-    data = data or os.environ.get("NEURAL_MESH_DATA")
-    for source in MODELS[name].sources:
-        kind, _, rest = source.partition(":")
-        if kind == "code" or (kind == "data" and data and Path(data, rest).exists()):
-            return True
-        if kind == "deb":
-            package, member = rest.split(":", 1)
-            archive, _, inner = member.partition("!")
-            if (not inner and Path("/", archive).exists()) or (cache_folder() / package / (inner or archive)).exists():
-                return True
-    return False
 
 
 def diagonal(points):

@@ -4,14 +4,15 @@
 
 # Makes a root directory of another Debian release with its MeshLab in it, for GUI tests:
 #
-#   gui_debian_root.sh SUITE FOLDER      SUITE: trixie (MeshLab 2022.02) or sid (2025.07)
+#   gui_debian_root.sh RELEASE SUITE FOLDER      RELEASE: 2022.02 or 2025.07, SUITE: where it is looked for first
 #
 # About 800 MB and two minutes; a folder that is complete already is left as it is. Needs root and
 # the package debootstrap. Packages come from the mirror this system uses, or from $DEBIAN_MIRROR.
 set -eu
 
-suite=$1
-folder=$2
+release=$1
+folder=$3
+here=$(cd "$(dirname "$0")" && pwd)
 complete="$folder.complete"
 if [ -e "$complete" ]; then exit 0; fi
 if [ "$(id -u)" != 0 ]; then
@@ -23,7 +24,7 @@ if ! command -v debootstrap >/dev/null; then
     exit 1
 fi
 
-mirror=$("$(dirname "$0")/../../filter_neuralmesh/debian_mirror.sh")
+mirror=$("$here/../../filter_neuralmesh/debian_mirror.sh")
 if [ -z "$mirror" ]; then
     echo "gui_debian_root: no Debian mirror in apt's sources; name one in DEBIAN_MIRROR." >&2
     exit 1
@@ -32,12 +33,22 @@ fi
 if [ ! -e "$folder.debootstrapped" ]; then
     # An interrupted attempt leaves a half-made folder beside its mark; anything else there is not ours.
     if [ -e "$folder.started" ]; then
-        rm -rf "$folder"
+        # It may also have left the system's own /proc and /dev mounted there.
+        if grep -q " $folder/" /proc/mounts; then
+            echo "gui_debian_root: something is mounted in $folder; unmount it first: grep $folder /proc/mounts" >&2
+            exit 1
+        fi
+        rm -rf --one-file-system "$folder"
     elif [ -e "$folder" ]; then
         echo "gui_debian_root: $folder exists and was not made by this script; choose another folder." >&2
         exit 1
     fi
-    mkdir -p "$(dirname "$folder")"
+    mkdir -p "$folder.apt"
+    cd "$folder.apt"
+    . "$here/private_apt.sh"
+    choose_suite "$release" "$2"
+    cd /
+    rm -rf "$folder.apt"
     touch "$folder.started"
     debootstrap --variant=minbase "$suite" "$folder" "$mirror"
     touch "$folder.debootstrapped"

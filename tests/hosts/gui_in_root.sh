@@ -13,6 +13,6 @@ shift 2
 plugin=${1:-$project/build/plugins/meshlab-$version/libfilter_neuralmesh.so}
 cloud=${2:-$project/out/cloud/bunny_points.ply}
 roots=${NEURAL_MESH_ROOTS:-${XDG_CACHE_HOME:-$HOME/.cache}/neural-mesh/roots}
-"$here/gui_debian_root.sh" "$suite" "$roots/$suite"
+"$here/gui_debian_root.sh" "$version" "$suite" "$roots/$suite"
 exec "${PYTHON:-/usr/bin/python3}" "$here/gui_filter.py" --root "$roots/$suite" --plugin "$plugin" --cloud "$cloud" \
     --out "${3:-$project/out/gui}"

@@ -160,10 +160,6 @@ class GuiSession(contextlib.AbstractContextManager):
         self.xdotool("windowfocus", "--sync", window)
         self.xdotool("key", "--clearmodifiers", "--delay", 40, *keys)
 
-    def type_text(self, window, text):
-        self.xdotool("windowfocus", "--sync", window)
-        self.xdotool("type", "--clearmodifiers", "--delay", 25, text)
-
     def click(self, x, y, button=1):
         """Clicks at a point of the screen (pixels from its top left corner)."""
         self.xdotool("mousemove", "--sync", x, y, "click", button)
