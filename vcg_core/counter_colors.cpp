@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace neuralmesh {
@@ -30,7 +31,7 @@ Color on_ramp(float t) {
     const float x = place - static_cast<float>(i);
     Color color{};
     for (std::size_t k = 0; k < color.size(); ++k)
-        color[k] = static_cast<unsigned char>((1 - x) * kRamp[i][k] + x * kRamp[i + 1][k] + 0.5F);
+        color[k] = static_cast<unsigned char>(std::lround((1 - x) * kRamp[i][k] + x * kRamp[i + 1][k]));
     return color;
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "fit_steps.h"
 #include "random.h"
@@ -143,10 +144,11 @@ FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOp
     const Network before = network;
     Rounds rounds = take_rounds(network, steps, options, report, progress);
     judge(rounds, steps, learned_share, report);
-    network = report.improved ? std::move(rounds.best) : before;
     if (report.improved) {
+        network = std::move(rounds.best);
         settle_origins(before, network, report.origin);
     } else {
+        network = before;
         report.origin = own_places(before);
     }
     return report;

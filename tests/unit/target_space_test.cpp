@@ -219,7 +219,8 @@ TEST(TargetSpace, DrawsUniformlyWithinATriangle) {
             return std::min(cells - 1, std::max(0, static_cast<int>(x * cells)));
         };
         ASSERT_TRUE(p[0] > -1e-6 && p[0] < 1 + 1e-6 && p[1] > -1e-6 && p[1] < 1 + 1e-6);
-        ++seen[static_cast<std::size_t>(cell(p[0]) * cells + cell(p[1]))];
+        const int hit = cell(p[0]) * cells + cell(p[1]);
+        ++seen[static_cast<std::size_t>(hit)];
     }
     EXPECT_LT(chi_square(seen, std::vector<double>(seen.size(), n / double(cells * cells))),
               limit(cells * cells - 1));
