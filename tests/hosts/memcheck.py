@@ -12,6 +12,7 @@ packages valgrind and xvfb.
 """
 
 import argparse
+import math
 import subprocess
 import sys
 import tempfile
@@ -24,10 +25,18 @@ ROOT = Path(__file__).resolve().parents[2]
 PLUGIN = "libfilter_neuralmesh.so"
 
 
-def write_cloud(path, count=600):
-    """A saddle of points, as a text file that meshlabserver reads."""
-    steps = [i / 24 - .5 for i in range(25)]
-    points = [(x, y, x * x - y * y) for x in steps for y in steps][:count]
+TARGET = 50
+
+
+def write_cloud(path, count=25 * TARGET):
+    """A ball of points, as a text file that meshlabserver reads. It encloses space and has points enough for each
+    vertex, so that nothing is left out: a sheet would be learned without smoothing, a cloud of fewer points
+    without the vertices that are learned beyond the target and taken out again."""
+    points = []
+    for i in range(count):
+        z, turn = 1 - (2 * i + 1) / count, 2.399963229728653 * i
+        rim = math.sqrt(1 - z * z)
+        points.append((rim * math.cos(turn), rim * math.sin(turn), z))
     path.write_text("\n".join(["ply", "format ascii 1.0", f"element vertex {len(points)}", "property float x",
                                "property float y", "property float z", "end_header",
                                *(f"{x} {y} {z}" for x, y, z in points)]) + "\n")
@@ -75,10 +84,12 @@ def check(build, parameters):
     """Runs the filter once. Returns (a line about it, errors through the plugin)."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
-        text = checked_run(build, Path(folder), report, target_vertices=60, settling_signals_per_vertex=0, threads=2,
+        text = checked_run(build, Path(folder), report, target_vertices=TARGET, settling_signals_per_vertex=0, threads=2,
                            **parameters)
         ours, all_errors = judge(report)
     figures = meshlabserver.figures(text)
+    if figures["warnings"] != 0:
+        raise meshlabserver.ServerError(f"The cloud was learned as something else than a ball:\n{text[-3000:]}")
     return (f"{figures['vertices']} vertices after {figures['signals']} signals: {len(ours)} errors in the plugin, "
             f"{all_errors - len(ours)} elsewhere"), ours
 
