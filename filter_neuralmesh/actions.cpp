@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <locale>
 #include <new>
 #include <sstream>
@@ -26,9 +27,10 @@ constexpr const char* kReconstructInfo =
     "attracts "
     "the nearest vertex, vertices whose normal varies much are split, vertices that never win are "
     "collapsed.<br/>"
-    "The current layer stays as it is; the result is a new layer in world coordinates. Its vertex quality is "
-    "the feature counter: how much the normal of the vertex still varied while it learned, near zero on "
-    "smooth parts, large on edges and corners.<br/>"
+    "The current layer stays as it is; the result is a new layer in world coordinates (where single "
+    "precision cannot hold those, the new layer has the translation of the current one in its matrix). Its "
+    "vertex quality is what 'Feature measure' names: how much the normal of the vertex still varied while it "
+    "learned, or the crease measure; near zero on smooth parts, large on edges and corners.<br/>"
     "See:<br/>"
     "<i>Won-Ki Jeong, Ioannis Ivrissimtzis, Hans-Peter Seidel</i><br/>"
     "<b>\"Neural Meshes: Statistical Learning based on Normals\"</b><br/>"
@@ -37,7 +39,8 @@ constexpr const char* kReconstructInfo =
 const char* words_for(StopReason reason) {
     switch (reason) {
         case StopReason::target_reached: return "the target was reached";
-        case StopReason::converged: return "the mean counter fell below stop_below_mean_counter";
+        case StopReason::converged:
+            return "signals turned the normals by fewer degrees than 'Stop below mean counter' says";
         case StopReason::cancelled: return "it was cancelled";
         case StopReason::cut_short: return "the bound on signals was reached before the target";
     }
@@ -74,7 +77,7 @@ std::string sentence_if_memory_allows() {
     } catch (const Error& error) {
         return error.what();
     } catch (const std::bad_alloc&) {
-        return "There is not enough memory for this mesh: lower target_vertices, or learn a smaller cloud.";
+        return "There is not enough memory for this mesh: lower 'Target vertices', or learn a smaller cloud.";
     } catch (const std::exception& error) {
         return std::string("The filter met an unexpected error and has changed nothing (") + error.what() +
                "). Please report it with the layer and the parameters.";
@@ -85,6 +88,11 @@ std::string sentence_if_memory_allows() {
 }
 
 }  // namespace
+
+int Figure::count() const {
+    constexpr int kLargest = std::numeric_limits<int>::max();
+    return value < kLargest ? static_cast<int>(value) : kLargest;
+}
 
 const std::vector<Action>& all_actions() {
     static const std::vector<Action> all = {{kReconstruct, "Surface Reconstruction: Neural Mesh",
@@ -106,6 +114,7 @@ std::vector<Figure> figures(const Report& report) {
             count("boundary_loops", report.boundary_loops),
             count("components", report.components),
             count("feature_vertices", report.feature_vertices),
+            count("warnings", static_cast<long long>(report.warnings.size())),
             {"rms_error", report.rms_error, false},
             {"mean_counter", report.mean_counter, false},
             {"topology_confidence", report.topology_confidence, false},
@@ -133,8 +142,19 @@ std::vector<std::string> log_lines(const Report& report) {
 
     std::vector<std::string> lines = {told.str(), dictionary.str()};
     if (report.topology_confidence > 0) lines.push_back(sentence_on_topology(report));
-    lines.insert(lines.end(), report.warnings.begin(), report.warnings.end());
     return lines;
+}
+
+std::string sentence_on_origin(const Coordinates& origin) {
+    std::ostringstream told = plain_stream();
+    told
+        << std::setprecision(9) << "The layer lies so far from the origin that single precision would round "
+        << "the surface away. So the new layer has the translation (" << origin[0] << ", " << origin[1]
+        << ", " << origin[2]
+        << ") in its matrix, as the learned one has, and its coordinates are counted from there: "
+        << "it is in its right place in MeshLab and in projects, but a mesh file has no matrix and holds the "
+        << "coordinates alone.";
+    return told.str();
 }
 
 double from_host(double value) {

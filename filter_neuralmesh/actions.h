@@ -43,13 +43,20 @@ struct Figure {
     const char* key;
     double value;
     bool is_count;  ///< an int for Python, else a double
+
+    /// A count as an int; what is beyond int, as signals may be, becomes the largest one.
+    int count() const;
 };
 
 /// The figures of \p report in the order they are told.
 std::vector<Figure> figures(const Report& report);
 
-/// What the log is told after a run: a sentence, all figures as key=value, then the warnings.
+/// What the log is told after a run beside the warnings: a sentence, all figures as key=value, and how sure
+/// the topology is.
 std::vector<std::string> log_lines(const Report& report);
+
+/// The warning that the coordinates of the new layer are counted from \p origin.
+std::string sentence_on_origin(const Coordinates& origin);
 
 /// The number a user meant who gave \p value to a host that keeps parameters as float: the shortest decimal
 /// that rounds to it. So .06 is the same number in every host, be its parameters float or double.

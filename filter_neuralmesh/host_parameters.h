@@ -57,12 +57,4 @@ inline Settings settings_from(const RichParameterList& list) {
     return settings;
 }
 
-/// The attributes that a result written with \p settings has beyond coordinates and faces.
-inline int result_mask(const Settings& settings) {
-    int mask = MeshModel::MM_VERTQUALITY;
-    if (settings.color_by_counter) mask |= MeshModel::MM_VERTCOLOR;
-    if (settings.select_features) mask |= MeshModel::MM_VERTFLAGSELECT;
-    return mask;
-}
-
 }  // namespace neuralmesh

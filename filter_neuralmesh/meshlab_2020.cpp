@@ -16,6 +16,7 @@
 #include <string>
 #include <type_traits>
 
+#include "host_layer.h"
 #include "host_parameters.h"
 
 namespace {
@@ -48,7 +49,7 @@ std::string misfit() {
 FilterNeuralMeshPlugin::FilterNeuralMeshPlugin() {
     for (const Action& action : all_actions()) {
         typeList << action.id;
-        actionList << new QAction(filterName(action.id), this);
+        actionList << new QAction(QString::fromUtf8(action.name), this);
     }
 }
 
@@ -86,14 +87,23 @@ bool FilterNeuralMeshPlugin::applyFilter(QAction* /*action*/, MeshDocument& docu
         return true;
     } catch (...) {
         const std::string sentence = sentence_of_current_exception();
-        errorMessage = QString::fromStdString(sentence);
         try {
+            errorMessage = QString::fromStdString(sentence);
             // meshlabserver prints the log only.
             Log(GLLogStream::WARNING, sentence);
         } catch (const std::bad_alloc&) {
-            // The log has no memory for it; the window shows the message.
+            // There is no memory for it; the host says at least that the filter has failed.
         }
         return false;
+    }
+}
+
+void FilterNeuralMeshPlugin::log_run(const Report& report) {
+    try {
+        for (const std::string& line : log_lines(report)) Log(GLLogStream::FILTER, line);
+        for (const std::string& warning : report.warnings) Log(GLLogStream::WARNING, warning);
+    } catch (const std::bad_alloc&) {
+        // The log has no memory for it; the mesh is there all the same.
     }
 }
 
@@ -102,20 +112,21 @@ void FilterNeuralMeshPlugin::learn_current_layer(MeshDocument& document, const R
     MeshModel* const layer = document.mm();
     if (layer == nullptr) throw InputError(kNoLayer);
     const Settings settings = settings_from(list);
-    const NeuralMesh result = run(layer->cm, layer->cm.Tr, settings, call_back);
+    // The window handles events during a run, so the layer need not be there after it.
+    const auto current = layer->id();
+    const Matrix44m transform = layer->cm.Tr;
+    NeuralMesh result = run(layer->cm, transform, settings, call_back);
 
     MeshModel* const added = document.addNewMesh("", kLayerLabel, true);
     try {
-        added->updateDataMask(result_mask(settings));
-        write_mesh(result, settings, added->cm);
-        added->cm.svn = settings.select_features ? result.report.feature_vertices : 0;
+        fill_layer(result, settings, transform, *added);
         added->UpdateBoxAndNormals();
-        for (const std::string& line : log_lines(result.report)) Log(line);
     } catch (...) {
         document.delMesh(added);
-        document.setCurrentMesh(layer->id());
+        document.setCurrentMesh(current);
         throw;
     }
+    log_run(result.report);
 }
 
 MESHLAB_PLUGIN_NAME_EXPORTER(FilterNeuralMeshPlugin)

@@ -13,6 +13,7 @@
 
 #include <new>
 
+#include "host_layer.h"
 #include "host_parameters.h"
 
 using namespace neuralmesh;
@@ -83,26 +84,33 @@ std::map<std::string, QVariant> FilterNeuralMeshPlugin::learn_current_layer(
     MeshModel* const layer = document.mm();
     if (layer == nullptr) throw InputError(kNoLayer);
     const Settings settings = settings_from(list);
-    const NeuralMesh result = run(layer->cm, layer->cm.Tr, settings, call_back);
-
+    // The window handles events during a run, so the layer need not be there after it.
     const auto current = layer->id();
+    const Matrix44m transform = layer->cm.Tr;
+    NeuralMesh result = run(layer->cm, transform, settings, call_back);
+
+    std::map<std::string, QVariant> results;
     MeshModel* const added = document.addNewMesh("", kLayerLabel, true);
     try {
-        added->updateDataMask(result_mask(settings));
-        write_mesh(result, settings, added->cm);
-        added->cm.svn = settings.select_features ? result.report.feature_vertices : 0;
+        fill_layer(result, settings, transform, *added);
         added->updateBoxAndNormals();
-
-        for (const std::string& line : log_lines(result.report)) log(line.c_str());
-        std::map<std::string, QVariant> results;
         for (const Figure& figure : figures(result.report))
-            results[figure.key] =
-                figure.is_count ? QVariant(static_cast<int>(figure.value)) : QVariant(figure.value);
-        return results;
+            results[figure.key] = figure.is_count ? QVariant(figure.count()) : QVariant(figure.value);
     } catch (...) {
         document.delMesh(added->id());
         document.setCurrentMesh(static_cast<int>(current));
         throw;
+    }
+    log_run(result.report);
+    return results;
+}
+
+void FilterNeuralMeshPlugin::log_run(const Report& report) const {
+    try {
+        for (const std::string& line : log_lines(report)) log(GLLogStream::FILTER, line);
+        for (const std::string& warning : report.warnings) log(GLLogStream::WARNING, warning);
+    } catch (const std::bad_alloc&) {
+        // The log has no memory for it; the mesh is there all the same.
     }
 }
 

@@ -1,14 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Where the caller's coordinates enter the core's own vcglib.
+// Where the caller's coordinates enter the core's own vcglib, what is said of those that are no numbers, and
+// how far from their origin coordinates may be.
 #include "mesh_io.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace neuralmesh::detail {
 
 namespace {
 
+/// Of the result's diagonal: what rounding may move a vertex by. Much below the error of any mesh, and still
+/// a hundred and more diagonals from the origin in single precision.
+constexpr double kRounding = 1e-5;
+
 vcg::Point3d point(const Coordinates& c) { return {c[0], c[1], c[2]}; }
+
+/// The largest coordinate of all, without its sign, counted from \p origin.
+double reach(const NeuralMesh& result, const Coordinates& origin) {
+    double reached = 0;
+    for (const vcg::Point3d& p : result.positions)
+        for (int k = 0; k < 3; ++k)
+            reached = std::max(reached, std::abs(p[k] - origin[static_cast<std::size_t>(k)]));
+    return reached;
+}
 
 }  // namespace
 
@@ -19,6 +36,33 @@ TargetSpace target_of_points(std::size_t count, const std::function<Coordinates(
 TargetSpace target_of_triangles(std::size_t count,
                                 const std::function<Coordinates(std::size_t, int)>& corner_at) {
     return TargetSpace::triangles(count, [&](std::size_t i, int k) { return point(corner_at(i, k)); });
+}
+
+Coordinates better_origin(const NeuralMesh& result, const Coordinates& of_layer, double rounding) {
+    const Coordinates of_world{};
+    vcg::Box3d box;
+    for (const vcg::Point3d& p : result.positions) box.Add(p);
+    const double in_world = reach(result, of_world);
+    if (rounding * in_world <= kRounding * box.Diag()) return of_world;
+    // To halve the rounding is the least that is worth a matrix.
+    return reach(result, of_layer) < in_world / 2 ? of_layer : of_world;
+}
+
+bool is_finite(const Coordinates& c) {
+    return std::isfinite(c[0]) && std::isfinite(c[1]) && std::isfinite(c[2]);
+}
+
+void refuse_not_finite(std::size_t not_finite, std::size_t count) {
+    throw InputError(std::to_string(not_finite) + " of the " + std::to_string(count) +
+                     " vertices of the layer have coordinates that are not finite (NaN or infinite): select "
+                     "them with the filter 'Conditional Vertex Selection' and the condition "
+                     "x-x != 0 || y-y != 0 || z-z != 0, then remove them with 'Delete Selected Vertices'.");
+}
+
+void refuse_matrix() {
+    throw InputError(
+        "The matrix of the layer moves vertices to coordinates that are not finite (NaN or infinite): give "
+        "the layer another one, for example with the filter 'Matrix: Reset Current Matrix'.");
 }
 
 }  // namespace neuralmesh::detail

@@ -12,6 +12,8 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,25 +27,61 @@ namespace neuralmesh {
 /// The target space of \p mesh under \p transform (the layer's matrix; identity: nothing changes).
 /// Deleted elements are skipped; settings.selected_only keeps the selected vertices (or faces) alone;
 /// settings.draw_from_faces makes a mesh with faces be sampled over its area. The mesh is not changed.
-/// \throws InputError as TargetSpace does, and if selected_only finds no selection
+/// \throws InputError as TargetSpace does, if selected_only finds no selection, and for coordinates that are
+/// not finite, be it by themselves or by the matrix
 /// O(vertices), or O(faces); 8 bytes of passing memory per element beside the target space itself.
 template <class MeshType, class Matrix>
 TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const Settings& settings);
 
-/// Writes \p result into the empty mesh \p out: coordinates, faces, quality = counter, and as the settings
-/// ask: vertex colour and vertex selection. Components that MeshType lacks are left out. O(vertices + faces).
+using Coordinates = std::array<double, 3>;
+
+/// Where the coordinates of \p result are to be counted from in a mesh of MeshType, so that its scalar type
+/// does not round the surface away: the world's origin where that is good to a hundred-thousandth of the
+/// diagonal, else the place the layer's matrix \p transform moves its own origin to, if that is any better.
+/// The layer's own, and not the middle of the result, so that both layers lie in one frame, in a file too.
+template <class MeshType, class Matrix>
+Coordinates origin_of(const NeuralMesh& result, const Matrix& transform);
+
+/// Writes \p result into the empty mesh \p out: coordinates, counted from \p origin, faces, quality =
+/// counter, and as the settings ask: vertex colour and vertex selection. Components that MeshType lacks are
+/// left out. O(vertices + faces).
 template <class MeshType>
-void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& out);
+void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& out,
+                const Coordinates& origin = {});
 
 namespace detail {
-
-using Coordinates = std::array<double, 3>;
 
 // The caller may be compiled against another vcglib than the core, and the two pass Point3 in different
 // ways. So only standard types cross here.
 TargetSpace target_of_points(std::size_t count, const std::function<Coordinates(std::size_t)>& point_at);
 TargetSpace target_of_triangles(std::size_t count,
                                 const std::function<Coordinates(std::size_t, int)>& corner_at);
+
+/// \p rounding: the largest part of a number that its nearest neighbour in the mesh's scalar type is away.
+Coordinates better_origin(const NeuralMesh& result, const Coordinates& of_layer, double rounding);
+
+bool is_finite(const Coordinates& c);
+[[noreturn]] void refuse_not_finite(std::size_t not_finite, std::size_t count);
+[[noreturn]] void refuse_matrix();
+
+/// Refuses vertices that are not finite, or not so in the world. \p vertex_at(i), i in [0, count), may give a
+/// vertex more than once; it is told once.
+template <class VertexAt, class InWorld>
+void check_finite(std::size_t count, std::size_t all, const VertexAt& vertex_at, const InWorld& in_world) {
+    std::set<const void*> not_finite;
+    bool world_is_finite = true;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto& vertex = vertex_at(i);
+        const auto& p = vertex.cP();
+        if (!is_finite({double(p[0]), double(p[1]), double(p[2])})) {
+            not_finite.insert(&vertex);
+        } else {
+            world_is_finite = world_is_finite && is_finite(in_world(p));
+        }
+    }
+    if (!not_finite.empty()) refuse_not_finite(not_finite.size(), all);
+    if (!world_is_finite) refuse_matrix();
+}
 
 /// The elements of a vcg container that are to be learned, \p kind being their name for the user.
 template <class Container>
@@ -56,7 +94,7 @@ std::vector<const typename Container::value_type*> elements_of(const Container& 
     if (selected_only && elements.empty())
         throw InputError("Only the selected " + kind +
                          " of the layer are to be learned, but none is selected: select "
-                         "some, or switch selected_only off.");
+                         "some, or switch 'Selected only' off.");
     return elements;
 }
 
@@ -68,26 +106,49 @@ TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const
     to_world.Import(transform);
     const auto in_world = [&to_world](const auto& p) {
         const vcg::Point3d q = to_world * vcg::Point3d::Construct(p);
-        return detail::Coordinates{q[0], q[1], q[2]};
+        return Coordinates{q[0], q[1], q[2]};
     };
     if (settings.draw_from_faces && mesh.fn > 0) {
         const auto faces = detail::elements_of(mesh.face, settings.selected_only, "faces");
+        detail::check_finite(
+            3 * faces.size(), static_cast<std::size_t>(mesh.vn),
+            [&](std::size_t i) -> const auto& { return *faces[i / 3]->cV(static_cast<int>(i % 3)); },
+            in_world);
         return detail::target_of_triangles(faces.size(),
                                            [&](std::size_t i, int k) { return in_world(faces[i]->cP(k)); });
     }
     const auto vertices = detail::elements_of(mesh.vert, settings.selected_only && mesh.vn > 0, "vertices");
+    detail::check_finite(
+        vertices.size(),
+        static_cast<std::size_t>(mesh.vn), [&](std::size_t i) -> const auto& { return *vertices[i]; },
+        in_world);
     return detail::target_of_points(vertices.size(),
                                     [&](std::size_t i) { return in_world(vertices[i]->cP()); });
 }
 
+template <class MeshType, class Matrix>
+Coordinates origin_of(const NeuralMesh& result, const Matrix& transform) {
+    using Scalar = typename MeshType::ScalarType;
+    vcg::Matrix44d to_world;
+    to_world.Import(transform);
+    const vcg::Point3d image = to_world * vcg::Point3d(0, 0, 0);
+    Coordinates of_layer{};
+    // In the scalar type in which the result's matrix will hold it.
+    for (std::size_t k = 0; k < 3; ++k)
+        of_layer[k] = static_cast<double>(static_cast<Scalar>(image[static_cast<int>(k)]));
+    return detail::better_origin(result, of_layer, std::numeric_limits<Scalar>::epsilon() / 2);
+}
+
 template <class MeshType>
-void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& out) {
+void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& out,
+                const Coordinates& origin) {
     using Coord = typename MeshType::CoordType;
+    const vcg::Point3d from(origin[0], origin[1], origin[2]);
     auto vertex = vcg::tri::Allocator<MeshType>::AddVertices(out, result.positions.size());
     const std::vector<Color> colors =
         settings.color_by_counter ? counter_colors(result.counters) : std::vector<Color>();
     for (std::size_t i = 0; i < result.positions.size(); ++i, ++vertex) {
-        vertex->P() = Coord::Construct(result.positions[i]);
+        vertex->P() = Coord::Construct(result.positions[i] - from);
         if (vcg::tri::HasPerVertexQuality(out)) vertex->Q() = result.counters[i];
         if (settings.color_by_counter && vcg::tri::HasPerVertexColor(out))
             vertex->C() = vcg::Color4b(colors[i][0], colors[i][1], colors[i][2], 255);

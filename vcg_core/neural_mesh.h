@@ -15,7 +15,7 @@ namespace neuralmesh {
 /// Why a run ended. The values are part of the filter's results: keep them.
 enum class StopReason : int {
     target_reached = 0,  ///< exactly target_vertices vertices
-    converged = 1,       ///< the mean counter fell below stop_below_mean_counter (eq 8)
+    converged = 1,       ///< signals turned the normals by less than stop_below_mean_counter (eq 8)
     cancelled = 2,       ///< the caller's progress object asked to stop
     cut_short = 3,       ///< the bound on signals was reached before the target
 };
@@ -33,9 +33,10 @@ struct Report {
     /// How sure genus and components are: the share of what was looked at (radii of the shell, StartMesh)
     /// that agrees, in [0, 1]; 0 if the learning started from a tetrahedron, which asks nothing of the cloud.
     double topology_confidence = 0;
-    int feature_vertices = 0;  ///< with counter > feature_threshold x mean (eq 7)
-    double rms_error = 0;      ///< cloud to mesh, % of the cloud's bounding-box diagonal
-    double mean_counter = 0;   ///< Mean(n_c)
+    /// With counter > feature_threshold, which is times the mean for the normal counter (eq 7).
+    int feature_vertices = 0;
+    double rms_error = 0;     ///< cloud to mesh, % of the cloud's bounding-box diagonal
+    double mean_counter = 0;  ///< Mean(n_c)
     double seconds = 0;
     StopReason stop_reason = StopReason::target_reached;
     std::vector<std::string> warnings;  ///< full sentences for the log

@@ -88,11 +88,13 @@ std::vector<SettingInfo> common_rows() {
             "its "
             "selected vertices."),
         row(&S::color_by_counter, "color_by_counter", "Colour by counter",
-            "Colour the vertices of the result by their feature counter: dark violet where the surface is "
-            "smooth, over green to yellow at features. The counter itself is the vertex quality in any "
-            "case."),
+            "Colour the vertices of the result by what the feature measure says of them: dark violet where "
+            "the surface is smooth, over green to yellow at features. The number itself is the vertex "
+            "quality "
+            "in any case."),
         row(&S::select_features, "select_features", "Select features",
-            "Select the vertices of the result whose feature counter is above the feature threshold."),
+            "Select the vertices of the result of which the feature measure says more than the feature "
+            "threshold."),
         row(&S::feature_measure, "feature_measure", "Feature measure", {"Normal counter", "Crease measure"},
             "What the vertex quality holds. Normal counter: the paper's (eq 6), the variation of the "
             "vertex's normal during learning, about 1 on average; high where the surface bends. Crease "

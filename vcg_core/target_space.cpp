@@ -75,13 +75,10 @@ vcg::Point3d Frame::outside(const vcg::Point3f& p) const {
 void TargetSpace::set_frame(const vcg::Box3d& box, std::size_t not_finite, std::size_t count) {
     if (count == 0)
         throw InputError(
-            "The layer has no points to learn: choose a layer with at least 4 distinct vertices, or clear "
-            "'selected only' if nothing is selected.");
+            "The layer has no points to learn: choose a layer with at least 4 distinct vertices.");
     if (not_finite > 0)
-        throw InputError(
-            std::to_string(not_finite) + " of the " + std::to_string(count) +
-            " vertices have coordinates that are not finite (NaN or infinite): remove them, for "
-            "example with the filter 'Conditional Vertex Selection' and 'Delete Selected Vertices'.");
+        throw InputError(std::to_string(not_finite) + " of the " + std::to_string(count) +
+                         " points have coordinates that are not finite (NaN or infinite): remove them.");
     frame_.centre = box.min / 2 + box.max / 2;  // the sum of both may be beyond double
     frame_.diagonal = (box.max - box.min).Norm();
     if (box.min == box.max)
@@ -127,9 +124,8 @@ void TargetSpace::accumulate_areas() {
     }
     if (!(sum > 0))
         throw InputError(
-            "The faces of the layer have no area to draw samples from: switch 'draw from faces' off to learn "
-            "its "
-            "vertices instead.");
+            "The faces of the layer have no area to draw samples from: switch 'Draw from faces' off to learn "
+            "its vertices instead.");
 }
 
 std::optional<TargetSpace> TargetSpace::without(const std::vector<std::uint8_t>& left_out) const {

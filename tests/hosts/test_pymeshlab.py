@@ -7,15 +7,16 @@ in meshlabserver to the last bit."""
 import subprocess
 import sys
 
+import inputs
 import meshlabserver
 import numpy as np
 import pytest
 import shapes
 from conftest import CORNERS, MODELS, PYTHON_NAME, out_of_range, parameters
-from input_hosts import state
+from input_hosts import new_mesh_set, state
 
 COUNTS = ("vertices", "faces", "signals", "splits", "collapses", "genus", "boundary_loops", "components",
-          "feature_vertices", "stop_reason")
+          "feature_vertices", "warnings", "stop_reason")
 MEASURES = meshlabserver.MEASURES
 
 
@@ -153,6 +154,19 @@ def test_the_same_mesh_as_in_meshlabserver_whatever_the_threads(build, server, m
     meshes.load_new_mesh(str(cloud))
     learn(meshes, target_vertices=1500, random_seed=8)
     assert not np.array_equal(meshes.current_mesh().face_matrix(), expected.face_matrix()), "the seed has no effect"
+
+
+def test_warnings_are_counted_and_logged(pymeshlab, capfd):
+    """A sheet is learned with warnings, a ball without."""
+    counted = []
+    for points in (inputs.square(), inputs.ball()):
+        meshes = new_mesh_set(pymeshlab, verbose=True)
+        meshes.add_mesh(pymeshlab.Mesh(points))
+        capfd.readouterr()
+        counted.append(learn(meshes, target_vertices=100)["warnings"])
+        printed = capfd.readouterr().err
+        assert printed.count("LOG: 1 ") == counted[-1], printed  # the host's number for a warning
+    assert counted[0] > 0 and counted[1] == 0
 
 
 def test_nothing_is_printed(pymeshlab, model, capfd):

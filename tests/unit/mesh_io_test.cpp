@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// A caller's mesh in single precision: what is said of coordinates that are no numbers, and where the
+// result's coordinates are counted from.
+#include "vcg_core/mesh_io.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "shapes.h"
+
+namespace neuralmesh {
+namespace {
+
+class Vertex;
+class Face;
+struct Types : vcg::UsedTypes<vcg::Use<Vertex>::AsVertexType, vcg::Use<Face>::AsFaceType> {};
+class Vertex : public vcg::Vertex<Types, vcg::vertex::Coord3f, vcg::vertex::Qualityf, vcg::vertex::Color4b,
+                                  vcg::vertex::BitFlags> {};
+class Face : public vcg::Face<Types, vcg::face::VertexRef, vcg::face::BitFlags> {};
+class Mesh : public vcg::tri::TriMesh<std::vector<Vertex>, std::vector<Face>> {};
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+vcg::Matrix44f moved(float x, float y, float z) {
+    vcg::Matrix44f matrix;
+    matrix.SetTranslate(x, y, z);
+    return matrix;
+}
+
+void fill(Mesh& mesh, const shapes::Shape& shape, bool with_faces) {
+    for (const vcg::Point3d& p : shape.positions)
+        vcg::tri::Allocator<Mesh>::AddVertex(mesh, vcg::Point3f::Construct(p));
+    if (!with_faces) return;
+    for (const auto& face : shape.faces)
+        vcg::tri::Allocator<Mesh>::AddFace(mesh, static_cast<std::size_t>(face[0]),
+                                           static_cast<std::size_t>(face[1]),
+                                           static_cast<std::size_t>(face[2]));
+}
+
+std::string complaint(const Mesh& mesh, const vcg::Matrix44f& matrix, const Settings& settings = {}) {
+    try {
+        target_space_of(mesh, matrix, settings);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+class OfFaces : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(MeshIo, OfFaces, testing::Bool());
+
+TEST_P(OfFaces, CountsVerticesThatAreNotFiniteOnce) {
+    Mesh mesh;
+    fill(mesh, shapes::cube(), GetParam());
+    EXPECT_EQ(complaint(mesh, moved(0, 0, 0)), "");
+    mesh.vert[2].P()[1] = kNan;
+    EXPECT_EQ(complaint(mesh, moved(0, 0, 0)).find("1 of the 8 vertices of the layer"), 0U);
+    mesh.vert[5].P()[0] = -kInfinity;
+    // That the matrix is not finite, too, would not help with these.
+    EXPECT_EQ(complaint(mesh, moved(kNan, 0, 0)).find("2 of the 8 vertices of the layer"), 0U);
+}
+
+TEST_P(OfFaces, TellsAMatrixThatIsNotFiniteFromVertices) {
+    Mesh mesh;
+    fill(mesh, shapes::cube(), GetParam());
+    EXPECT_EQ(complaint(mesh, moved(0, kNan, 0)).find("The matrix of the layer"), 0U);
+    EXPECT_EQ(complaint(mesh, moved(0, 0, kInfinity)).find("The matrix of the layer"), 0U);
+}
+
+TEST_P(OfFaces, LooksAtWhatIsLearnedOnly) {
+    Mesh mesh;
+    fill(mesh, shapes::cube(), GetParam());
+    vcg::tri::Allocator<Mesh>::AddVertex(mesh, vcg::Point3f(kNan, 0, 0));
+    Settings settings;
+    settings.selected_only = true;
+    for (auto& v : mesh.vert) v.SetS();
+    for (auto& f : mesh.face) f.SetS();
+    mesh.vert.back().ClearS();
+    EXPECT_EQ(complaint(mesh, moved(0, 0, 0), settings), "");
+}
+
+NeuralMesh cube_at(const vcg::Point3d& place) {
+    NeuralMesh result;
+    for (const vcg::Point3d& p : shapes::cube().positions) result.positions.push_back(p + place);
+    result.counters.assign(result.positions.size(), 0);
+    result.features.assign(result.positions.size(), 0);
+    return result;
+}
+
+constexpr Coordinates kWorld{};
+
+TEST(MeshIo, CountsFromTheWorldsOriginWhereThatIsExact) {
+    EXPECT_EQ(origin_of<Mesh>(cube_at({0, 0, 0}), moved(0, 0, 0)), kWorld);
+    EXPECT_EQ(origin_of<Mesh>(cube_at({100, -50, 7}), moved(100, -50, 7)), kWorld);
+}
+
+TEST(MeshIo, CountsFromTheLayersOriginWhereRoundingWouldBeSeen) {
+    const Coordinates there{1e7, -1e7, 5e6};
+    EXPECT_EQ(origin_of<Mesh>(cube_at({1e7, -1e7, 5e6}), moved(1e7F, -1e7F, 5e6F)), there);
+}
+
+TEST(MeshIo, LeavesTheWorldsOriginOnlyWhereThatHelps) {
+    EXPECT_EQ(origin_of<Mesh>(cube_at({1e7, 0, 0}), moved(0, 0, 0)), kWorld);
+    EXPECT_EQ(origin_of<Mesh>(cube_at({1e7, 0, 0}), moved(1000, 0, 0)), kWorld);
+    EXPECT_EQ(origin_of<Mesh>(cube_at({1e7, 0, 0}), moved(-1e7F, 0, 0)), kWorld);
+}
+
+TEST(MeshIo, KeepsTheGeometryCountedFromAnOrigin) {
+    const vcg::Point3d place(1e7, -1e7, 5e6);
+    const vcg::Point3d shift(0.123456, -0.654321, 0.5);
+    const NeuralMesh result = cube_at(place + shift);
+    Mesh out;
+    write_mesh(result, Settings(), out, origin_of<Mesh>(result, moved(1e7F, -1e7F, 5e6F)));
+    ASSERT_EQ(out.vert.size(), result.positions.size());
+    for (std::size_t i = 0; i < out.vert.size(); ++i) {
+        const vcg::Point3d exact = result.positions[i] - place;
+        EXPECT_LT((vcg::Point3d::Construct(out.vert[i].cP()) - exact).Norm(), 1e-6);
+    }
+}
+
+}  // namespace
+}  // namespace neuralmesh
