@@ -11,6 +11,8 @@ import os
 import subprocess
 from pathlib import Path
 
+import meshlabserver
+
 CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "neural-mesh"
 SUITES = {"2022.02": "trixie", "2025.07": "sid"}
 RELEASES = tuple(sorted(SUITES))
@@ -37,6 +39,14 @@ def run(build, release, plugin, layer, out, *mode):
     return subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                           check=False, timeout=300,
                           env=dict(os.environ, QT_QPA_PLATFORM="offscreen", QT_PLUGIN_PATH=str(libraries / "qt5/plugins")))
+
+
+def run_2020(build, plugin):
+    """Starts library_host_2020.cpp with the libraries of the installed MeshLab 2020.09; returns the finished process."""
+    command = [build / "tests/run_library_host", meshlabserver.LIBRARIES / "libmeshlab-common.so",
+               build / "tests/liblibrary_host_2020.09.so", plugin, "ball", "nowhere"]
+    return subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          check=False, timeout=300, env=dict(os.environ, QT_QPA_PLATFORM="offscreen"))
 
 
 def outcomes(done):

@@ -116,8 +116,15 @@ inline std::string bytes_of(const MeshDocument& document, MeshModel& layer) {
     return bytes.str();
 }
 
-inline void write_off(const CMeshO& mesh, const char* file) {
-    std::ofstream out(file);
+/// Row by row, as JSON.
+inline std::string words_of(const Matrix44m& matrix) {
+    std::ostringstream words;
+    words.precision(17);
+    for (int i = 0; i < 16; ++i) words << (i == 0 ? "[" : ", ") << matrix.ElementAt(i / 4, i % 4);
+    return words.str() + "]";
+}
+
+inline void write_off(const CMeshO& mesh, std::ostream& out) {
     out.precision(17);
     out << "OFF\n" << mesh.vn << ' ' << mesh.fn << " 0\n";
     for (const auto& v : mesh.vert) out << v.cP()[0] << ' ' << v.cP()[1] << ' ' << v.cP()[2] << '\n';

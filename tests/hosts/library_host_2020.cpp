@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The filter run by MeshLab 2020.09 without its window, out of memory at ever later allocations: a ball is
+// learned by the plugin again and again. Qt's own allocations are not among them: they do not go through what
+// can be made to fail. run_library_host.cpp starts it with two words it does not need, and
+// it prints one JSON object for each run.
+#include <common/interfaces.h>
+
+#include <QApplication>
+#include <QPluginLoader>
+#include <cmath>
+#include <iostream>
+
+#include "tests/memory/allocations.h"
+
+namespace {
+
+namespace allocations = neuralmesh::allocations;
+using allocations::Failure;
+
+void add_ball(CMeshO& mesh) {
+    constexpr int kCount = 1000;
+    for (int i = 0; i < kCount; ++i) {
+        const double z = 1 - (2.0 * i + 1) / kCount, turn = 2.399963229728653 * i, rim = std::sqrt(1 - z * z);
+        vcg::tri::Allocator<CMeshO>::AddVertex(
+            mesh, Point3m(Scalarm(rim * std::cos(turn)), Scalarm(rim * std::sin(turn)), Scalarm(z)));
+    }
+}
+
+class Host {
+public:
+    explicit Host(MeshFilterInterface& filter) : filter_(filter), action_(filter.actions().front()) {}
+
+    /// Learns the ball once, the \p nth allocation of the filter failing, and tells what came of it.
+    void learn(long long nth, Failure failure) {
+        MeshDocument document;
+        add_ball(document.addNewMesh("", "layer", true)->cm);
+        RichParameterList list;
+        filter_.initParameterSet(action_, document, list);
+        list.setValue("target_vertices", IntValue(100));
+        list.setValue("settling_signals_per_vertex", IntValue(0));
+        list.setValue("start_mesh", EnumValue(1));
+        filter_.setLog(&document.Log);
+
+        bool escaped = false;
+        bool learned = false;
+        allocations::fail_at(nth, failure);
+        try {
+            learned = filter_.applyFilter(action_, document, list, nullptr);
+        } catch (...) {
+            escaped = true;
+        }
+        allocated = allocations::count();
+        allocations::fail_at(-1);
+
+        QStringList logged;
+        document.Log.print(logged);
+        const auto truth = [](bool value) { return value ? "true" : "false"; };
+        std::cout << "{\"learned\": " << truth(learned) << ", \"escaped\": " << truth(escaped)
+                  << ", \"told\": " << truth(logged.join(' ').contains("signals="))
+                  << ", \"layers\": " << document.size() << ", \"current\": \""
+                  << document.mm()->label().toStdString() << "\", \"vn\": " << document.mm()->cm.vn << "}"
+                  << std::endl;
+    }
+
+    long long allocated = 0;  ///< by the filter in the last run
+
+private:
+    MeshFilterInterface& filter_;
+    QAction* action_;
+};
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) int library_host(int argc, char** argv) {
+    QApplication application(argc, argv);
+    QPluginLoader loader(argv[3]);
+    auto* filter = qobject_cast<MeshFilterInterface*>(loader.instance());
+    if (filter == nullptr) {
+        std::cerr << loader.errorString().toStdString() << std::endl;
+        return 1;
+    }
+    Host host(*filter);
+    host.learn(-1, Failure::once);
+    // Every allocation of the first and the last ones, where the adapter works, and some of the learning.
+    const long long all = host.allocated;
+    for (long long nth = 0; nth < all; nth += nth < 60 || nth > all - 150 ? 1 : (all - 210) / 20 + 1) {
+        host.learn(nth, Failure::once);
+        host.learn(nth, Failure::from_then_on);
+    }
+    return 0;
+}
