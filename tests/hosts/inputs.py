@@ -3,6 +3,7 @@
 
 """The layers that a host may hand to the filter, good and bad, each small, with what has to come of it."""
 
+import functools
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -11,6 +12,7 @@ import shapes
 SELECTED = 0x20  # vcg's flag, in the property "flags" of a PLY file
 NAN, INF = float("nan"), float("inf")
 GOLDEN_TURN = 2.399963229728653
+BALL = 4 / 3 * np.pi
 
 
 @dataclass
@@ -25,11 +27,18 @@ class Input:
     deleted: np.ndarray = None  # points that are marked as deleted, and still there
     matrix: np.ndarray = field(default_factory=lambda: np.eye(4))
     textured: bool = False
-    outliers: int = 0  # the last points, which the mesh may follow or not
+    outliers: int = 0  # the last points, which the mesh has to leave alone
     parameters: dict = field(default_factory=dict)
     target: int = 250
-    rms: float = 2.0  # the error that the filter may tell, % of the diagonal of what it learned
+    # What the mesh has to be; the defaults are a ball's. Per cent are of the diagonal of followed_points().
+    components: int = 1
+    genus: int = 0
+    volume: float = BALL  # enclosed, before the matrix; None: the points are a sheet or a thread, which enclose nothing
+    within: float = .03  # how much of the volume may be missing or too much
+    rms: float = .12  # from the points to the mesh, %
+    far: float = 2.0  # the largest distance from the mesh to the points, %; between points there is nothing to measure
     margin: float = .05  # how far the mesh may lie outside the points' box, in diagonals of it
+    origin: tuple = (0, 0, 0)  # where a float host counts the result's coordinates from
 
     def __post_init__(self):
         # In single precision, so that float and double hosts get the same numbers.
@@ -60,7 +69,7 @@ class Input:
         return cut
 
     def learned_points(self):
-        """Those that the mesh has to be near to, in world coordinates."""
+        """Those that the filter is to draw its signals from, in world coordinates."""
         chosen = ~self.deleted
         only_selected = self.parameters.get("selected_only", False)
         if self.faces and self.parameters.get("draw_from_faces", True):
@@ -71,6 +80,21 @@ class Input:
             chosen &= self.selected_points
         points = self.points[chosen].astype("f8")
         return points @ self.matrix[:3, :3].T + self.matrix[:3, 3]
+
+    def followed_points(self):
+        """Those that the mesh has to be near to, each once, in world coordinates."""
+        points = self.learned_points()
+        return np.unique(points[:len(points) - self.outliers], axis=0)
+
+    def world_volume(self):
+        return None if self.volume is None else self.volume * abs(np.linalg.det(self.matrix[:3, :3]))
+
+
+def moved(*translation):
+    """The matrix that translates."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = translation
+    return matrix
 
 
 def ball(count=2000, radius=1.0, centre=(0, 0, 0)):
@@ -107,8 +131,9 @@ def quads(count=16):
 def _clouds(random):
     line = np.linspace(0, 1, 100)[:, None] * [1, 2, -1]
     noisy = ball(3000) + .02 * 2 * np.sqrt(3) * random.standard_normal((3000, 3))
-    side = ball(6000)
-    dense_side = side[(side[:, 0] > 0) | (random.random(6000) < .001)]
+    whole = ball(6000)
+    dense = whole[:, 0] > 0
+    stray = whole[~dense & (random.random(6000) < .001)]
     far_off = np.array([20, 30, -10]) * (random.random((20, 3)) - .5)
     broken = ball(500)
     broken[[3, 50, 499], [0, 1, 2]] = NAN, INF, -INF
@@ -122,35 +147,48 @@ def _clouds(random):
         "all equal": Input([[1, 2, 3]] * 100, refused="4 distinct"),
         "three distinct, repeated": Input(corners[:3] * 50, refused="3 distinct"),
         "on a line": Input(line, refused="straight line"),
-        "a line, rounded": Input(line + [5000, -3000, 1000], rms=20),  # single precision makes a thread of it
+        "a line, rounded": Input(line + [5000, -3000, 1000], volume=None),  # single precision makes a thread of it
         "not finite": Input(broken, refused="3 of the 500"),
-        "4 points": Input(corners, target=50, margin=.15),  # nothing says where the surface is between them
-        "in a plane": Input(square()),
-        "in a slanting plane": Input(square() @ [[1, 0, 1], [0, 1, 1], [0, 0, 1]]),
-        "two far clusters": Input(np.vstack([ball(1000, .01), ball(1000, .01, (100, 0, 0))]), target=300),
-        "duplicates": Input(np.repeat(ball(60), 100, axis=0), target=250),
-        "five points, 200 times": Input((corners + [[1, 1, 1]]) * 200, target=100),
-        "size 1e-9": Input(ball() * 1e-9),
-        "size 1e+9": Input(ball() * 1e9),
-        "size 1e+30": Input(ball() * 1e30),
-        "offset 1e+7": Input(ball(2000, 1000) + [1e7, -1e7, 1e7]),
-        "offset 1e+7, small": Input(ball(2000, 3) + [1e7, -1e7, 1e7]),
-        "aspect 1 : 1e-3": Input(ball() * [1, 1e-3, 1e-3]),
-        "aspect 1 : 1 : 1e-5": Input(ball() * [1, 1, 1e-5]),
+        # Nothing says where the surface is between so few points. It goes through them, and holds some of what is
+        # between them: four hold 1/6, five 1/2, or 1/3 without the corner at the origin.
+        "4 points": Input(corners, target=50, volume=1 / 6, within=.2, far=45, margin=.15),
+        "five points, 200 times": Input((corners + [[1, 1, 1]]) * 200, target=100, volume=5 / 12, within=.25, far=52),
+        "in a plane": Input(square(), volume=None, rms=.6),
+        "in a slanting plane": Input(square() @ [[1, 0, 1], [0, 1, 1], [0, 0, 1]], volume=None, rms=.6),
+        # Finer than any shell of the whole can be: each cluster is a component, its shape is not asked for.
+        "two far clusters": Input(np.vstack([ball(1000, .01), ball(1000, .01, (100, 0, 0))]), target=300, components=2,
+                                  volume=None),
+        # The convex hull of so few holds 3.79, and a place on the ball is up to 10.1 % from them.
+        "duplicates": Input(np.repeat(ball(60), 100, axis=0), volume=3.79, rms=1, far=11),
+        "size 1e-9": Input(ball() * 1e-9, volume=BALL * 1e-27),
+        "size 1e+9": Input(ball() * 1e9, volume=BALL * 1e27),
+        "size 1e+30": Input(ball() * 1e30, volume=BALL * 1e90),
+        "offset 1e+7": Input(ball(2000, 1000) + [1e7, -1e7, 1e7], volume=BALL * 1e9),
+        # Single precision leaves a lattice of whole numbers: 2.8 % is what it moves points off a plane by, 16.7 % the
+        # diagonal of a cell.
+        "offset 1e+7, small": Input(ball(2000, 3) + [1e7, -1e7, 1e7], volume=27 * BALL, within=.15, rms=2.8, far=16.7),
+        "aspect 1 : 1e-3": Input(ball() * [1, 1e-3, 1e-3], volume=None),
+        "aspect 1 : 1 : 1e-5": Input(ball() * [1, 1, 1e-5], volume=None),
         "1 % gross outliers": Input(np.vstack([ball(), far_off]), outliers=20),
         "1 % near outliers": Input(np.vstack([ball(), far_off / 20]), outliers=20),
-        "noise of 2 %": Input(noisy),
-        "density 1000 : 1": Input(dense_side),
-        "most in one point": Input(np.vstack([ball(), np.repeat(ball()[:1], 20000, axis=0)])),  # what a scanner missed
-        "filled": Input(random.random((3000, 3)), rms=5),
+        "noise of 2 %": Input(noisy, rms=1.9, far=4),
+        # A bowl; the few points of the other half are too far apart to be a surface.
+        "density 1000 : 1": Input(np.vstack([whole[dense], stray]), outliers=len(stray), volume=None, rms=.6, far=3.5),
+        # What a scanner missed: the ball is there all the same.
+        "most in one point": Input(np.vstack([ball(), np.repeat(ball()[:1], 20000, axis=0)])),
+        # Points throughout a cube do not say where its surface is.
+        "filled": Input(random.random((3000, 3)), volume=.5, within=.5, rms=4, far=7),
         "deleted vertices": Input(np.vstack([ball(), ball(200, 9)]), deleted=np.arange(2200) >= 2000),
         "selected points": Input(np.vstack([ball(), ball(2000, 1, (5, 0, 0))]),
                                  selected_points=np.arange(4000) >= 2000, parameters={"selected_only": True}),
         "nothing selected": Input(ball(), refused="Only the selected vertices", parameters={"selected_only": True}),
         "turned, scaled, moved": Input(ball(), matrix=turned),
         "mirrored": Input(ball(), matrix=np.diag([-1.0, 1, 1, 1])),
-        "flattened by its matrix": Input(ball(), matrix=np.diag([1.0, 1, 0, 1])),
-        "matrix not finite": Input(ball(500), refused="500 of the 500", matrix=np.diag([NAN, 1, 1, 1])),
+        "flattened by its matrix": Input(ball(), matrix=np.diag([1.0, 1, 0, 1]), volume=None, rms=.6),
+        "matrix not finite": Input(ball(500), refused="The matrix of the layer", matrix=np.diag([NAN, 1, 1, 1])),
+        "georeferenced": Input(ball(), matrix=moved(1e7, -1e7, 1e7), origin=(1e7, -1e7, 1e7)),
+        "georeferenced, turned": Input(ball(), matrix=moved(4e5, 5e6, 100) @ turned, origin=(4e5 + 100, 5e6 - 50, 107)),
+        "moved a little": Input(ball(), matrix=moved(300, -200, 100)),
     }
 
 
@@ -164,19 +202,23 @@ def _meshes():
     ring, ring_faces = quads()
     flat = [(face[0], face[1], face[1]) for face in faces]
     half = [face for face in faces if vertices[list(face), 2].mean() > 0]
+    broken = vertices.copy()
+    broken[5, 1] = NAN
+    ball_of_faces = functools.partial(Input, rms=.14, far=3)  # its vertices lie farther apart than the balls' points
     return {
-        "mesh": Input(vertices, faces),
-        "mesh's vertices": Input(vertices, faces, parameters={"draw_from_faces": False}),
-        "unreferenced vertices": Input(far, faces),
-        "zero-area faces": Input(vertices, faces + [(0, 0, 1), (2, 2, 2), (3, 4, 3)]),
+        "mesh": ball_of_faces(vertices, faces),
+        "mesh's vertices": ball_of_faces(vertices, faces, parameters={"draw_from_faces": False}),
+        "a vertex not finite": Input(broken, faces, refused="1 of the 642 vertices"),
+        "unreferenced vertices": ball_of_faces(far, faces),
+        "zero-area faces": ball_of_faces(vertices, faces + [(0, 0, 1), (2, 2, 2), (3, 4, 3)]),
         "only zero-area faces": Input(vertices, flat, refused="no area"),
-        "non-manifold faces": Input(finned, faces + fin + faces[:20]),
-        "open mesh": Input(vertices, half),
-        "selected faces": Input(both, faces + shifted, selected_faces=np.arange(2 * len(faces)) >= len(faces),
-                                parameters={"selected_only": True}),
+        "non-manifold faces": Input(finned, faces + fin + faces[:20], rms=.25, far=4.6),
+        "open mesh": Input(vertices, half, volume=None, rms=1.2, far=4.8),
+        "selected faces": ball_of_faces(both, faces + shifted, parameters={"selected_only": True},
+                                        selected_faces=np.arange(2 * len(faces)) >= len(faces)),
         "no face selected": Input(vertices, faces, refused="Only the selected faces", parameters={"selected_only": True}),
-        "quads": Input(ring, ring_faces),
-        "texture and attributes": Input(vertices, faces, textured=True),
+        "quads": Input(ring, ring_faces, genus=1, volume=3.0, rms=.2, far=7.5),
+        "texture and attributes": ball_of_faces(vertices, faces, textured=True),
         "one triangle": Input([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [(0, 1, 2)], refused="3 distinct"),
     }
 

@@ -3,8 +3,8 @@
 
 // The filter run by MeshLab 2020.09 without its window, out of memory at ever later allocations: a ball is
 // learned by the plugin again and again. Qt's own allocations are not among them: they do not go through what
-// can be made to fail. run_library_host.cpp starts it with two words it does not need, and
-// it prints one JSON object for each run.
+// can be made to fail. run_library_host.cpp starts it with two words it does not need, and it prints one JSON
+// object for each run.
 #include <common/interfaces.h>
 
 #include <QApplication>

@@ -16,7 +16,8 @@ from pathlib import Path
 
 INSTALLED = Path("/usr/bin/meshlabserver")
 LIBRARIES = Path("/usr/lib/x86_64-linux-gnu/meshlab")
-NEIGHBOURS = ("libio_*.so", "libfilter_layer.so", "libfilter_select.so")  # every format that MeshLab reads
+# Every format that MeshLab reads, and the filters that tests and users put before ours.
+NEIGHBOURS = ("libio_*.so", "libfilter_func.so", "libfilter_layer.so", "libfilter_select.so")
 HOST = "meshlab-2020.09"
 
 

@@ -4,8 +4,12 @@
 """Every layer of inputs.py in every host: a right mesh or a sentence, the same in all of them, and the layer as it
 was. inputs_table.py prints the same as a table."""
 
+from html import escape
+
 import input_hosts
 import inputs
+import meshlabserver
+import numpy as np
 import pytest
 
 INPUTS = inputs.all_inputs()
@@ -14,14 +18,56 @@ COUNTS = ("vertices", "faces", "signals", "splits", "collapses", "genus", "compo
 
 @pytest.fixture(scope="module")
 def first_of():
-    """What the first host has told, for each input."""
+    """What came of each input in the first host."""
     return {}
+
+
+def assert_alike(one, other):
+    assert one[0] == other[0], "another result than in the first host"
+    if one[1] is not None:
+        for here, there in zip(one[1], other[1]):
+            assert np.array_equal(here, there), "another mesh than in the first host"
 
 
 @pytest.mark.parametrize("host", input_hosts.HOSTS)
 @pytest.mark.parametrize("name", INPUTS)
 def test_a_right_mesh_or_a_sentence(build, server, pymeshlab, first_of, tmp_path, name, host):
-    outcome = input_hosts.try_out(build, server, pymeshlab, host, INPUTS[name], tmp_path)
-    told = outcome.sentence or [outcome.told[key] for key in COUNTS]
-    assert told == first_of.setdefault(name, told), "another result than in the first host"
-    input_hosts.judge(build, INPUTS[name], outcome)
+    layer = INPUTS[name]
+    outcome = input_hosts.try_out(build, server, pymeshlab, host, layer, tmp_path)
+    came = (outcome.sentence or [outcome.told[key] for key in COUNTS], outcome.mesh_in_single_precision(layer))
+    assert_alike(came, first_of.setdefault(name, came))
+    input_hosts.judge(build, layer, outcome)
+
+
+def condition_in(sentence):
+    """What the sentence tells the user to select by."""
+    return sentence.split("the condition ")[1].split(",")[0]
+
+
+def test_the_remedy_for_vertices_that_are_not_finite_in_pymeshlab(pymeshlab, tmp_path):
+    layer = INPUTS["not finite"]
+    sentence = input_hosts.in_pymeshlab(pymeshlab, layer, tmp_path).sentence
+    meshes = input_hosts.new_mesh_set(pymeshlab)
+    meshes.add_mesh(pymeshlab.Mesh(layer.points.astype(float)))
+    meshes.compute_selection_by_condition_per_vertex(condselect=condition_in(sentence))
+    meshes.meshing_remove_selected_vertices()
+    assert meshes.current_mesh().vertex_number() == len(layer.points) - 3
+    assert meshes.apply_filter(input_hosts.PYTHON_NAME, target_vertices=100)["vertices"] == 100
+
+
+REMEDY = """<!DOCTYPE FilterScript>
+<FilterScript>
+ <filter name="Conditional Vertex Selection">
+  <Param type="RichString" name="condSelect" value="{condition}"/>
+ </filter>
+ <filter name="Delete Selected Vertices"/>"""
+
+
+def test_the_remedy_for_vertices_that_are_not_finite_in_meshlabserver(build, server, tmp_path):
+    layer = INPUTS["not finite"]
+    sentence = input_hosts.in_server(build, server, layer, tmp_path).sentence
+    script = meshlabserver.write_script(build, tmp_path / "remedy.mlx", target_vertices=100)
+    _, filters = script.read_text().split("<FilterScript>")
+    script.write_text(REMEDY.format(condition=escape(condition_in(sentence))) + filters)
+    cloud = inputs.write_ply(layer, tmp_path / "cloud.ply")
+    assert meshlabserver.reconstruct(server, cloud, script, tmp_path / "mesh.ply")["vertices"] == 100
