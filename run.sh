@@ -35,6 +35,15 @@ as_root() {
     if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
 }
 
+# must_be_debian_12: ends with a sentence elsewhere, where packages have other names and MeshLab is another.
+must_be_debian_12() {
+    local system="an unknown system"
+    [ ! -r /etc/os-release ] || system="$(. /etc/os-release && echo "${ID:-linux} ${VERSION_ID:-}")"
+    [ "$system" = "debian 12" ] && command -v dpkg-query > /dev/null || fail "This script is for Debian 12, and this is" \
+        "$system. Build with 'cmake -S . -B build/own -DMESHLAB_SOURCE_DIR=DIR && cmake --build build/own', the sources" \
+        "of your MeshLab being in DIR."
+}
+
 # must_be_root REASON COMMAND: ends with a sentence where nobody can be asked to run COMMAND as root.
 must_be_root() {
     [ "$(id -u)" = 0 ] || command -v sudo > /dev/null ||
@@ -43,15 +52,15 @@ must_be_root() {
 
 missing_of() {
     local package
+    # One line for each architecture that the package is there for.
     for package in "$@"; do
-        dpkg-query --show --showformat='${db:Status-Status}' "$package" 2> /dev/null | grep -q '^installed$' ||
+        dpkg-query --show --showformat='${db:Status-Status}\n' "$package" 2> /dev/null | grep -q '^installed$' ||
             echo "$package"
     done
 }
 
 need() {
-    command -v dpkg-query > /dev/null || fail "This script is for Debian 12; elsewhere build with" \
-        "cmake -S . -B build -DMESHLAB_SOURCE_DIR=DIR, the sources of your MeshLab being in DIR."
+    must_be_debian_12
     local missing
     mapfile -t missing < <(missing_of "$@")
     [ "${#missing[@]}" -gt 0 ] || return 0
@@ -90,11 +99,20 @@ need_venv() {
     echo "$wanted" > "$venv/complete"
 }
 
-# compile TARGET...: configures where needed, and compiles.
+# kept NAME: what cmake has kept as NAME in the build folder.
+kept() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
+
+# compile TARGET...: configures where needed, and compiles. What another configuration has left in the build folder,
+# by another generator, of another place or for a MeshLab of one's own, is configured anew.
 compile() {
     need_sources
     say "Compiling"
-    cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release > "$build/configure.log" 2>&1 ||
+    local fresh=()
+    if [ -e "$build/CMakeCache.txt" ] && ! { [ "$(kept CMAKE_GENERATOR)" = Ninja ] &&
+        [ "$(kept CMAKE_HOME_DIRECTORY)" = "$here" ] && [ -z "$(kept MESHLAB_SOURCE_DIR)" ]; }; then
+        fresh=(--fresh)
+    fi
+    cmake "${fresh[@]}" -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release > "$build/configure.log" 2>&1 ||
         { cat "$build/configure.log" >&2; fail "The configuration failed."; }
     cmake --build "$build" --target "$@" -- --quiet
 }
@@ -129,16 +147,31 @@ sanitized() {
     cmake --build --preset "$preset" --target "$@" -- --quiet
 }
 
-# Where a wrong access, undefined behaviour or a race ends the program. CMakePresets.json and the filter below name
+# matching PROGRAM PATTERN...: runs the tests of PROGRAM that each pattern names; one that names none is an error, which
+# GoogleTest would pass over.
+matching() {
+    local program="$1" pattern
+    shift
+    for pattern in "$@"; do
+        "$program" --gtest_list_tests --gtest_filter="$pattern" | grep -q '^  ' ||
+            { echo "$program has no test $pattern: its name in run.sh is out of date." >&2; return 1; }
+        "$program" --gtest_brief=1 --gtest_filter="$pattern" || return 1
+    done
+}
+
+# Where a wrong access, undefined behaviour or a race ends the program. CMakePresets.json and the names below say
 # what runs; tests/README.md says what does not, and why.
 sanitizer_tests() {
     say "Unit tests with the address and undefined-behaviour sanitizers"
     sanitized sanitize unit_tests fuzz_network fuzz_settings || return 1
     ctest --preset sanitize --parallel "$(nproc)" || return 1
+    say "Whole runs with the address sanitizer and lighter checks"
+    sanitized sanitize-light fuzz_cloud || return 1
+    "$build/sanitize-light/tests/fuzz_cloud" tests/fuzz/corpus/cloud.txt || return 1
     say "Tests of threads with the thread sanitizer"
     sanitized threads thread_tests || return 1
-    "$build/threads/tests/thread_tests" --gtest_brief=1 \
-        --gtest_filter='Team.*:BasicSteps.*:Learner.IsTheReferenceInBatches:Learner.SettlesAlike*:Fit.GivesTheSameBytesForAnyNumberOfThreads'
+    matching "$build/threads/tests/thread_tests" 'Team.*' 'BasicSteps.*' Learner.IsTheReferenceInBatches \
+        'Learner.SettlesAlike*' Fit.GivesTheSameBytesForAnyNumberOfThreads Shell.PiecesOfASparseCloudAreNoComponents
 }
 
 run_tests() {
