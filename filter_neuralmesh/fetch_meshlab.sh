@@ -18,7 +18,7 @@ releases="
 fail() {
     echo "$1" >&2
     echo "Or take MeshLab's sources from where you like and build for them alone:" >&2
-    echo "  cmake -S . -B build -DMESHLAB_SOURCE_DIR=DIR && cmake --build build" >&2
+    echo "  cmake -S . -B build/own -DMESHLAB_SOURCE_DIR=DIR && cmake --build build/own" >&2
     exit 1
 }
 
