@@ -18,25 +18,30 @@ constexpr std::size_t kChunk = 512;
 }  // namespace
 
 Split choose_points(const TargetSpace& target, std::size_t wanted, Random& random) {
-    std::vector<Vec> all;
-    if (target.has_faces()) {
-        for (std::size_t i = 0; i < wanted; ++i) all.push_back(vec(target.sample(random)));
-    } else {
-        const auto& positions = target.positions();
-        std::vector<std::uint32_t> order(positions.size());
-        std::iota(order.begin(), order.end(), 0U);
-        wanted = std::min(wanted, order.size());
-        for (std::size_t i = 0; i < wanted; ++i) {
-            std::swap(order[i], order[i + random.below(static_cast<std::uint32_t>(order.size() - i))]);
-            all.push_back(vec(positions[order[i]]));
-        }
-    }
+    constexpr std::size_t kMostDrawn = 2000000;
     constexpr std::size_t kHeldShare = 8;
     constexpr std::size_t kMostHeld = 10000;
-    const std::size_t held = std::min(all.size() / kHeldShare, kMostHeld);
+    const auto& positions = target.positions();
+    wanted = target.has_faces() ? std::min(wanted, std::max(kMostDrawn, wanted / 10))
+                                : std::min(wanted, positions.size());
+    const std::size_t held = std::min(wanted / kHeldShare, kMostHeld);
     Split split;
-    split.held.points.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(held));
-    split.fitted.points.assign(all.begin() + static_cast<std::ptrdiff_t>(held), all.end());
+    split.held.points.reserve(held);
+    split.fitted.points.reserve(wanted - held);
+    const auto take = [&](const vcg::Point3f& p) {
+        Followed& part = split.held.points.size() < held ? split.held : split.fitted;
+        part.points.push_back(vec(p));
+    };
+    if (target.has_faces()) {
+        for (std::size_t i = 0; i < wanted; ++i) take(target.sample(random));
+        return split;
+    }
+    std::vector<std::uint32_t> order(positions.size());
+    std::iota(order.begin(), order.end(), 0U);
+    for (std::size_t i = 0; i < wanted; ++i) {
+        std::swap(order[i], order[i + random.below(static_cast<std::uint32_t>(order.size() - i))]);
+        take(positions[order[i]]);
+    }
     return split;
 }
 

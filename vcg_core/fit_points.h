@@ -26,7 +26,8 @@ struct Split {
 };
 
 /// The points to fit to and some held back to judge by: \p wanted points of \p target, all of a cloud or a
-/// random choice. One in eight is held back, but at most 10,000.
+/// random choice; of faces at most 2 million or a tenth of those wanted, whichever is more. One in eight is
+/// held back, but at most 10,000.
 Split choose_points(const TargetSpace& target, std::size_t wanted, Random& random);
 
 /// The nearest faces of the points, exactly. O(points log faces)

@@ -55,11 +55,11 @@ public:
     }
 
     /// About what the removal of \p v costs at least: the smallest quadric of its neighbours times the
-    /// density of the points. 0 where points are missing.
+    /// density of the points. 0 where points are missing, or nothing is covered.
     float estimate(VertexId v) const {
         const Ring& ring = network_.ring(v);
         const Star around = star(v);
-        if (around.missing > 0 || ring.valence == 0) return 0;
+        if (around.missing > 0 || ring.valence == 0 || !(around.area > 0)) return 0;
         float least = std::numeric_limits<float>::max();
         for (int i = 0; i < ring.valence; ++i) least = std::min(least, quadric(v, ring[i]));
         return least * static_cast<float>(around.count) / around.area;

@@ -35,7 +35,7 @@ struct Report {
     double topology_confidence = 0;
     /// With counter > feature_threshold, which is times the mean for the normal counter (eq 7).
     int feature_vertices = 0;
-    double rms_error = 0;     ///< cloud to mesh, % of the cloud's bounding-box diagonal
+    double rms_error = 0;     ///< cloud to mesh, % of the bounding-box diagonal of what was learned
     double mean_counter = 0;  ///< Mean(n_c)
     double seconds = 0;
     StopReason stop_reason = StopReason::target_reached;

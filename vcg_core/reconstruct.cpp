@@ -8,6 +8,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "distance.h"
 #include "fit.h"
@@ -58,7 +59,7 @@ struct Start {
     Network network;
     int signals_to_land;
     bool encloses_space;                      ///< else the shell has two layers with nothing between them
-    std::vector<std::uint8_t> outliers = {};  ///< of the target, as in StartMesh
+    std::optional<TargetSpace> inliers = {};  ///< what is to be learned, if that is less than the target
 };
 
 /// The paper's start: a tetrahedron in the middle of the cloud, which lies around the origin.
@@ -75,7 +76,11 @@ Start start_of(const TargetSpace& target, const Settings& settings, Report& repo
     options.target_vertices = settings.target_vertices;
     options.threads = settings.threads;
     Random random(static_cast<std::uint64_t>(settings.random_seed) + 2);
-    const StartMesh shell = shell_of(target, options, random, progress);
+    StartMesh shell = shell_of(target, options, random, progress);
+    std::optional<TargetSpace> inliers;
+    if (!shell.outliers.empty()) inliers = target.without(shell.outliers);
+    if (inliers)
+        for (vcg::Point3f& p : shell.positions) p = inliers->frame().inside(target.frame().outside(p));
     report.warnings.insert(report.warnings.end(), shell.warnings.begin(), shell.warnings.end());
     const auto vertices = static_cast<int>(shell.positions.size());
     if (vertices > settings.target_vertices) {
@@ -86,11 +91,11 @@ Start start_of(const TargetSpace& target, const Settings& settings, Report& repo
                                   " asked for: the learning started from a tetrahedron instead. Raise "
                                   "target_vertices to keep the shape.");
         Start start = tetrahedron();
-        start.outliers = shell.outliers;
+        start.inliers = std::move(inliers);
         return start;
     }
     report.topology_confidence = shell.confidence;
-    return {Network(shell.positions, shell.faces), kSignalsToLand, shell.encloses_space, shell.outliers};
+    return {Network(shell.positions, shell.faces), kSignalsToLand, shell.encloses_space, std::move(inliers)};
 }
 
 /// The layers of a sheet come to lie in each other, folded: area vectors cancel, and what is left of them is
@@ -229,9 +234,7 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     const std::optional<TargetSpace> once = without_repeats(given, mesh.report);
     const TargetSpace& places = once ? *once : given;
     const Start start = start_of(places, settings, mesh.report, starting);
-    const std::optional<TargetSpace> inliers =
-        start.outliers.empty() ? std::nullopt : places.without(start.outliers);
-    const TargetSpace& target = inliers ? *inliers : places;
+    const TargetSpace& target = start.inliers ? *start.inliers : places;
     const Settings learned = settings_for(start, settings, mesh.report);
     Settings more = learned;
     more.target_vertices = vertices_to_learn(target, start, settings);

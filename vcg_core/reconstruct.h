@@ -21,7 +21,8 @@ namespace neuralmesh {
 /// \throws SettingError (a parameter out of range), InputError (nothing to learn), std::bad_alloc
 /// Cost: about signals_per_split signals of O(1) expected time for each vertex learned. Below 5,000 vertices
 /// up to four times as many are learned as asked for, and the fit takes some out; where growth stalls, it all
-/// begins anew without that. Memory: 12 bytes more per point where points are left out.
+/// begins anew without that. Memory: 12 bytes more per point where outliers are left out,
+/// and as many where repeated points are.
 NeuralMesh reconstruct(const TargetSpace& target, const Settings& settings, Progress& progress);
 
 }  // namespace neuralmesh

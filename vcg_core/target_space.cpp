@@ -14,6 +14,7 @@ namespace neuralmesh {
 
 namespace {
 
+constexpr double kSmallPart = 1e-3;              ///< of the box, where most points are
 constexpr double kManyRepeats = 0.1;             ///< of the points
 constexpr std::size_t kEnoughForShare = 100000;  ///< points, to estimate that share
 constexpr double kCollinear = 1e-6;  ///< distance from the line, in diagonals, below which points lie on it
@@ -88,6 +89,12 @@ void TargetSpace::set_frame(const vcg::Box3d& box, std::size_t not_finite, std::
             "The layer's bounding box is too large or too small for double precision: scale it first.");
 }
 
+void TargetSpace::centre_on(const vcg::Box3d& most) {
+    const double diagonal = (most.max - most.min).Norm();
+    off_centre_ = diagonal > 0 && diagonal < kSmallPart * frame_.diagonal;
+    if (off_centre_) frame_.centre = most.min / 2 + most.max / 2;
+}
+
 std::string TargetSpace::lack_of_spread() const {
     const vcg::Point3f& a = positions_.front();
     const auto far = std::max_element(
@@ -105,6 +112,9 @@ std::string TargetSpace::lack_of_spread() const {
     if (distinct.size() < 4)
         return "The layer has only " + std::to_string(distinct.size()) +
                " distinct points: a surface needs at least 4.";
+    if (off_centre_)
+        return "All points of the layer but a few lie, compared with its bounding box, in one place: delete "
+               "the few that lie far away.";
     return "All points of the layer lie on one straight line: a surface cannot be learned from it. Choose a "
            "layer whose points surround a surface.";
 }
@@ -130,11 +140,16 @@ void TargetSpace::accumulate_areas() {
 
 std::optional<TargetSpace> TargetSpace::without(const std::vector<std::uint8_t>& left_out) const {
     TargetSpace rest;
-    rest.frame_ = frame_;
     rest.positions_.reserve(static_cast<std::size_t>(std::count(left_out.begin(), left_out.end(), 0)));
     for (std::size_t i = 0; i < positions_.size(); ++i)
         if (left_out[i] == 0) rest.positions_.push_back(positions_[i]);
-    if (rest.positions_.empty() || !rest.lack_of_spread().empty()) return std::nullopt;
+    vcg::Box3d box;
+    for (const vcg::Point3f& p : rest.positions_) box.Add(vcg::Point3d::Construct(p));
+    if (box.IsNull() || box.min == box.max) return std::nullopt;
+    const Frame inner{(box.min + box.max) / 2, (box.max - box.min).Norm()};
+    for (vcg::Point3f& p : rest.positions_) p = inner.inside(vcg::Point3d::Construct(p));
+    if (!rest.lack_of_spread().empty()) return std::nullopt;
+    rest.frame_ = {frame_.centre + inner.centre * frame_.diagonal, inner.diagonal * frame_.diagonal};
     return rest;
 }
 

@@ -7,7 +7,7 @@
 #include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
 
-#include <array>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -20,7 +20,8 @@
 namespace neuralmesh {
 
 /// The core's frame: the bounding box centred on the origin, its diagonal of length 1. Computed in double,
-/// so that learning in float is indifferent to where and how large the cloud is.
+/// so that learning in float is indifferent to where and how large the cloud is. (Where all but a few points
+/// lie in a thousandth of the box, these are centred: near the origin float tells most places apart.)
 struct Frame {
     vcg::Point3d centre{0, 0, 0};
     double diagonal = 1;
@@ -46,8 +47,8 @@ public:
     /// One random point of the target space, in the core's frame.
     vcg::Point3f sample(Random& random) const;
 
-    /// The cloud without the points where \p left_out is not 0, in the same frame; nothing if those that
-    /// remain span no surface. O(points).
+    /// The cloud without the points where \p left_out is not 0, in the frame of what remains; nothing if that
+    /// spans no surface. O(points).
     std::optional<TargetSpace> without(const std::vector<std::uint8_t>& left_out) const;
 
     /// The cloud with every place once, in the same frame, if more than a tenth of its points repeat others
@@ -63,6 +64,9 @@ public:
 private:
     template <class PointAt>
     void take(std::size_t count, const PointAt& point_at);
+    template <class PointAt>
+    static vcg::Box3d box_of_most(std::size_t count, const PointAt& point_at);
+    void centre_on(const vcg::Box3d& most);
     void set_frame(const vcg::Box3d& box, std::size_t not_finite, std::size_t count);
     /// Why the points cannot be learned, as a sentence; empty if they can.
     std::string lack_of_spread() const;
@@ -70,6 +74,7 @@ private:
     void accumulate_areas();
 
     Frame frame_;
+    bool off_centre_ = false;  ///< the frame is centred on most of the points, not on their box
     std::vector<vcg::Point3f> positions_;
     std::vector<double> cumulative_area_;
 };
@@ -105,8 +110,26 @@ void TargetSpace::take(std::size_t count, const PointAt& point_at) {
         }
     }
     set_frame(box, not_finite, count);
+    centre_on(box_of_most(count, point_at));
     positions_.reserve(count);
     for (std::size_t i = 0; i < count; ++i) positions_.push_back(frame_.inside(point_at(i)));
+}
+
+/// The box, along each axis, of the middle nine tenths of a thousand of the points.
+template <class PointAt>
+vcg::Box3d TargetSpace::box_of_most(std::size_t count, const PointAt& point_at) {
+    constexpr std::size_t kLooked = 1000;
+    const std::size_t stride = count / kLooked + 1;
+    vcg::Box3d box;
+    for (int k = 0; k < 3; ++k) {
+        std::vector<double> along;
+        for (std::size_t i = 0; i < count; i += stride) along.push_back(vcg::Point3d(point_at(i))[k]);
+        std::sort(along.begin(), along.end());
+        const std::size_t end = along.size() / 20;
+        box.min[k] = along[end];
+        box.max[k] = along[along.size() - 1 - end];
+    }
+    return box;
 }
 
 }  // namespace neuralmesh

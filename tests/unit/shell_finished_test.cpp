@@ -61,6 +61,17 @@ TEST(ShellFinished, GrossOutliersMakeNoComponentsAndPullAtNothing) {
     }
 }
 
+TEST(ShellFinished, OnePointFarAwayCostsNeitherTimeNorPrecision) {
+    Random random(20);
+    std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
+    cloud.emplace_back(2e5, 0, 0);
+    const NeuralMesh mesh = finished(cloud, 500);
+    expect_closed(mesh, 500, 1, 0);
+    expect_sphere(mesh, 0.01);
+    EXPECT_LT(mesh.report.rms_error, 0.5);
+    EXPECT_GT(mesh.report.rms_error, 0.01) << "% of the sphere's box, not of the far point's";
+}
+
 TEST(ShellFinished, PointsDeepInsidePullAtNothing) {
     Random random(17);
     std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
