@@ -4,8 +4,9 @@
 
 # Static analysis of our sources; ends with 1 where there is a finding:
 #   tests/analyse.sh [FILE...]    files under vcg_core/, filter_neuralmesh/ and tests/; none: all of them
-# clang-tidy by .clang-tidy, on what the preset "clang" compiles (no Qt, no MeshLab), then cppcheck on all.
-# Needs Debian's clang, clang-tidy and cppcheck; about 10 minutes of processor time for everything.
+# clang-tidy by .clang-tidy, as the preset "clang" compiles them (a plugin's once for every host), then cppcheck.
+# Needs what `./run.sh build` has fetched, and Debian's clang, clang-tidy and cppcheck; 10 to 50 seconds of processor time
+# for most files, more for the adapters.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 for tool in clang++ clang-tidy cppcheck; do
@@ -13,16 +14,20 @@ for tool in clang++ clang-tidy cppcheck; do
 done
 files=("$@")
 if [ $# = 0 ]; then
-    mapfile -t files < <(ls vcg_core/*.cpp filter_neuralmesh/*.cpp tests/{unit,memory,fuzz,bench,hosts,experiments}/*.cpp)
+    # Without bench/cgal/, which is compiled only where CGAL is.
+    mapfile -t files < <(
+        ls vcg_core/*.cpp filter_neuralmesh/*.cpp tests/{unit,memory,fuzz,bench,bench/instructions,hosts,experiments}/*.cpp)
 fi
 
-cmake --preset clang > /dev/null
+mkdir -p build
+cmake --preset clang > build/configure.log 2>&1 ||
+    { cat build/configure.log >&2; echo "The configuration of clang failed." >&2; exit 2; }
+for file in "${files[@]}"; do
+    grep -q "$PWD/$file\"" build/clang/compile_commands.json ||
+        { echo "$file cannot be analysed: the preset clang does not compile it. Are GTest and benchmark there?" >&2; exit 2; }
+done
 failed=0
-mapfile -t compiled < <(
-    for file in "${files[@]}"; do grep -q "/$file\"" build/clang/compile_commands.json && echo "$file"; done)
-if [ "${#compiled[@]}" -gt 0 ]; then
-    printf '%s\0' "${compiled[@]}" | xargs -0 -n 1 -P "$(nproc)" clang-tidy --quiet -p build/clang || failed=1
-fi
+printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$(nproc)" clang-tidy --quiet -p build/clang || failed=1
 
 mkdir -p build/cppcheck
 cppcheck --quiet --enable=warning,performance,portability --std=c++17 --language=c++ --error-exitcode=1 \

@@ -27,6 +27,7 @@ bool denied() {
 
 }  // namespace
 
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): the linker names them
 extern "C" {
 void* __real_malloc(std::size_t size);
 void* __real_calloc(std::size_t count, std::size_t size);
@@ -56,6 +57,7 @@ void __wrap_free(void* block) {
     __real_free(block);
 }
 }
+// NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)
 
 // The aligned and the plain forms may share memory functions, as free() takes back what aligned_alloc() gave.
 void* operator new(std::size_t size) {
