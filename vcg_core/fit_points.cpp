@@ -129,6 +129,10 @@ Support::Support(const Network& network, const Surface& surface, const FacePoint
     struct Around {
         float points = 0;
         float area = 0;
+        void operator+=(const Around& other) {
+            points += other.points;
+            area += other.area;
+        }
     };
     std::vector<Around> sums(surface.at.size());
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
@@ -140,16 +144,7 @@ Support::Support(const Network& network, const Surface& surface, const FacePoint
             sums[index(v)].area += twice;
         }
     }
-    for (int spread = 0; spread < kSpreads; ++spread) {
-        const std::vector<Around> before = sums;
-        for (VertexId v = 0; v < network.slot_count(); ++v) {
-            const Ring& ring = network.ring(v);
-            for (int i = 0; i < ring.valence; ++i) {
-                sums[index(v)].points += before[index(ring[i])].points;
-                sums[index(v)].area += before[index(ring[i])].area;
-            }
-        }
-    }
+    spread_over_rings(network, sums, kSpreads);
     density_.resize(sums.size());
     for (std::size_t v = 0; v < sums.size(); ++v)
         density_[v] = sums[v].area > 0 ? sums[v].points / sums[v].area : 0.0F;
@@ -164,13 +159,7 @@ std::vector<Vec> smoothed_normals(const Network& network, const Surface& surface
         const Vec area = (surface.corner(face, 1) - a).cross(surface.corner(face, 2) - a);
         for (const VertexId v : surface.faces[f]) normals[index(v)] += area;
     }
-    for (int spread = 0; spread < kSpreads; ++spread) {
-        const std::vector<Vec> before = normals;
-        for (VertexId v = 0; v < network.slot_count(); ++v) {
-            const Ring& ring = network.ring(v);
-            for (int i = 0; i < ring.valence; ++i) normals[index(v)] += before[index(ring[i])];
-        }
-    }
+    spread_over_rings(network, normals, kSpreads);
     for (Vec& n : normals) n.normalize();
     return normals;
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit_points.h"
 #include "parallel.h"
 
 namespace neuralmesh {
@@ -135,17 +136,8 @@ void FitSystem::measure_support(const Surface& surface, const FacePoints& points
     // The density around: both sums over some rings.
     std::vector<float> points_around = support;
     std::vector<float> area_around = area;
-    for (int spread = 0; spread < kSpreads; ++spread) {
-        const std::vector<float> p = points_around;
-        const std::vector<float> a = area_around;
-        for (VertexId v = 0; v < network_.slot_count(); ++v) {
-            const Ring& ring = network_.ring(v);
-            for (int i = 0; i < ring.valence; ++i) {
-                points_around[index(v)] += p[index(ring[i])];
-                area_around[index(v)] += a[index(ring[i])];
-            }
-        }
-    }
+    spread_over_rings(network_, points_around, kSpreads);
+    spread_over_rings(network_, area_around, kSpreads);
     missing_.assign(slots, 0);
     for (std::size_t v = 0; v < slots; ++v) {
         if (!(area_around[v] > 0)) continue;
@@ -204,10 +196,7 @@ void FitSystem::make_hinges(const Surface& surface) {
     bending_force_.assign(at.size(), Vec::Zero());
     bending_diagonal_.assign(at.size(), 0);
     if (gaps.empty()) return;
-    std::vector<float> sorted = gaps;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                     sorted.end());
-    const float crease = std::max(kCrease * sorted[sorted.size() / 2], 1e-9F);
+    const float crease = std::max(kCrease * median(gaps), 1e-9F);
     for (std::size_t h = 0; h < hinges_.size(); ++h) {
         Hinge& hinge = hinges_[h];
         hinge.weight = unit_ / (1 + (gaps[h] / crease) * (gaps[h] / crease));

@@ -91,6 +91,19 @@ struct Surface {
 /// Unit normal of the face that has the edge a-b the other way round, b to a; 0 on a boundary.
 Vec normal_beyond(const Surface& surface, VertexId a, VertexId b);
 
+/// Adds to every vertex's value those of its ring, \p times over: sums over ever wider surroundings, in which
+/// near vertices count more often. O(times x vertices).
+template <class Value>
+void spread_over_rings(const Network& network, std::vector<Value>& values, int times) {
+    for (int time = 0; time < times; ++time) {
+        const std::vector<Value> before = values;
+        for (VertexId v = 0; v < network.slot_count(); ++v) {
+            const Ring& ring = network.ring(v);
+            for (int i = 0; i < ring.valence; ++i) values[index(v)] += before[index(ring[i])];
+        }
+    }
+}
+
 /// A face and the point of it nearest to some other point.
 struct Hit {
     int face;

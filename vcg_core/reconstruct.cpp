@@ -14,7 +14,7 @@
 #include "fit.h"
 #include "learner.h"
 #include "shell.h"
-#include "shell_mesh.h"
+#include "simplify.h"
 
 namespace neuralmesh {
 
@@ -189,11 +189,11 @@ struct Grown {
 
 /// Grows the network of \p start and fits it, and enters in \p report why learning ended and, added to those
 /// of a growth before, what it took.
-void grow(const TargetSpace& target, const Settings& settings, const Settings& learned, const Start& start,
-          Run& run, Grown& grown, Report& report) {
+void grow(const TargetSpace& target, const Settings& settings, const Settings& learner_settings,
+          const Start& start, Run& run, Grown& grown, Report& report) {
     Part learning(run, 0.1, settings.fit_to_points ? 0.8 : 1);
     Part fitting(run, 0.8, 1);
-    grown.learner.emplace(target, learned, start.network);
+    grown.learner.emplace(target, learner_settings, start.network);
     grown.fit = FitReport();  // one of a network that was given up says nothing of this one
     const StopReason reason = grown.learner->run(start.signals_to_land, learning);
     grown.network = grown.learner->network();
@@ -235,14 +235,14 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     const TargetSpace& places = once ? *once : given;
     const Start start = start_of(places, settings, mesh.report, starting);
     const TargetSpace& target = start.inliers ? *start.inliers : places;
-    const Settings learned = settings_for(start, settings, mesh.report);
-    Settings more = learned;
-    more.target_vertices = vertices_to_learn(target, start, settings);
+    const Settings learner_settings = settings_for(start, settings, mesh.report);
+    Settings oversized = learner_settings;
+    oversized.target_vertices = vertices_to_learn(target, start, settings);
     Grown grown;
-    grow(target, settings, more, start, run, grown, mesh.report);
+    grow(target, settings, oversized, start, run, grown, mesh.report);
     const bool too_many = grown.network.vertex_count() > settings.target_vertices || grown.learner->forced();
-    if (too_many && !run.stopped() && more.target_vertices > settings.target_vertices)
-        grow(target, settings, learned, start, run, grown, mesh.report);
+    if (too_many && !run.stopped() && oversized.target_vertices > settings.target_vertices)
+        grow(target, settings, learner_settings, start, run, grown, mesh.report);
 
     Network& network = grown.network;
     // Only a run that was stopped before the fit had taken out enough has more.

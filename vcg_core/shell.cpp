@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
+// Lattices, votes and the mesh of the winner.
 #include "shell.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
-#include <utility>
 
 #include "network.h"
 #include "parallel.h"
 #include "shell_cloud.h"
+#include "shell_groups.h"
 #include "shell_grow.h"
 #include "shell_mesh.h"
 #include "shell_region.h"
 #include "shell_vote.h"
+#include "simplify.h"
 
 namespace neuralmesh {
 namespace {
@@ -94,10 +96,8 @@ struct Closed {
 Solid solid_at(const Region& region, int level, bool grown) {
     Solid solid;
     solid.level = grown ? grown_level(level) : level;
-    long long held = 0;
-    solid.nodes = grown
-                      ? grown_solid(region, level)
-                      : solid_of(region.lattice, region.clearance, region.counts, level, region.enough, held);
+    solid.nodes = grown ? grown_solid(region, level)
+                        : solid_of(region.lattice, region.clearance, region.counts, level, region.enough);
     solid.values = signed_values(region, solid.level, solid.nodes);
     return solid;
 }
@@ -293,7 +293,6 @@ StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Rando
     result.faces = network.faces();
 
     result.confidence = verdict.confidence;
-    result.persistence = verdict.persistence;
     result.resolution = static_cast<double>(region.lattice.step);
     result.radius = result.resolution * std::sqrt(static_cast<double>(closed.solid.level));
     result.widest_opening = region.widest_opening;

@@ -64,7 +64,6 @@ struct StartMesh {
     int genus = 0;  ///< of all components together
     /// How sure components and genus are: their share in the votes of all topologies met, in [0, 1].
     double confidence = 0;
-    double persistence = 1;        ///< largest radius of the run they were found in through its smallest
     double radius = 0;             ///< at which the cloud was closed; the mesh lies about this far outside it
     double resolution = 0;         ///< distance of the lattice nodes
     double widest_opening = 0;     ///< radius of the widest hole that was sealed; 0: none

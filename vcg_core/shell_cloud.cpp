@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
+// By the groups they lie in.
 #include "shell_cloud.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 
-#include "shell_vote.h"
+#include "shell_groups.h"
 
 namespace neuralmesh {
 namespace {
@@ -30,19 +30,18 @@ int depth_of_inside(const Region& region, int level) {
 /// 1 for the nodes whose points are outliers.
 std::vector<std::uint8_t> outlying_nodes(const Region& region, const std::vector<std::uint8_t>& solid,
                                          int level) {
-    long long held = 0;
-    std::vector<std::uint8_t> outlying =
-        solid_of(region.lattice, region.distances, region.counts, level, region.enough, held);
-    if (held == std::accumulate(region.counts.begin(), region.counts.end(), 0LL))
-        return std::vector<std::uint8_t>(outlying.size(), 0);
+    const std::vector<std::uint8_t> together =
+        solid_of(region.lattice, region.distances, region.counts, level, region.enough);
+    std::vector<std::uint8_t> outlying(together.size());
+    for (std::size_t i = 0; i < outlying.size(); ++i)
+        outlying[i] = region.counts[i] != 0 && together[i] == 0 ? 1 : 0;
+    if (std::count(outlying.begin(), outlying.end(), 1) == 0) return outlying;
     const int inside = depth_of_inside(region, level);
     std::vector<std::uint32_t> outside(solid.size());
     for (std::size_t i = 0; i < solid.size(); ++i) outside[i] = solid[i] == 0 ? 1 : 0;
     const std::vector<Level> depths = squared_distances(region.lattice, outside, Region::kReach);
-    for (std::size_t i = 0; i < outlying.size(); ++i) {
-        const bool of_surface = outlying[i] != 0 || (solid[i] != 0 && depths[i] <= inside);
-        outlying[i] = region.counts[i] != 0 && !of_surface ? 1 : 0;
-    }
+    for (std::size_t i = 0; i < outlying.size(); ++i)
+        if (solid[i] != 0 && depths[i] <= inside) outlying[i] = 0;
     return outlying;
 }
 

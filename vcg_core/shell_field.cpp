@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
+// Squared distances, floods and counts on the lattice.
 #include "shell_field.h"
 
 #include <algorithm>

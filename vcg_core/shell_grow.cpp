@@ -9,6 +9,7 @@
 #include <cstddef>
 
 #include "parallel.h"
+#include "shell_groups.h"
 
 namespace neuralmesh {
 namespace {
@@ -139,8 +140,7 @@ std::vector<std::uint8_t> grown_solid(const Region& region, int level) {
     std::vector<std::uint8_t> solid;
     const LevelTopology& plain = region.topologies[static_cast<std::size_t>(level)];
     if (plain.specks > 0) {
-        long long held = 0;
-        solid = solid_of(region.lattice, region.clearance, region.counts, level, region.enough, held);
+        solid = solid_of(region.lattice, region.clearance, region.counts, level, region.enough);
     } else {  // all of it, and cheaper
         solid.resize(region.clearance.size());
         for (std::size_t i = 0; i < solid.size(); ++i) solid[i] = region.clearance[i] <= level ? 1 : 0;

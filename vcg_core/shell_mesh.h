@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// From a solid on a lattice to a small, even triangle mesh of the same topology.
+// From a solid on a lattice to a triangle mesh of the same topology.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -25,10 +25,5 @@ struct IndexedMesh {
 /// O(nodes + faces log faces). (Marching tetrahedra: Doi and Koide 1991. Marching cubes' tables may join or
 /// cut what the lattice counts otherwise.)
 IndexedMesh marching_tetrahedra(const Lattice& lattice, const std::vector<float>& values);
-
-/// Collapses the shortest edges of the closed mesh \p network first, until it has at most \p vertices, or
-/// nothing can go without changing the topology or folding the surface; then evens it by edge flips and
-/// tangential smoothing. All valences end between 3 and 12. O(n log n).
-void simplify(Network& network, int vertices);
 
 }  // namespace neuralmesh

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
+// Counting, sealing, counting again.
 #include "shell_region.h"
 
 #include <algorithm>

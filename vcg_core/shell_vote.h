@@ -4,12 +4,7 @@
 // Which topology to believe: the one that persists over radii.
 #pragma once
 
-#include <vcg/space/box3.h>
-
-#include <cstdint>
 #include <vector>
-
-#include "shell_field.h"
 
 namespace neuralmesh {
 
@@ -26,7 +21,6 @@ struct Verdict {
     int components = 0;
     int genus = 0;
     double confidence = 0;    ///< share of the votes, in [0, 1]
-    double persistence = 1;   ///< largest through smallest radius of the run with most votes
     bool grown = false;       ///< of grown solids
     int lattice = 0;          ///< which of the lattices has that run
     std::vector<int> levels;  ///< the levels of that run, smallest radius first, up to twice that radius
@@ -39,16 +33,5 @@ struct Verdict {
 /// topologies: rising levels each. O(levels).
 Verdict persistent_topology(const std::vector<const std::vector<TopologyAt>*>& topologies,
                             const std::vector<double>& steps);
-
-/// The nodes of the solid at \p level, without the components of fewer than \p enough points.
-/// \p held: the number of points in it.
-std::vector<std::uint8_t> solid_of(const Lattice& lattice, const std::vector<Level>& clearance,
-                                   const std::vector<std::uint32_t>& counts, int level, long long enough,
-                                   long long& held);
-
-/// The box of all groups of adjacent occupied nodes that hold at least \p share of the points each; null if
-/// they do not hold \p together of the points. O(nodes).
-vcg::Box3f box_of_large_groups(const Lattice& lattice, const std::vector<std::uint32_t>& counts, double share,
-                               double together);
 
 }  // namespace neuralmesh
