@@ -172,8 +172,9 @@ def _clouds(random):
         "1 % gross outliers": Input(np.vstack([ball(), far_off]), outliers=20),
         "1 % near outliers": Input(np.vstack([ball(), far_off / 20]), outliers=20),
         "noise of 2 %": Input(noisy, rms=1.9, far=4),
-        # A bowl; the few points of the other half are too far apart to be a surface.
-        "density 1000 : 1": Input(np.vstack([whole[dense], stray]), outliers=len(stray), volume=None, rms=.6, far=3.5),
+        # A bowl; the few points of the other half are too far apart to be a surface. On a sheet the fit lifts vertices
+        # off by up to half an edge, which is .2 of 3.5.
+        "density 1000 : 1": Input(np.vstack([whole[dense], stray]), outliers=len(stray), volume=None, rms=.6, far=6),
         # What a scanner missed: the ball is there all the same.
         "most in one point": Input(np.vstack([ball(), np.repeat(ball()[:1], 20000, axis=0)])),
         # Points throughout a cube do not say where its surface is.
