@@ -83,7 +83,6 @@ Rounds take_rounds(Network& network, FitSteps& steps, const FitOptions& options,
         steps.aim(surface);
         if (round == 0) {
             result.at_start = steps.held();
-            report.outlier_distance = static_cast<double>(steps.outlier());
             report.rms_before = report.rms_after = steps.held_error(surface);
         }
         const double error = steps.move(ties, surface);
@@ -92,7 +91,6 @@ Rounds take_rounds(Network& network, FitSteps& steps, const FitOptions& options,
             result.best_error = error;
             report.origin = steps.origin();
             report.rounds = round + 1;
-            report.bending_weight = static_cast<double>(steps.weight());
         }
         if (round >= kFirstRounds && error > (1 - kLeastProgress) * error_before) break;
         error_before = last_error;
@@ -135,14 +133,18 @@ FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOp
                                                           static_cast<double>(target.positions().size());
     Team team(thread_count(threads));
     FitSteps steps(network, std::move(points), team);
-    steps.untangle_surface();
+    // By time: the reduction takes about as long as the rounds.
+    PartOf untangling(progress, 0, 0.1);
+    PartOf reducing(progress, 0.1, 0.5);
+    PartOf fitting(progress, to_be_reduced ? 0.5 : 0.1, 1);
+    if (!steps.untangle_surface(untangling)) return report;
     if (to_be_reduced) {
-        const bool reduced = steps.reduce_to(vertices, progress);
+        const bool reduced = steps.reduce_to(vertices, reducing);
         report.origin = own_places(network);
         if (!reduced) return report;
     }
     const Network before = network;
-    Rounds rounds = take_rounds(network, steps, options, report, progress);
+    Rounds rounds = take_rounds(network, steps, options, report, fitting);
     judge(rounds, steps, learned_share, report);
     if (report.improved) {
         network = std::move(rounds.best);

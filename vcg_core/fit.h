@@ -33,16 +33,16 @@ struct FitOptions {
 };
 
 /// Figures of a fit. Errors are root mean squares over points held back from it, in the core's frame, along
-/// smoothed normals of the mesh as it was before, every distance counted up to outlier_distance.
+/// smoothed normals of the mesh as it was before, every distance counted up to where outliers begin.
 struct FitReport {
     double rms_before = 0;  ///< too low under noise: the points were not held back from the learning
     double rms_after = 0;
-    double outlier_distance = 0;
-    double bending_weight = 0;  ///< that of the smoothness, as the points held back chose it
     int rounds = 0;
     int flips = 0;
     int moved_vertices = 0;  ///< taken out at one place and put in at another
-    bool improved = false;   ///< false: the mesh was left as it was
+    /// False: no round was kept. What comes before the rounds stays: the smoothing of a mesh that cut itself,
+    /// and the reduction.
+    bool improved = false;
     /// For every slot the vertex whose counters it takes over: itself, or, if it was put in anew, the one at
     /// whose place it came to lie.
     /// Ids are those before the fit. -1 for free slots.

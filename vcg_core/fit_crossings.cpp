@@ -7,6 +7,9 @@
 #include <vcg/space/intersection/triangle_triangle3.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
 #include <iterator>
 
 #include "parallel.h"
@@ -25,11 +28,45 @@ float volume(const Vec& a, const Vec& b, const Vec& c, const Vec& d) {
 /// Whether the segment p-q goes through the triangle a b c, not merely along its plane. Without tolerances,
 /// so the answer does not depend on the scale.
 bool goes_through(const Vec& p, const Vec& q, const Vec& a, const Vec& b, const Vec& c) {
-    if (!(volume(a, b, c, p) * volume(a, b, c, q) < 0)) return false;
+    const float at_p = volume(a, b, c, p);
+    const float at_q = volume(a, b, c, q);
+    // Not by the sign of their product, which may be too small for float.
+    if (!((at_p < 0 && at_q > 0) || (at_p > 0 && at_q < 0))) return false;
     const float u = volume(p, q, a, b);
     const float v = volume(p, q, b, c);
     const float w = volume(p, q, c, a);
     return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
+}
+
+/// A face smaller than this, and what it meets, get an origin and a unit of their own for vcglib's test,
+/// which multiplies up to nine lengths: of edges of 2e-5 nothing is left in float. Larger ones it can do
+/// where they are.
+constexpr float kSmall = 0x1p-10F;
+
+float extent(const Vec& a, const Vec& b, const Vec& c) {
+    return (b - a).cwiseAbs().cwiseMax((c - a).cwiseAbs()).maxCoeff();
+}
+
+/// Both faces have an area, so the unit is a number that float has the inverse of.
+bool have_common_point(const Surface& surface, int f, int g) {
+    std::array<Vec, 6> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+        corners[k] = surface.corner(f, k);
+        corners[k + 3] = surface.corner(g, k);
+    }
+    if (std::min(extent(corners[0], corners[1], corners[2]), extent(corners[3], corners[4], corners[5])) <
+        kSmall) {
+        const Vec origin = corners[0];
+        float reach = 0;
+        for (Vec& c : corners) {
+            c -= origin;
+            reach = std::max(reach, c.cwiseAbs().maxCoeff());
+        }
+        // A power of two, which changes no digits.
+        for (Vec& c : corners) c *= std::ldexp(1.0F, -std::ilogb(reach));
+    }
+    const auto corner = [&](std::size_t k) { return point(corners[k]); };
+    return vcg::NoDivTriTriIsect(corner(0), corner(1), corner(2), corner(3), corner(4), corner(5));
 }
 
 bool cut_each_other(const Surface& surface, int f, int g) {
@@ -52,8 +89,13 @@ bool cut_each_other(const Surface& surface, int f, int g) {
                             corner(g, 2)) ||
                goes_through(corner(g, in_t + 1), corner(g, in_t + 2), corner(f, 0), corner(f, 1),
                             corner(f, 2));
-    return vcg::NoDivTriTriIsect(point(corner(f, 0)), point(corner(f, 1)), point(corner(f, 2)),
-                                 point(corner(g, 0)), point(corner(g, 1)), point(corner(g, 2)));
+    return have_common_point(surface, f, g);
+}
+
+/// In float; what has none can cut nothing, and where vertices share their places there are many.
+bool has_area(const Surface& surface, int f) {
+    const Vec& a = surface.corner(f, 0);
+    return (surface.corner(f, 1) - a).cross(surface.corner(f, 2) - a) != Vec(0, 0, 0);
 }
 
 std::size_t faces_of(const std::vector<Crossing>& crossings) {
@@ -111,11 +153,24 @@ bool have_same_face(const Surface& a, const Surface& b, const Triangle& face) {
 
 }  // namespace
 
-std::vector<Crossing> crossings_of(const Surface& surface, Team& team) {
-    const FaceTree tree(surface);
-    return sorted_crossings(surface.faces.size(), team, [&](std::size_t i, std::vector<Crossing>& found) {
-        tree.for_overlapping(i, [&](int f, int g) { note(surface, f, g, found); });
-    });
+std::vector<Crossing> crossings_of(const Surface& surface, Team& team, std::int64_t* pairs_looked_at) {
+    std::vector<int> faces;
+    for (int f = 0; f < static_cast<int>(surface.faces.size()); ++f)
+        if (has_area(surface, f)) faces.push_back(f);
+    const std::size_t count = faces.size();
+    const FaceTree tree(surface, std::move(faces));
+    std::atomic<std::int64_t> looked_at{0};
+    std::vector<Crossing> all =
+        sorted_crossings(count, team, [&](std::size_t i, std::vector<Crossing>& found) {
+            std::int64_t near = 0;
+            tree.for_overlapping(i, [&](int f, int g) {
+                ++near;
+                note(surface, f, g, found);
+            });
+            looked_at += near;
+        });
+    if (pairs_looked_at != nullptr) *pairs_looked_at = looked_at;
+    return all;
 }
 
 std::vector<Crossing> crossings_after(const Surface& surface, const Surface& before,
@@ -125,11 +180,12 @@ std::vector<Crossing> crossings_after(const Surface& surface, const Surface& bef
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
         if (have_same_face(surface, before, surface.faces[f])) continue;
         is_changed[f] = 1;
-        changed.push_back(static_cast<int>(f));
+        if (has_area(surface, static_cast<int>(f))) changed.push_back(static_cast<int>(f));
     }
     const FaceTree tree(surface, changed);
     const auto find = [&](std::size_t i, std::vector<Crossing>& found) {
         const int f = static_cast<int>(i);
+        if (!has_area(surface, f)) return;
         tree.for_overlapping(surface, f, [&](int g) {
             // Two changed faces meet twice, and each meets itself.
             if (is_changed[i] == 0 || f < g) note(surface, f, g, found);

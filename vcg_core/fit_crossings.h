@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "fit_surface.h"
@@ -19,8 +20,11 @@ using Crossing = std::array<VertexId, 6>;
 /// All pairs of faces of \p surface that cut each other, sorted: faces without a common corner that have a
 /// point in common, and faces with one common corner where the edge opposite to it of one goes through the
 /// other (vcglib's definition, but for its tolerances, which depend on the scale). Faces with a common edge
-/// never count. Expected O(faces log faces), by \p team, with the same result for any number.
-std::vector<Crossing> crossings_of(const Surface& surface, Team& team);
+/// never count, nor do those without area. By \p team, with the same result for any number. O(faces log faces
+/// + pairs of faces whose boxes meet, of which a smooth surface has about six for each face).
+/// \param pairs_looked_at if not null, gets the number of these pairs
+std::vector<Crossing> crossings_of(const Surface& surface, Team& team,
+                                   std::int64_t* pairs_looked_at = nullptr);
 
 /// The same, from \p known, the crossings of the surface \p before: only faces that are not in \p before, at
 /// the same place, are looked at. Expected O(faces + changed faces log changed faces).

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "fit_flips.h"
 #include "fit_move.h"
@@ -57,7 +59,11 @@ constexpr int kTries = 3;
 FitSteps::FitSteps(Network& network, Split points, Team& team)
     : network_(network), points_(std::move(points)), team_(team), origin_(own_places(network)) {}
 
-void FitSteps::untangle_surface() { guard_ = CrossingGuard(untangle(network_, team_)); }
+bool FitSteps::untangle_surface(Progress& progress) {
+    std::optional<std::vector<Crossing>> left = untangle(network_, team_, progress);
+    if (left) guard_ = CrossingGuard(std::move(*left));
+    return left.has_value();
+}
 
 FacePoints FitSteps::tie(const Surface& surface, bool exact) {
     const std::vector<Hit> hits =
@@ -221,9 +227,16 @@ int FitSteps::shift_vertices(const Surface& surface, const FacePoints& ties) {
 }
 
 bool FitSteps::reduce_to(int vertices, Progress& progress) {
+    PartOf reducing(progress, 0, 0.9);
+    PartOf untangling(progress, 0.9, 1);
     wait_for_reduction();
+    const int at_start = network_.vertex_count();
     for (int round = 0; network_.vertex_count() > vertices; ++round) {
-        if (!progress(0, "Fitting to the points")) return false;
+        const int left = network_.vertex_count();
+        const std::string text = "Fitting to the points: " + std::to_string(left) + " vertices left of " +
+                                 std::to_string(at_start) + ", to come down to " + std::to_string(vertices);
+        if (!reducing(static_cast<double>(at_start - left) / (at_start - vertices), text.c_str()))
+            return false;
         Surface surface(network_);
         FacePoints ties = tie(surface, round == 0);
         if (round == 0) find_held(surface);
@@ -245,8 +258,7 @@ bool FitSteps::reduce_to(int vertices, Progress& progress) {
     points_.fitted.points.insert(points_.fitted.points.end(), waiting_.begin(), waiting_.end());
     waiting_ = {};
     origin_ = own_places(network_);
-    if (!guard_.standing().empty()) untangle_surface();
-    return true;
+    return guard_.standing().empty() || untangle_surface(untangling);
 }
 
 /// A part of the points, which are in random order, is enough to reduce by.

@@ -20,8 +20,9 @@ public:
     /// References to \p network and \p team are kept; there are fitted and held-back points.
     FitSteps(Network& network, Split points, Team& team);
 
-    /// Smooths out where the surface cuts itself, and from then on guards what is left of that.
-    void untangle_surface();
+    /// Smooths out where the surface cuts itself, and from then on guards what is left of that. False if \p
+    /// progress asks to stop; then the network is as it was.
+    bool untangle_surface(Progress& progress);
     /// Takes out the vertices whose removal costs least, some at a time, with moves in between, with a part
     /// of the points. False if \p progress asks to stop or no more can go.
     bool reduce_to(int vertices, Progress& progress);
@@ -36,8 +37,9 @@ public:
     /// not do: under noise a crumpled surface is nearer to every point than the true one.
     double held_error(const Surface& surface) const;
 
-    /// Solves for several bending weights, takes what brings the points held back closest. \return their
-    /// error
+    /// Solves for several bending weights, takes what brings the points held back closest: moves the vertices
+    /// of the network there, and \p surface, which is its surface, with them. \return the error of the points
+    /// held back
     double move(const FacePoints& ties, Surface& surface);
     /// Moves vertices to where the error is. \return how many
     int shift_vertices(const Surface& surface, const FacePoints& ties);
@@ -50,9 +52,7 @@ public:
     void find_again(Followed held, const Surface& surface);
     /// For every slot the vertex beside which it was put in, or itself.
     const std::vector<VertexId>& origin() const { return origin_; }
-    float outlier() const { return outlier_; }
     float variance() const { return noise_; }  ///< of the noise
-    float weight() const { return weight_; }
 
 private:
     void wait_for_reduction();

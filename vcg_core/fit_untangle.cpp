@@ -5,6 +5,7 @@
 #include "fit_untangle.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "fit_points.h"
 
@@ -14,8 +15,9 @@ namespace {
 
 constexpr int kRounds = 10;
 constexpr int kSweeps = 2;
-constexpr int kMostRings = 3;  ///< around the crossings
-constexpr float kStep = 0.5F;  ///< of the way to the ring's middle
+constexpr int kMostPairs = 100;  ///< of faces near each other, for each face; a smooth surface has six
+constexpr int kMostRings = 3;    ///< around the crossings
+constexpr float kStep = 0.5F;    ///< of the way to the ring's middle
 
 /// The vertices of \p crossings and \p rings rings around them.
 std::vector<char> surroundings(const Network& network, const std::vector<Crossing>& crossings, int rings) {
@@ -54,14 +56,23 @@ void take_back(const Network& network, const std::vector<Crossing>& crossings, c
 
 }  // namespace
 
-std::vector<Crossing> untangle(Network& network, Team& team) {
+std::optional<std::vector<Crossing>> untangle(Network& network, Team& team, Progress& progress) {
+    const auto stopped = [&](int searches) {
+        return !progress(static_cast<double>(searches) / (kRounds + 1),
+                         "Fitting to the points: smoothing where the surface cuts itself");
+    };
+    if (stopped(0)) return std::nullopt;
     Surface surface(network);
     const std::vector<Vec> start = surface.at;
-    std::vector<Crossing> at_start = crossings_of(surface, team);
-    if (at_start.empty()) return at_start;
+    std::int64_t pairs = 0;
+    std::vector<Crossing> at_start = crossings_of(surface, team, &pairs);
+    if (at_start.empty() || pairs > kMostPairs * static_cast<std::int64_t>(surface.faces.size()))
+        return at_start;
     const float furthest = mean_edge(surface);
     std::vector<Crossing> crossings = at_start;
     for (int round = 0; round < kRounds && !crossings.empty(); ++round) {
+        if (stopped(round + 1)) return std::nullopt;
+        const Surface before = surface;
         const int rings = std::min(1 + round / 2, kMostRings);
         const std::vector<char> where = surroundings(network, crossings, rings);
         for (int sweep = 0; sweep < kSweeps; ++sweep) smooth(network, where, surface.at);
@@ -70,11 +81,12 @@ std::vector<Crossing> untangle(Network& network, Team& team) {
             const float length = move.norm();
             if (length > furthest) surface.at[v] = start[v] + (furthest / length) * move;
         }
-        crossings = crossings_of(surface, team);
+        crossings = crossings_after(surface, before, crossings, team);
     }
     if (!crossings.empty()) {
+        const Surface before = surface;
         take_back(network, crossings, start, surface.at);
-        crossings = crossings_of(surface, team);
+        crossings = crossings_after(surface, before, crossings, team);
     }
     if (!CrossingGuard(at_start).objections(crossings).empty()) return at_start;
     for (VertexId v = 0; v < network.slot_count(); ++v)

@@ -4,10 +4,12 @@
 // How a long run tells its caller where it is, and how the caller asks it to stop.
 #pragma once
 
+#include <algorithm>
+
 namespace neuralmesh {
 
-/// Passed by reference through every long operation and called on the calling thread only,
-/// about every hundredth of the work.
+/// Passed by reference through every long operation and called on the calling thread only: every thousand
+/// signals of the learning or somewhat more, every round of the fit, every stage of the start mesh.
 class Progress {
 public:
     virtual ~Progress() = default;
@@ -22,6 +24,20 @@ public:
 class NoProgress : public Progress {
 public:
     bool operator()(double /*fraction*/, const char* /*text*/) override { return true; }
+};
+
+/// A part of a longer run, from one fraction of the whole to another.
+class PartOf : public Progress {
+public:
+    PartOf(Progress& whole, double from, double to) : whole_(whole), from_(from), to_(to) {}
+    bool operator()(double fraction, const char* text) override {
+        return whole_(std::min(from_ + fraction * (to_ - from_), to_), text);
+    }
+
+private:
+    Progress& whole_;
+    double from_;
+    double to_;
 };
 
 }  // namespace neuralmesh

@@ -43,7 +43,8 @@ std::vector<Crossing> after(const Surface& surface, const Surface& before, const
 
 std::vector<Crossing> smoothed_out(Network& network, int threads) {
     Team team(threads);
-    return untangle(network, team);
+    NoProgress progress;
+    return *untangle(network, team, progress);
 }
 
 /// A sphere of radius 10, where vcglib's tolerances are small, crumpled by \p noise.
@@ -110,9 +111,30 @@ TEST(Crossings, AreIndifferentToTheScale) {
     Network network = crumpled_sphere(0.1);
     const std::set<Triangle> faces = cut_faces(network);
     ASSERT_FALSE(faces.empty());
+    // Down to edges of 1e-6, a tenth of the finest cells that the learning has. What is multiplied must not
+    // become 0.
+    for (int halvings = 1; halvings <= 20; ++halvings) {
+        for (VertexId v = 0; v < network.slot_count(); ++v)
+            network.set_position(v, network.position(v) * 0.5F);
+        EXPECT_EQ(cut_faces(network), faces) << halvings;
+    }
+}
+
+// As where more vertices are asked for than the cloud has places: all pairs would be near each other.
+TEST(Crossings, FacesWithoutAreaHaveNoneAndCostNothing) {
+    Network network = crumpled_sphere(0.1);
     for (VertexId v = 0; v < network.slot_count(); ++v)
-        network.set_position(v, network.position(v) * 0x1p-10F);
-    EXPECT_EQ(cut_faces(network), faces);
+        if (network.position(v)[2] > 0) network.set_position(v, {0, 0, 5});
+    Team team(1);
+    std::int64_t pairs = 0;
+    const Surface surface(network);
+    for (const Crossing& c : crossings_of(surface, team, &pairs))
+        for (const std::size_t face : {0U, 3U}) {
+            const Vec& a = surface.at[index(c[face])];
+            const Vec& b = surface.at[index(c[face + 1])];
+            EXPECT_NE((b - a).cross(surface.at[index(c[face + 2])] - a), Vec(0, 0, 0));
+        }
+    EXPECT_LT(pairs, 10 * network.face_count());
 }
 
 // Vertices move, edges are flipped, vertices go and others take their ids.
@@ -178,13 +200,66 @@ TEST(Untangle, SmoothsOutACrumpledCap) {
 }
 
 TEST(Untangle, LeavesAloneWhatItCannotMend) {
-    Network network = crumpled_sphere(1.5);
+    for (const double noise : {0.6, 1.5}) {
+        Network network = crumpled_sphere(noise);
+        const Network before = network;
+        const std::size_t before_it = crossings(Surface(network), 1).size();
+        EXPECT_LE(smoothed_out(network, 1).size(), before_it);
+        Network again = before;
+        smoothed_out(again, 3);
+        for (VertexId v = 0; v < network.slot_count(); ++v) EXPECT_EQ(network.position(v), again.position(v));
+    }
+}
+
+/// Asks to stop at its \p last call.
+class Patience : public Progress {
+public:
+    explicit Patience(int last) : last_(last) {}
+    bool operator()(double fraction, const char*) override {
+        EXPECT_GE(fraction, fraction_);
+        EXPECT_LE(fraction, 1);
+        fraction_ = fraction;
+        return ++calls < last_;
+    }
+    int calls = 0;
+
+private:
+    int last_;
+    double fraction_ = 0;
+};
+
+bool same_positions(const Network& a, const Network& b) {
+    for (VertexId v = 0; v < a.slot_count(); ++v)
+        if (a.position(v) != b.position(v)) return false;
+    return true;
+}
+
+TEST(Untangle, StopsBeforeAnySearchWithTheMeshAsItWas) {
+    const Network before = crumpled_sphere(0.6);
+    Team team(1);
+    int last = 1;
+    for (;; ++last) {
+        Network network = before;
+        Patience progress(last);
+        if (untangle(network, team, progress)) break;
+        EXPECT_EQ(progress.calls, last);
+        EXPECT_TRUE(same_positions(network, before));
+    }
+    EXPECT_GT(last, 3);
+}
+
+TEST(Untangle, DoesNotTryWhereAllFacesLieInEachOther) {
+    // Corners anywhere in a ball: every face is near half of the others.
+    Network network = crumpled_sphere(0);
+    Random random(4);
+    for (VertexId v = 0; v < network.slot_count(); ++v)
+        network.set_position(v, vcg::Point3f::Construct(shapes::in_ball(random)));
     const Network before = network;
-    const std::size_t before_it = crossings(Surface(network), 1).size();
-    EXPECT_LE(smoothed_out(network, 1).size(), before_it);
-    Network again = before;
-    smoothed_out(again, 3);
-    for (VertexId v = 0; v < network.slot_count(); ++v) EXPECT_EQ(network.position(v), again.position(v));
+    Team team(1);
+    Patience progress(99);
+    EXPECT_EQ(*untangle(network, team, progress), crossings(Surface(before), 1));
+    EXPECT_EQ(progress.calls, 1);
+    EXPECT_TRUE(same_positions(network, before));
 }
 
 /// A plate 1 x 1 x \p thickness.

@@ -11,6 +11,7 @@
 
 #include "shapes.h"
 #include "vcg_core/distance.h"
+#include "vcg_core/fit_crossings.h"
 #include "vcg_core/fit_surface.h"
 
 namespace neuralmesh {
@@ -298,6 +299,44 @@ TEST(Fit, StopsWhenAskedTo) {
     const FitReport report = fit_to_points(network, target, {}, 1, 1, stop);
     EXPECT_EQ(report.rounds, 0);
     EXPECT_TRUE(same_bytes(before, network));
+}
+
+// Before anything is smoothed where the surface cuts itself, or taken out.
+TEST(Fit, StoppedAtOnceItLeavesATangledMeshAsItWas) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(5000));
+    Network network = network_of(shapes::icosphere(3), target, 1.1, 0.05);
+    Team team(1);
+    ASSERT_FALSE(crossings_of(Surface(network), team).empty());
+    const Network before = network;
+    FitOptions options;
+    options.target_vertices = 300;
+    Stop stop;
+    EXPECT_FALSE(fit_to_points(network, target, options, 1, 1, stop).improved);
+    EXPECT_TRUE(same_bytes(before, network));
+}
+
+TEST(Fit, ReportsHowMuchOfItIsDone) {
+    class Watch : public Progress {
+    public:
+        bool operator()(double fraction, const char* text) override {
+            EXPECT_GE(fraction, last) << text;
+            EXPECT_LE(fraction, 1);
+            standing_still += fraction == last ? 1 : 0;
+            last = fraction;
+            return true;
+        }
+        double last = -1;
+        int standing_still = 0;
+    };
+    const TargetSpace target = target_of(shapes::sphere_cloud(5000));
+    Network network = network_of(shapes::icosphere(3), target, 1.1, 0.05);
+    FitOptions options;
+    options.target_vertices = 100;
+    Watch progress;
+    fit_to_points(network, target, options, 1, 1, progress);
+    EXPECT_EQ(network.vertex_count(), 100);
+    EXPECT_LT(progress.standing_still, 2) << "the first round of the reduction takes none out";
+    EXPECT_GT(progress.last, 0.6);
 }
 
 }  // namespace
