@@ -14,8 +14,12 @@ namespace {
 
 /// Cell edge in mean edge lengths of the network, by measurement.
 constexpr float kCellEdge = 1.3F;
-/// Float rounding of a cell border, in cells, generously.
+/// Float rounding of a cell border, in cells, generously ...
 constexpr float kRounding = 1e-3F;
+/// ... but no less than this: near the origin of the frame a border is off by up to 5e-7, half from adding
+/// the cells' offset, half from the product with the inverse edge, and the box has two. In fine grids that is
+/// more.
+constexpr float kLeastRounding = 1.2e-6F;
 /// The same far from the origin of the cells, where float has fewer digits left.
 constexpr float kFarRounding = 0.1F;
 /// A box of more cells across is dearer than a walk down the pyramid.
@@ -279,11 +283,12 @@ std::uint64_t WinnerSearch::scan_all(const vcg::Point3f& s) const {
 
 VertexId WinnerSearch::winner(const vcg::Point3f& s) const {
     Candidate best = scan_eight_cells(network_.slots(), heads_.data(), lists_, first_of_nearest(s), s);
-    const float sure = (0.5F - kRounding) * edge_;
+    const float rounding = std::max(kRounding * edge_, kLeastRounding);
+    const float sure = 0.5F * edge_ - rounding;
     if (squared_distance_of(best) < sure * sure) return vertex_of(best);
     if (best == kNobody) best = scan_box(s, 2 * edge_);
     if (best != kNobody) {
-        const float reach = std::sqrt(squared_distance_of(best)) + kRounding * edge_;
+        const float reach = std::sqrt(squared_distance_of(best)) + rounding;
         if (2 * reach * inverse_edge_ < kMostAcross) return vertex_of(scan_box(s, reach));
     }
     const bool few = network_.slot_count() < kFewVertices;

@@ -17,8 +17,9 @@
 
 namespace neuralmesh {
 
-/// Exact nearest-vertex search. Every change of the network must be told; the grid is laid out anew when
-/// the number of vertices has doubled or fallen to a third.
+/// Nearest-vertex search, exact within 1.5 of the origin (the core's frame reaches to 0.5), and as far as
+/// cells are large against the digits that float has left. Every change of the network must be told; the grid
+/// is laid out anew when the number of vertices has doubled or fallen to a third.
 ///
 /// The table has a list head per cell, found by hashing, and no keys: cells that share a head share a list.
 /// That costs a few distances to vertices elsewhere, which cannot win, and saves every comparison of keys.
@@ -40,7 +41,8 @@ public:
     /// Keeps a reference to \p network. O(vertices).
     explicit WinnerSearch(Network& network);
 
-    /// The vertex nearest to \p s. O(1) expected near the mesh, O(log vertices) expected far from it.
+    /// The vertex nearest to \p s. O(1) expected near a mesh whose edges are about equally long where the
+    /// signals are, O(log vertices) expected far from it. Many vertices in one cell cost a distance each.
     VertexId winner(const vcg::Point3f& s) const;
     /// Brings into the cache what winner(s) will read first: the lists' heads, and later, when those have
     /// come, the vertices they name.

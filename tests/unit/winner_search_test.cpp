@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "referee.h"
@@ -191,6 +192,27 @@ TEST(WinnerSearch, IsExactOnTheFinestGridAndAcrossCellBorders) {
         search.move(random_vertex(network, random), place + random_point(random, 2e-5F));
         const vcg::Point3f s = place + random_point(random, 2e-5F);
         ASSERT_EQ(search.winner(s), nearest_by_hand(network, s)) << "at step " << i;
+    }
+}
+
+// A vertex just within half a cell may lie outside the eight cells looked at, as their borders are rounded;
+// then one on the other side, hardly further away, must not win.
+TEST(WinnerSearch, IsExactBesideRoundedCellBorders) {
+    for (const double scale : {1e-7, 2e-5}) {
+        SCOPED_TRACE(scale);
+        Network network = in_frame(shapes::tetrahedron(), scale);
+        WinnerSearch search(network);
+        const float edge = std::max(1e-5F, 1.3F * (network.position(0) - network.position(1)).Norm());
+        Random random(7);
+        for (int i = 0; i < 300000; ++i) {
+            const vcg::Point3f s = random_point(random, 0.5F);
+            vcg::Point3f axis(0, 0, 0);
+            axis[static_cast<int>(random.below(3))] = random.below(2) == 0 ? edge : -edge;
+            const float near = 0.47F + 0.0289F * random.unit();
+            search.move(0, s + axis * near);
+            search.move(1, s - axis * (near + (0.4989F - near) * random.unit()));
+            ASSERT_EQ(search.winner(s), nearest_by_hand(network, s)) << "at step " << i;
+        }
     }
 }
 
