@@ -76,11 +76,27 @@ Learner::Learner(const TargetSpace& target, const Settings& settings, Network st
 }
 
 StopReason Learner::run(int per_vertex, Progress& progress) {
-    if (!settle(per_vertex, progress)) return StopReason::cancelled;
-    feature_statistic_ =
-        FeatureStatistic();  // growth begins: what has been observed is of another connectivity
+    // The parts by the signals they are likely to take; growth seldom does with fewer.
+    const auto landing = static_cast<double>(settling_signals(per_vertex, network_.vertex_count()));
+    const auto growth = static_cast<double>(std::int64_t{settings_.signals_per_split} *
+                                            (settings_.target_vertices - network_.vertex_count()));
+    const auto settling = static_cast<double>(
+        settling_signals(settings_.settling_signals_per_vertex, settings_.target_vertices));
+    const double whole = std::max(landing + growth + settling, 1.0);
+    PartOf first(progress, 0, landing / whole);
+    PartOf second(progress, landing / whole, (landing + growth) / whole);
+    PartOf third(progress, (landing + growth) / whole, 1);
+    if (!settle(per_vertex, first, false)) return StopReason::cancelled;
+    const StopReason grown = grow(second);
+    if (grown != StopReason::target_reached) return grown;
+    return settle(settings_.settling_signals_per_vertex, third) ? grown : StopReason::cancelled;
+}
+
+StopReason Learner::grow(Progress& progress) {
     const std::int64_t budget = signals_ + growth_budget();
     const std::int64_t bound = signals_ + signal_bound();
+    const int begin = network_.vertex_count();
+    double done = 0;  // never less than it was, though vertices go as well
     while (network_.vertex_count() < settings_.target_vertices) {
         const int count = batch_size();
         basic_steps(drawn_.take(count), count);
@@ -96,18 +112,19 @@ StopReason Learner::run(int per_vertex, Progress& progress) {
         if (!forced_ && signals_ >= budget) force_growth();
         if (signals_ >= bound) return StopReason::cut_short;
         if (!due_for_report()) continue;
-        if (!report("Learning", progress)) return StopReason::cancelled;
+        done = std::max(
+            done, static_cast<double>(network_.vertex_count() - begin) / (settings_.target_vertices - begin));
+        if (!report("Learning", done, progress)) return StopReason::cancelled;
         if (mean_turn() < settings_.stop_below_mean_counter) return StopReason::converged;  // eq 8
     }
-    return settle(settings_.settling_signals_per_vertex, progress) ? StopReason::target_reached
-                                                                   : StopReason::cancelled;
+    return StopReason::target_reached;
 }
 
-bool Learner::report(const char* doing, Progress& progress) const {
+bool Learner::report(const char* doing, double fraction, Progress& progress) const {
     char text[96];
     std::snprintf(text, sizeof text, "%s: %d vertices, %lld signals", doing, network_.vertex_count(),
                   static_cast<long long>(signals_));
-    return progress(static_cast<double>(network_.vertex_count()) / settings_.target_vertices, text);
+    return progress(fraction, text);
 }
 
 bool Learner::due_for_report() {
@@ -329,15 +346,17 @@ bool Learner::flip_regularises(VertexId a, VertexId b) const {
     return true;
 }
 
-bool Learner::settle(int per_vertex, Progress& progress) {
+std::int64_t Learner::settling_signals(int per_vertex, int vertices) {
+    return per_vertex == 0 ? 0 : std::max(std::int64_t{per_vertex} * vertices, kLeastSettling);
+}
+
+bool Learner::settle(int per_vertex, Progress& progress, bool to_be_observed) {
     // For long, as the connectivity stays as it is.
     if (network_.vertex_count() >= kLeastInOrder && changes_in_order_ != splits_ + collapses_)
         put_in_order(0);
-    const bool observing = settings_.feature_measure == kCreaseMeasure;
+    const bool observing = to_be_observed && settings_.feature_measure == kCreaseMeasure;
     const std::int64_t begin = signals_;
-    const std::int64_t end =
-        begin +
-        (per_vertex == 0 ? 0 : std::max(std::int64_t{per_vertex} * network_.vertex_count(), kLeastSettling));
+    const std::int64_t end = begin + settling_signals(per_vertex, network_.vertex_count());
     std::int64_t next_moment = begin + (end - begin) / 5;  // until then it is still on its way from growth
     feature_statistic_ = FeatureStatistic();
     while (signals_ < end) {
@@ -352,7 +371,9 @@ bool Learner::settle(int per_vertex, Progress& progress) {
             feature_statistic_.observe(network_);
             next_moment += network_.vertex_count();
         }
-        if (due_for_report() && !report("Settling", progress)) return false;
+        if (!due_for_report()) continue;
+        const double done = static_cast<double>(signals_ - begin) / static_cast<double>(end - begin);
+        if (!report("Settling", done, progress)) return false;
     }
     return true;
 }

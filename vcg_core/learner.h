@@ -53,15 +53,17 @@ public:
     int batch_size() const;
     static constexpr int kVerticesPerSignal = 32;
     /// Splits the mature vertex with the highest utility counter along its longest edge, halving its star;
-    /// the twins share the counter (eq 5). False if no vertex is mature or can be split. O(log n).
+    /// the twins share the counter (eq 5). False if the network has its target_vertices, if no vertex is
+    /// mature, or if none of the 32 highest can be split. O(log n).
     bool vertex_split();
     /// Removes the vertices that existed but did not win since the last call, each along the edge whose
     /// collapse leaves the best valences. \return how many. O(n).
     int half_edge_collapse();
     /// \p per_vertex signals a vertex, and at least 60,000 unless that is 0, without change of connectivity,
     /// so that the counters speak of the final mesh. If settings.feature_measure asks for it, the feature
-    /// statistic observes it. False if \p progress asked to stop.
-    bool settle(int per_vertex, Progress& progress);
+    /// statistic observes it, unless it is not \p to_be_observed, as what grows on will be of another
+    /// connectivity. False if \p progress, which gets the share of the signals done, asked to stop.
+    bool settle(int per_vertex, Progress& progress, bool to_be_observed = true);
 
     /// Learning is cut short after this many signals of growth. Growth that has not come to its target
     /// after growth_budget() signals is forced: no more collapses, no more maturity, so that every C_vs
@@ -92,7 +94,9 @@ private:
     void keep_neighbours_near();
     void put_in_order(int more);
     bool due_for_report();
-    bool report(const char* doing, Progress& progress) const;
+    bool report(const char* doing, double fraction, Progress& progress) const;
+    static std::int64_t settling_signals(int per_vertex, int vertices);
+    StopReason grow(Progress& progress);
     bool due_for_collapse() const;
     void force_growth();
     Halving halve_star(VertexId v, int longest) const;

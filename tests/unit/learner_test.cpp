@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
 #include "referee.h"
 #include "reference_learner.h"
 #include "shapes.h"
@@ -193,6 +196,55 @@ TEST(Learner, ReachesItsTargetOnAnOpenMeshToo) {
         EXPECT_EQ(learner.network().validate(), "");
         EXPECT_EQ(learner.network().boundary_loop_count(), start.boundary_loop_count());
     }
+}
+
+/// Notes the fractions it is told of.
+class Fractions : public Progress {
+public:
+    bool operator()(double fraction, const char* text) override {
+        EXPECT_GE(fraction, last);
+        EXPECT_LE(fraction, 1);
+        if (std::string(text).rfind("Settling", 0) == 0) {
+            ++settling;
+            standing_still += fraction == last ? 1 : 0;
+        }
+        largest_step = std::max(largest_step, fraction - last);
+        last = fraction;
+        return true;
+    }
+    double last = 0;
+    double largest_step = 0;
+    int settling = 0;
+    int standing_still = 0;  ///< while settling
+};
+
+TEST(Learner, ReportsHowMuchOfTheRunIsDone) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(2000));
+    Settings settings;
+    settings.target_vertices = 900;
+    Learner learner(target, settings, start_of(shapes::icosphere(3), 0.25));
+    Fractions progress;
+    EXPECT_EQ(learner.run(100, progress), StopReason::target_reached);
+    EXPECT_GT(progress.settling, 100) << "at the start mesh and at the end";
+    EXPECT_EQ(progress.standing_still, 0);
+    EXPECT_LT(progress.largest_step, 0.1);
+    EXPECT_GT(progress.last, 0.98);
+}
+
+TEST(Learner, ObservesNothingOfAStartThatIsToGrow) {
+    const TargetSpace target = target_of(shapes::box_cloud(2000));
+    Settings settings;
+    settings.feature_measure = kCreaseMeasure;
+    settings.target_vertices = 643;
+    settings.settling_signals_per_vertex = 0;
+    Learner learner(target, settings, start_of(shapes::icosphere(3), 0.25));
+    NoProgress progress;
+    ASSERT_TRUE(learner.settle(1, progress, false));
+    EXPECT_EQ(learner.feature_statistic().moments(), 0);
+    ASSERT_TRUE(learner.settle(1, progress));
+    EXPECT_GT(learner.feature_statistic().moments(), 0);
+    EXPECT_EQ(learner.run(1, progress), StopReason::target_reached);
+    EXPECT_EQ(learner.feature_statistic().moments(), 0);
 }
 
 }  // namespace
