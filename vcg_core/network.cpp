@@ -86,8 +86,9 @@ VertexId Network::new_vertex(VertexId parent, const vcg::Point3f& where) {
         v = free_.back();
         free_.pop_back();
     } else {
+        // A slot that is there already is left from a time when there was no room for the ring.
+        slots_.resize(rings_.size() + 2, Slot{0, 0, 0, -1});
         rings_.push_back(Ring{});
-        slots_.push_back(Slot{0, 0, 0, -1});
     }
     set_position(v, where);
     ++vertex_count_;
@@ -176,6 +177,12 @@ bool Network::can_collapse(VertexId gone, VertexId kept) const {
 void Network::collapse(VertexId gone, VertexId kept) {
     if (!can_collapse(gone, kept))
         throw TopologyError("This half-edge collapse would break the network; ask can_collapse() first.");
+    // Before the first change, as there may be no room for it.
+    if (gaps_.count() > 0) {
+        gaps_.add(gone);
+    } else {
+        free_.push_back(gone);
+    }
     Ring rg = ring(gone);
     const bool on_boundary = rg.open != 0;
     const int i = rg.find(kept);
@@ -197,11 +204,6 @@ void Network::collapse(VertexId gone, VertexId kept) {
     for (int j = from; j < to; ++j) replace(ring_of(rg[j]), gone, kept);
     replace(ring_of(kept), gone, rg.neighbours.data() + from, to - from);
     ring_of(gone) = Ring{};
-    if (gaps_.count() > 0) {
-        gaps_.add(gone);
-    } else {
-        free_.push_back(gone);
-    }
     --vertex_count_;
 }
 

@@ -71,7 +71,8 @@ struct alignas(16) Slot {
 };
 
 /// A simplicial, oriented 2-manifold with boundary. Vertex ids are stable; free ids, of removed vertices for
-/// one, are used again. Every operation below keeps the manifold or throws before it has changed anything.
+/// one, are used again. Every operation below keeps the manifold or throws (TopologyError,
+/// std::bad_alloc) before it has changed anything.
 class Network {
 public:
     Network() = default;

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Changes of the network for which there is no room are not begun.
+#include "vcg_core/network.h"
+
+#include <gtest/gtest.h>
+
+#include <new>
+#include <vector>
+
+#include "allocations.h"
+#include "tests/unit/referee.h"
+#include "tests/unit/shapes.h"
+
+namespace neuralmesh {
+namespace {
+
+/// Tries \p change on \p network with ever later allocations failing until it succeeds. \return how many
+/// failed
+template <class Change>
+int failures_before(Network& network, const Change& change) {
+    const int vertices = network.vertex_count();
+    const std::vector<Triangle> faces = network.faces();
+    for (int nth = 0;; ++nth) {
+        allocations::fail_at(nth);
+        try {
+            change();
+            allocations::fail_at(-1);
+            return nth;
+        } catch (const std::bad_alloc&) {
+            allocations::fail_at(-1);
+        }
+        EXPECT_EQ(network.validate(), "") << nth;
+        EXPECT_EQ(network.vertex_count(), vertices);
+        EXPECT_EQ(network.faces(), faces);
+    }
+}
+
+TEST(OutOfMemory, ASplitThatHasNoRoomIsNotBegun) {
+    Network network = referee::network_of(shapes::icosphere(1));
+    int failures = 0;
+    for (VertexId v = 0; v < 12; ++v) {
+        ASSERT_TRUE(network.can_split(v, 0, 3));
+        failures += failures_before(network, [&] { network.split(v, 0, 3, network.position(v)); });
+        ASSERT_EQ(network.validate(), "");
+        EXPECT_EQ(network.position(network.slot_count() - 1), network.position(v));
+    }
+    EXPECT_GE(failures, 2);
+    EXPECT_EQ(network.vertex_count(), 54);
+}
+
+TEST(OutOfMemory, ACollapseThatHasNoRoomIsNotBegun) {
+    for (const bool with_gaps : {false, true}) {
+        Network network = referee::network_of(shapes::icosphere(1));
+        if (with_gaps) {
+            std::vector<VertexId> order = network.along_curve();
+            order.insert(order.begin(), -1);
+            network.renumber(order);
+        }
+        int failures = 0;
+        for (VertexId v = 1; v < network.slot_count(); ++v) {
+            if (!network.alive(v) || !network.can_collapse(v, network.ring(v)[0])) continue;
+            failures += failures_before(network, [&] { network.collapse(v, network.ring(v)[0]); });
+            ASSERT_EQ(network.validate(), "");
+        }
+        EXPECT_EQ(failures > 0, !with_gaps) << "one word holds all these gaps";
+    }
+}
+
+}  // namespace
+}  // namespace neuralmesh
