@@ -76,7 +76,7 @@ public:
     /// Vertex order[i] is vertex i from now on, those not named are gone; where order[i] is -1 there is none
     /// yet. O(n).
     void renumber(const std::vector<VertexId>& order);
-    /// From now on highest() passes nobody over. O(n).
+    /// From now on one win is enough for highest(). Those that never won stay left out. O(n).
     void waive_maturity();
     std::size_t bytes() const;
     /// The mature vertex with the highest counter, the smaller id among equals; -1 if none is mature.

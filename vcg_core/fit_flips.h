@@ -17,9 +17,9 @@ struct EdgeFlip {
 
 /// The inner edges of \p network, best first, with which flipped the sum of the squared distances of the
 /// points tied to the edge's two faces drops by more than \p least_gain. No face turns over or becomes a
-/// sliver. Where the points do not care, the flip that makes the larger of the smallest angles wins. \p
-/// surface and \p points are those of the network. O(points x 3), by \p team, with the same result
-/// for any number of them.
+/// sliver. Where the points do not care and the surface is flat, a flip counts with a gain of 0 if it makes
+/// the worse of the two faces better by a fifth, in triangle_quality(). \p surface and \p points are those of
+/// the network. O(points x 3), by \p team, with the same result for any number of them.
 std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface, const FacePoints& points,
                                  float least_gain, Team& team);
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What keeps a solution of the least squares from breaking the surface.
-#include <algorithm>
-#include <cmath>
-
+// Moves halved until no face turns over, folds, becomes a sliver or cuts another.
 #include "fit_move.h"
 
 namespace neuralmesh {

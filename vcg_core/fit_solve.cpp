@@ -7,7 +7,6 @@
 #include <Eigen/LU>
 
 #include <algorithm>
-#include <cmath>
 
 #include "fit_points.h"
 #include "parallel.h"

@@ -24,12 +24,6 @@ int nearest(std::uint64_t word, int bit) {
 
 }  // namespace
 
-void FreeIds::clear() {
-    words_.clear();
-    first_ = 0;
-    count_ = 0;
-}
-
 void FreeIds::add(std::int32_t id) {
     const auto word = static_cast<std::size_t>(id) / 64;
     if (word >= words_.size()) words_.resize(word + 1, 0);

@@ -18,7 +18,6 @@ public:
     static constexpr std::size_t kWordsAround = 2;
 
     int count() const { return count_; }
-    void clear();
     /// \p id must not be in it. Amortised O(1).
     void add(std::int32_t id);
     /// Takes out one that shares a word with \p id or lies in a word near it; the smallest, if there is none.

@@ -3,7 +3,6 @@
 
 // The network as a whole: built from faces, counted, listed and checked.
 #include <algorithm>
-#include <numeric>
 
 #include "network.h"
 

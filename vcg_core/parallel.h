@@ -15,8 +15,8 @@
 namespace neuralmesh {
 
 /// Calls \p body(chunk, begin, end) for every chunk of \p size indices of [0, count), by \p team. The chunks
-/// are the same for any number of threads; a body writes only what belongs to its chunk. The first exception
-/// of a body is thrown on.
+/// are the same for any number of threads; a body writes only what belongs to its chunk. A member of the team
+/// whose body throws takes no more chunks, the others go on; then one of the exceptions is thrown on.
 template <class Body>
 void for_chunks(std::size_t count, std::size_t size, Team& team, const Body& body) {
     const std::size_t chunks = (count + size - 1) / size;
