@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <string>
 
 #include "referee.h"
@@ -139,6 +140,39 @@ TEST(Reconstruct, CanBeCancelledAtAnyTime) {
             expect_sound(mesh);
         }
     }
+}
+
+/// Adds up the signals that the progress is told of, also those of a growth that was given up.
+class SignalsToldOf : public Progress {
+public:
+    bool operator()(double, const char* text) override {
+        long long signals = 0;
+        if (std::sscanf(text, "Learning: %*d vertices, %lld", &signals) != 1) return true;
+        if (signals < last_) {
+            ++given_up;
+            before_ += last_;
+        }
+        last_ = signals;
+        return true;
+    }
+    long long all() const { return before_ + last_; }
+
+    int given_up = 0;
+
+private:
+    long long before_ = 0;
+    long long last_ = 0;
+};
+
+TEST(Reconstruct, CountsTheSignalsOfAGrowthThatWasGivenUp) {
+    Settings settings = with_target(150);
+    settings.signals_per_collapse = 1;  // growth stalls
+    SignalsToldOf told;
+    const NeuralMesh mesh = reconstruct(target_of(shapes::sphere_cloud(20000)), settings, told);
+    expect_exact(mesh, settings);
+    ASSERT_EQ(told.given_up, 1);
+    EXPECT_GE(mesh.report.signals, told.all());
+    EXPECT_EQ(mesh.report.faces, 296);
 }
 
 TEST(Reconstruct, StopsWhenConverged) {
