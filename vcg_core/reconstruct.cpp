@@ -25,10 +25,10 @@ constexpr int kDistanceSamples = 20000;
 constexpr int kSignalsToLand = 100;
 
 /// The caller's progress as one run: fractions never decrease, and a wish to stop is remembered.
-class Run {
+class Run : public Progress {
 public:
     explicit Run(Progress& progress) : progress_(progress) {}
-    bool report(double fraction, const char* text) {
+    bool operator()(double fraction, const char* text) override {
         done_ = std::max(done_, fraction);
         stopped_ = stopped_ || !progress_(done_, text);
         return !stopped_;
@@ -39,20 +39,6 @@ private:
     Progress& progress_;
     double done_ = 0;
     bool stopped_ = false;
-};
-
-/// One part of the run, from one fraction of the whole to another.
-class Part : public Progress {
-public:
-    Part(Run& run, double from, double to) : run_(run), from_(from), to_(to) {}
-    bool operator()(double fraction, const char* text) override {
-        return run_.report(from_ + fraction * (to_ - from_), text);
-    }
-
-private:
-    Run& run_;
-    double from_;
-    double to_;
 };
 
 struct Start {
@@ -191,8 +177,8 @@ struct Grown {
 /// of a growth before, what it took.
 void grow(const TargetSpace& target, const Settings& settings, const Settings& learner_settings,
           const Start& start, Run& run, Grown& grown, Report& report) {
-    Part learning(run, 0.1, settings.fit_to_points ? 0.8 : 1);
-    Part fitting(run, 0.8, 1);
+    PartOf learning(run, 0.1, settings.fit_to_points ? 0.8 : 1);
+    PartOf fitting(run, 0.8, 1);
     grown.learner.emplace(target, learner_settings, start.network);
     grown.fit = FitReport();  // one of a network that was given up says nothing of this one
     const StopReason reason = grown.learner->run(start.signals_to_land, learning);
@@ -230,7 +216,7 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     settings.check();
     NeuralMesh mesh;
     Run run(progress);
-    Part starting(run, 0, 0.1);
+    PartOf starting(run, 0, 0.1);
     const std::optional<TargetSpace> once = without_repeats(given, mesh.report);
     const TargetSpace& places = once ? *once : given;
     const Start start = start_of(places, settings, mesh.report, starting);
