@@ -209,7 +209,7 @@ TEST(TargetSpace, DrawsUniformlyWithinATriangle) {
     const shapes::Shape triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}}};
     const TargetSpace target = face_target(triangle);
     const int cells = 10;
-    std::vector<int> seen(cells * cells, 0);
+    std::vector<int> seen(std::size_t{cells} * cells, 0);
     const int n = 100000;
     Random random(3);
     for (int i = 0; i < n; ++i) {
