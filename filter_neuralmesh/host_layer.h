@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The result as a layer of the host's. Included by each adapter after the host's own headers, as
-// host_parameters.h is.
+// The result as a layer of the host's, and in its log. Included by each adapter after the host's own headers,
+// as host_parameters.h is.
 #pragma once
+
+#include <new>
+#include <string>
 
 #include "actions.h"
 
@@ -29,6 +32,18 @@ void fill_layer(NeuralMesh& result, const Settings& settings, const Matrix& tran
     for (int k = 0; k < 3; ++k)
         added.cm.Tr.ElementAt(k, 3) = static_cast<MESHLAB_SCALAR>(origin[static_cast<std::size_t>(k)]);
     result.report.warnings.push_back(sentence_on_origin(origin));
+}
+
+/// Tells of a run that is done, by \p log(level, line). No memory for that is no failure: the mesh is there
+/// all the same.
+template <class Log>
+void log_run(const Report& report, const Log& log) {
+    try {
+        for (const std::string& line : log_lines(report)) log(GLLogStream::FILTER, line);
+        for (const std::string& warning : report.warnings) log(GLLogStream::WARNING, warning);
+    } catch (const std::bad_alloc&) {
+        // The log has no memory for it.
+    }
 }
 
 }  // namespace neuralmesh

@@ -98,15 +98,6 @@ bool FilterNeuralMeshPlugin::applyFilter(QAction* /*action*/, MeshDocument& docu
     }
 }
 
-void FilterNeuralMeshPlugin::log_run(const Report& report) {
-    try {
-        for (const std::string& line : log_lines(report)) Log(GLLogStream::FILTER, line);
-        for (const std::string& warning : report.warnings) Log(GLLogStream::WARNING, warning);
-    } catch (const std::bad_alloc&) {
-        // The log has no memory for it; the mesh is there all the same.
-    }
-}
-
 void FilterNeuralMeshPlugin::learn_current_layer(MeshDocument& document, const RichParameterList& list,
                                                  vcg::CallBackPos* call_back) {
     MeshModel* const layer = document.mm();
@@ -126,7 +117,7 @@ void FilterNeuralMeshPlugin::learn_current_layer(MeshDocument& document, const R
         document.setCurrentMesh(current);
         throw;
     }
-    log_run(result.report);
+    log_run(result.report, [this](auto level, const std::string& line) { Log(level, line); });
 }
 
 MESHLAB_PLUGIN_NAME_EXPORTER(FilterNeuralMeshPlugin)

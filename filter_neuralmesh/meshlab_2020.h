@@ -6,10 +6,6 @@
 
 #include <common/interfaces.h>
 
-namespace neuralmesh {
-struct Report;
-}
-
 class FilterNeuralMeshPlugin : public QObject, public MeshFilterInterface {
     Q_OBJECT
     MESHLAB_PLUGIN_IID_EXPORTER(MESH_FILTER_INTERFACE_IID)
@@ -36,5 +32,4 @@ public:
 private:
     void learn_current_layer(MeshDocument& document, const RichParameterList& list,
                              vcg::CallBackPos* call_back);
-    void log_run(const neuralmesh::Report& report);
 };

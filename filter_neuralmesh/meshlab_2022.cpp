@@ -101,17 +101,8 @@ std::map<std::string, QVariant> FilterNeuralMeshPlugin::learn_current_layer(
         document.setCurrentMesh(static_cast<int>(current));
         throw;
     }
-    log_run(result.report);
+    log_run(result.report, [this](auto level, const std::string& line) { log(level, line); });
     return results;
-}
-
-void FilterNeuralMeshPlugin::log_run(const Report& report) const {
-    try {
-        for (const std::string& line : log_lines(report)) log(GLLogStream::FILTER, line);
-        for (const std::string& warning : report.warnings) log(GLLogStream::WARNING, warning);
-    } catch (const std::bad_alloc&) {
-        // The log has no memory for it; the mesh is there all the same.
-    }
 }
 
 MESHLAB_PLUGIN_NAME_EXPORTER(FilterNeuralMeshPlugin)

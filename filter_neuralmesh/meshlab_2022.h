@@ -6,10 +6,6 @@
 
 #include <common/plugins/interfaces/filter_plugin.h>
 
-namespace neuralmesh {
-struct Report;
-}
-
 class FilterNeuralMeshPlugin : public QObject, public FilterPlugin {
     Q_OBJECT
     MESHLAB_PLUGIN_IID_EXPORTER(FILTER_PLUGIN_IID)
@@ -40,5 +36,4 @@ public:
 private:
     std::map<std::string, QVariant> learn_current_layer(MeshDocument& document, const RichParameterList& list,
                                                         vcg::CallBackPos* call_back) const;
-    void log_run(const neuralmesh::Report& report) const;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Point to surface distance through vcglib's static grid.
+// By the tree of faces that the fit has.
 #include "distance.h"
 
 #include <cmath>

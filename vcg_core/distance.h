@@ -11,8 +11,8 @@
 namespace neuralmesh {
 
 /// Root mean square distance of \p samples random points of \p target from the surface of \p network, in the
-/// core's frame (1 is the bounding box's diagonal). Exact nearest faces, by vcglib's grid. O(samples)
-/// expected.
+/// core's frame (1 is the bounding box's diagonal). Exact nearest faces. O(faces log faces + samples
+/// x log faces) expected.
 double rms_distance(const TargetSpace& target, const Network& network, int samples, Random& random);
 
 }  // namespace neuralmesh

@@ -22,7 +22,7 @@ constexpr std::size_t kChunk = 128;
 
 /// Six times the signed volume of the tetrahedron a b c d.
 float volume(const Vec& a, const Vec& b, const Vec& c, const Vec& d) {
-    return (b - a).cross(c - a).dot(d - a);
+    return area_vector(a, b, c).dot(d - a);
 }
 
 /// Whether the segment p-q goes through the triangle a b c, not merely along its plane. Without tolerances,
@@ -93,10 +93,7 @@ bool cut_each_other(const Surface& surface, int f, int g) {
 }
 
 /// In float; what has none can cut nothing, and where vertices share their places there are many.
-bool has_area(const Surface& surface, int f) {
-    const Vec& a = surface.corner(f, 0);
-    return (surface.corner(f, 1) - a).cross(surface.corner(f, 2) - a) != Vec(0, 0, 0);
-}
+bool has_area(const Surface& surface, int f) { return area_vector(surface, f) != Vec(0, 0, 0); }
 
 std::size_t faces_of(const std::vector<Crossing>& crossings) {
     std::vector<Triangle> faces;

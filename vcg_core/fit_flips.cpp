@@ -42,7 +42,7 @@ int face_with(const Surface& surface, VertexId a, VertexId b, VertexId c) {
     return -1;
 }
 
-Vec normal_of(const Vec& a, const Vec& b, const Vec& c) { return (b - a).cross(c - a).normalized(); }
+Vec normal_of(const Vec& a, const Vec& b, const Vec& c) { return area_vector(a, b, c).normalized(); }
 
 class Judge {
 public:
@@ -122,9 +122,7 @@ private:
     }
 
     /// Twice it.
-    float area(VertexId a, VertexId b, VertexId c) const {
-        return (at(b) - at(a)).cross(at(c) - at(a)).norm();
-    }
+    float area(VertexId a, VertexId b, VertexId c) const { return area_vector(at(a), at(b), at(c)).norm(); }
 
     const Surface& surface_;
     const FacePoints& points_;

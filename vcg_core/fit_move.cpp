@@ -18,8 +18,7 @@ std::vector<Vec> normals_of(const Surface& surface, const std::vector<Vec>& at) 
     std::vector<Vec> result(surface.faces.size());
     for (std::size_t i = 0; i < result.size(); ++i) {
         const Triangle& f = surface.faces[i];
-        const Vec& a = at[index(f[0])];
-        result[i] = (at[index(f[1])] - a).cross(at[index(f[2])] - a).normalized();
+        result[i] = area_vector(at[index(f[0])], at[index(f[1])], at[index(f[2])]).normalized();
     }
     return result;
 }

@@ -105,9 +105,7 @@ float noise_variance(const Surface& surface, const FacePoints& points) {
         const int count = points.first[f + 1] - points.first[f];
         if (count < kLeast) continue;
         const Vec& a = surface.corner(static_cast<int>(f), 0);
-        const Vec normal = (surface.corner(static_cast<int>(f), 1) - a)
-                               .cross(surface.corner(static_cast<int>(f), 2) - a)
-                               .normalized();
+        const Vec normal = area_vector(surface, static_cast<int>(f)).normalized();
         float sum = 0;
         float squares = 0;
         for (auto i = index(points.first[f]); i < index(points.first[f + 1]); ++i) {
@@ -136,9 +134,7 @@ Support::Support(const Network& network, const Surface& surface, const FacePoint
     };
     std::vector<Around> sums(surface.at.size());
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
-        const int face = static_cast<int>(f);
-        const Vec& a = surface.corner(face, 0);
-        const float twice = (surface.corner(face, 1) - a).cross(surface.corner(face, 2) - a).norm();
+        const float twice = area_vector(surface, static_cast<int>(f)).norm();
         for (const VertexId v : surface.faces[f]) {
             sums[index(v)].points += static_cast<float>(points.first[f + 1] - points.first[f]);
             sums[index(v)].area += twice;
@@ -154,9 +150,7 @@ std::vector<Vec> smoothed_normals(const Network& network, const Surface& surface
     constexpr int kSpreads = 2;
     std::vector<Vec> normals(surface.at.size(), Vec::Zero());
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
-        const int face = static_cast<int>(f);
-        const Vec& a = surface.corner(face, 0);
-        const Vec area = (surface.corner(face, 1) - a).cross(surface.corner(face, 2) - a);
+        const Vec area = area_vector(surface, static_cast<int>(f));
         for (const VertexId v : surface.faces[f]) normals[index(v)] += area;
     }
     spread_over_rings(network, normals, kSpreads);

@@ -26,8 +26,6 @@ constexpr float kJudged = 0.4F;         ///< share of the vertices, those whose 
 constexpr int kTries = 3;               ///< neighbours to collapse into, the best by the quadric
 constexpr float kLongestOffset = 0.3F;  ///< of a new vertex from its edge, in edge lengths
 
-Vec area_vector(const Vec& a, const Vec& b, const Vec& c) { return (b - a).cross(c - a); }
-
 /// Finds the cheapest collapse of a vertex.
 class CollapseJudge {
 public:
@@ -73,7 +71,7 @@ private:
         float sum = 0;
         for (int i = surface_.first_face[index(v)]; i < surface_.first_face[index(v) + 1]; ++i) {
             const int f = surface_.face_of[index(i)];
-            const Vec n = area_vector(surface_.corner(f, 0), surface_.corner(f, 1), surface_.corner(f, 2));
+            const Vec n = area_vector(surface_, f);
             const float norm = n.norm();
             const float height = n.dot(at(u) - at(v));
             if (norm > 0) sum += height * height / norm;
@@ -111,8 +109,7 @@ private:
         for (int i = surface_.first_face[index(v)]; i < surface_.first_face[index(v) + 1]; ++i) {
             const int f = surface_.face_of[index(i)];
             const int count = points_.first[index(f) + 1] - points_.first[index(f)];
-            const float area =
-                area_vector(surface_.corner(f, 0), surface_.corner(f, 1), surface_.corner(f, 2)).norm();
+            const float area = area_vector(surface_, f).norm();
             result.count += count;
             result.area += area;
             result.missing += support_.missing(surface_.faces[index(f)], area, static_cast<float>(count));

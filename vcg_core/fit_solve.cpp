@@ -51,7 +51,7 @@ FitSystem::FaceSums FitSystem::sum_over(const Surface& surface, const FacePoints
     const Vec& a = surface.corner(face, 0);
     const Vec& b = surface.corner(face, 1);
     const Vec& c = surface.corner(face, 2);
-    const Vec normal = (b - a).cross(c - a).normalized();
+    const Vec normal = area_vector(a, b, c).normalized();
     for (int i = points.first[index(face)]; i < points.first[index(face) + 1]; ++i) {
         const FacePoints::Tie& tie = points.ties[index(i)];
         const auto& w = tie.foot.weights;
@@ -123,8 +123,7 @@ void FitSystem::measure_support(const Surface& surface, const FacePoints& points
     std::vector<float> area(slots, 0);
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
         const Triangle& face = surface.faces[f];
-        const Vec& a = surface.at[index(face[0])];
-        const float twice = (surface.at[index(face[1])] - a).cross(surface.at[index(face[2])] - a).norm();
+        const float twice = area_vector(surface, static_cast<int>(f)).norm();
         for (std::size_t k = 0; k < 3; ++k) area[index(face[k])] += twice / 12;
         for (int i = points.first[f]; i < points.first[f + 1]; ++i)
             for (std::size_t k = 0; k < 3; ++k) {

@@ -13,7 +13,7 @@ namespace neuralmesh {
 float triangle_quality(const Vec& a, const Vec& b, const Vec& c) {
     constexpr float kTwoSqrtThree = 3.4641016F;
     const float edges = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
-    return edges > 0 ? kTwoSqrtThree * (b - a).cross(c - a).norm() / edges : 0.0F;
+    return edges > 0 ? kTwoSqrtThree * area_vector(a, b, c).norm() / edges : 0.0F;
 }
 
 Surface::Surface(const Network& network) : faces(network.faces()) {

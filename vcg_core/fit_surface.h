@@ -74,6 +74,9 @@ inline Foot foot_on_triangle(const Vec& p, const Vec& a, const Vec& b, const Vec
     return foot_on_triangle(b - a, c - a, p - a);
 }
 
+/// Along the normal of a triangle, which is counter-clockwise seen from where it points; twice its area long.
+inline Vec area_vector(const Vec& a, const Vec& b, const Vec& c) { return (b - a).cross(c - a); }
+
 /// 4 sqrt(3) area / (sum of the squared edges): 1 for an equilateral triangle, 0 for a degenerate one.
 float triangle_quality(const Vec& a, const Vec& b, const Vec& c);
 
@@ -87,6 +90,10 @@ struct Surface {
     explicit Surface(const Network& network);
     const Vec& corner(int face, std::size_t k) const { return at[index(faces[index(face)][k])]; }
 };
+
+inline Vec area_vector(const Surface& surface, int face) {
+    return area_vector(surface.corner(face, 0), surface.corner(face, 1), surface.corner(face, 2));
+}
 
 /// Unit normal of the face that has the edge a-b the other way round, b to a; 0 on a boundary.
 Vec normal_beyond(const Surface& surface, VertexId a, VertexId b);

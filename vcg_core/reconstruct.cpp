@@ -235,7 +235,7 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     if (network.vertex_count() > settings.target_vertices) simplify(network, settings.target_vertices);
     network.orient_outward();
     write_geometry(network, target.frame(), mesh);
-    // A fit that was taken back leaves the network of the learning.
+    // A fit that was taken back has put nothing in: every vertex has a counter of its own.
     write_counters(*grown.learner, network, grown.fit.improved ? grown.fit.origin : std::vector<VertexId>(),
                    settings, mesh);
     write_report(*grown.learner, network, mesh.report);

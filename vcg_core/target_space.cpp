@@ -42,11 +42,16 @@ std::uint32_t hash_of(const vcg::Point3f& p) {
     return static_cast<std::uint32_t>(hash >> 32);
 }
 
+/// Sorts \p points and leaves each place once.
+void keep_each_once(std::vector<vcg::Point3f>& points) {
+    std::sort(points.begin(), points.end(), by_coordinates);
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+}
+
 /// The share of \p points that repeat others of them.
 double share_of_repeats(std::vector<vcg::Point3f> points) {
     const auto all = static_cast<double>(points.size());
-    std::sort(points.begin(), points.end(), by_coordinates);
-    points.erase(std::unique(points.begin(), points.end()), points.end());
+    keep_each_once(points);
     return all > 0 ? 1 - static_cast<double>(points.size()) / all : 0;
 }
 
@@ -54,6 +59,7 @@ double share_of_repeats(std::vector<vcg::Point3f> points) {
 /// where some points of all places are.
 double estimated_share_of_repeats(const std::vector<vcg::Point3f>& points) {
     const std::size_t stride = points.size() / kEnoughForShare + 1;
+    if (stride == 1) return share_of_repeats(points);
     std::vector<vcg::Point3f> of_some_places;
     std::vector<vcg::Point3f> some_of_all;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -158,8 +164,7 @@ std::optional<TargetSpace> TargetSpace::each_place_once() const {
     TargetSpace once;
     once.frame_ = frame_;
     once.positions_ = positions_;
-    std::sort(once.positions_.begin(), once.positions_.end(), by_coordinates);
-    once.positions_.erase(std::unique(once.positions_.begin(), once.positions_.end()), once.positions_.end());
+    keep_each_once(once.positions_);
     return once;
 }
 

@@ -119,8 +119,8 @@ def _translation_in(matrix):
 _kept = []
 
 
-def new_mesh_set(pymeshlab, verbose=False):
-    _kept.append(pymeshlab.MeshSet(verbose=verbose))
+def new_mesh_set(pymeshlab):
+    _kept.append(pymeshlab.MeshSet(verbose=False))
     return _kept[-1]
 
 
