@@ -5,13 +5,11 @@
 // nothing leaks, and the next run gives the bytes it always gives. NEURALMESH_MEMORY_TRIES=1000 samples more
 // allocations than every test run has the time for.
 #include <gtest/gtest.h>
-#include <vcg/complex/complex.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <cstdlib>
 #include <new>
 #include <numeric>
 #include <string>
@@ -19,6 +17,8 @@
 
 #include "allocations.h"
 #include "filter_neuralmesh/actions.h"
+#include "tests/unit/environment.h"
+#include "tests/unit/layer_mesh.h"
 #include "tests/unit/shapes.h"
 #include "vcg_core/parallel.h"
 #include "vcg_core/random.h"
@@ -27,22 +27,8 @@ namespace neuralmesh {
 namespace {
 
 using allocations::Failure;
-
-class Vertex;
-class Face;
-struct Types : vcg::UsedTypes<vcg::Use<Vertex>::AsVertexType, vcg::Use<Face>::AsFaceType> {};
-class Vertex : public vcg::Vertex<Types, vcg::vertex::Coord3f, vcg::vertex::Qualityf, vcg::vertex::Color4b,
-                                  vcg::vertex::BitFlags> {};
-class Face : public vcg::Face<Types, vcg::face::VertexRef, vcg::face::BitFlags> {};
-class Mesh : public vcg::tri::TriMesh<std::vector<Vertex>, std::vector<Face>> {};
-
-void fill_with_sphere(Mesh& mesh) {
-    const shapes::Shape shape = shapes::icosphere(3);
-    auto vertex = vcg::tri::Allocator<Mesh>::AddVertices(mesh, shape.positions.size());
-    for (const vcg::Point3d& p : shape.positions) (vertex++)->P() = vcg::Point3f::Construct(p);
-    for (const auto& [a, b, c] : shape.faces)
-        vcg::tri::Allocator<Mesh>::AddFace(mesh, std::size_t(a), std::size_t(b), std::size_t(c));
-}
+using layer_mesh::Mesh;
+using layer_mesh::Vertex;
 
 /// The memory of a mesh's elements, byte by byte.
 std::string bytes_of(const Mesh& mesh) {
@@ -102,16 +88,10 @@ std::vector<long long> sampled(long long all, int tries, std::uint64_t salt) {
     return result;
 }
 
-/// How many parts there are: the variable's number, 25 without one.
-int tries() {
-    const char* text = std::getenv("NEURALMESH_MEMORY_TRIES");
-    return text == nullptr ? 25 : std::max(1, std::atoi(text));
-}
-
 void expect_the_sentence_where_it_fails(const Settings& settings, Failure failure, const std::string& words,
                                         std::uint64_t salt) {
     Mesh layer;
-    fill_with_sphere(layer);
+    layer_mesh::fill(layer, shapes::icosphere(3), true);
     const std::string before = bytes_of(layer);
     std::string expected;
     long long all = 0;
@@ -124,7 +104,8 @@ void expect_the_sentence_where_it_fails(const Settings& settings, Failure failur
     }
     ASSERT_GT(all, 200);
     int refused = 0;
-    for (const long long nth : sampled(all, tries(), salt)) {
+    const int tries = environment::number_of("NEURALMESH_MEMORY_TRIES", 25, 1);
+    for (const long long nth : sampled(all, tries, salt)) {
         SCOPED_TRACE(testing::Message() << "allocation " << nth << " of " << all);
         const long long living = allocations::living();
         {

@@ -10,18 +10,14 @@
 #include <limits>
 #include <string>
 
+#include "layer_mesh.h"
 #include "shapes.h"
 
 namespace neuralmesh {
 namespace {
 
-class Vertex;
-class Face;
-struct Types : vcg::UsedTypes<vcg::Use<Vertex>::AsVertexType, vcg::Use<Face>::AsFaceType> {};
-class Vertex : public vcg::Vertex<Types, vcg::vertex::Coord3f, vcg::vertex::Qualityf, vcg::vertex::Color4b,
-                                  vcg::vertex::BitFlags> {};
-class Face : public vcg::Face<Types, vcg::face::VertexRef, vcg::face::BitFlags> {};
-class Mesh : public vcg::tri::TriMesh<std::vector<Vertex>, std::vector<Face>> {};
+using layer_mesh::fill;
+using layer_mesh::Mesh;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -30,16 +26,6 @@ vcg::Matrix44f moved(float x, float y, float z) {
     vcg::Matrix44f matrix;
     matrix.SetTranslate(x, y, z);
     return matrix;
-}
-
-void fill(Mesh& mesh, const shapes::Shape& shape, bool with_faces) {
-    for (const vcg::Point3d& p : shape.positions)
-        vcg::tri::Allocator<Mesh>::AddVertex(mesh, vcg::Point3f::Construct(p));
-    if (!with_faces) return;
-    for (const auto& face : shape.faces)
-        vcg::tri::Allocator<Mesh>::AddFace(mesh, static_cast<std::size_t>(face[0]),
-                                           static_cast<std::size_t>(face[1]),
-                                           static_cast<std::size_t>(face[2]));
 }
 
 std::string complaint(const Mesh& mesh, const vcg::Matrix44f& matrix, const Settings& settings = {}) {

@@ -7,14 +7,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <optional>
 #include <sstream>
 #include <string>
 
+#include "environment.h"
 #include "soundness.h"
 #include "vcg_core/learner.h"
 
@@ -170,19 +168,6 @@ TargetSpace random_target(Random& random) {
         cloud.size() / 3, [&](std::size_t i, int k) { return cloud[3 * i + static_cast<std::size_t>(k)]; });
 }
 
-/// The whole number in the variable \p name of the environment, or \p otherwise where there is none; a word
-/// or a number below \p low is a failure, for the test would pass having tried nothing.
-int number_of(const char* name, int otherwise, int low) {
-    const char* text = std::getenv(name);
-    if (text == nullptr) return otherwise;
-    int number = 0;
-    const char* end = text + std::strlen(text);
-    const auto read = std::from_chars(text, end, number);
-    if (read.ec == std::errc() && read.ptr == end && number >= low) return number;
-    ADD_FAILURE() << name << " is '" << text << "': a whole number from " << low << " on is expected.";
-    return otherwise;
-}
-
 /// What differs from the defaults.
 std::string changes(const Settings& settings) {
     std::ostringstream text;
@@ -193,8 +178,8 @@ std::string changes(const Settings& settings) {
 }
 
 TEST(RandomSettings, KeepThePromisesOnRandomClouds) {
-    const int runs = number_of("NEURALMESH_RANDOM_RUNS", 40, 1);
-    const int first = number_of("NEURALMESH_RANDOM_FIRST", 0, 0);
+    const int runs = environment::number_of("NEURALMESH_RANDOM_RUNS", 40, 1);
+    const int first = environment::number_of("NEURALMESH_RANDOM_FIRST", 0, 0);
     if (HasFailure()) return;
     int learned = 0;
     for (int i = first; i < first + runs; ++i) {

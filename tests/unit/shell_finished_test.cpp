@@ -86,9 +86,7 @@ TEST(ShellFinished, AHalfAThousandTimesSparserIsNoOutlier) {
     Random random(18);
     std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 400000, random);
     std::size_t below = 0;
-    cloud.erase(std::remove_if(cloud.begin(), cloud.end(),
-                               [&](const vcg::Point3d& p) { return p[2] < 0 && ++below % 1000 != 0; }),
-                cloud.end());
+    shell_shapes::cut_off(cloud, [&](const vcg::Point3d& p) { return p[2] < 0 && ++below % 1000 != 0; });
     const NeuralMesh mesh = finished(cloud, 500);
     expect_closed(mesh, 500, 1, 0);
     EXPECT_FALSE(warned_of(mesh, "outliers"));
@@ -126,8 +124,7 @@ TEST(ShellFinished, AGroupOfOnePercentIsAComponent) {
 TEST(ShellFinished, HalfASphereIsClosedWithAWarning) {
     Random random(14);
     std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
-    cloud.erase(std::remove_if(cloud.begin(), cloud.end(), [](const vcg::Point3d& p) { return p[2] > 0; }),
-                cloud.end());
+    shell_shapes::cut_off(cloud, [](const vcg::Point3d& p) { return p[2] > 0; });
     const NeuralMesh mesh = finished(cloud, 500);
     expect_closed(mesh, 500, 1, 0);
     EXPECT_TRUE(warned_of(mesh, "closed"));

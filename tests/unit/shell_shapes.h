@@ -125,4 +125,10 @@ inline std::vector<vcg::Point3d> sample(const Shape& shape, std::size_t count, R
     return points;
 }
 
+/// Takes the points away for which \p gone says so.
+template <class Predicate>
+void cut_off(std::vector<vcg::Point3d>& points, const Predicate& gone) {
+    points.erase(std::remove_if(points.begin(), points.end(), gone), points.end());
+}
+
 }  // namespace neuralmesh::shell_shapes

@@ -124,8 +124,7 @@ TEST(Shell, OutliersAreIgnoredAndReported) {
 TEST(Shell, OpenScanIsClosedWithAWarning) {
     Random random(5);
     std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 40000, random);
-    cloud.erase(std::remove_if(cloud.begin(), cloud.end(), [](const vcg::Point3d& p) { return p[2] > 0.9; }),
-                cloud.end());
+    shell_shapes::cut_off(cloud, [](const vcg::Point3d& p) { return p[2] > 0.9; });
     const StartMesh mesh = shell(cloud);
     expect_topology(mesh, 1, 0);
     EXPECT_TRUE(mesh.encloses_space);
