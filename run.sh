@@ -188,7 +188,7 @@ run_tests() {
         NEURALMESH_BUILD="$here/$build" "$venv/bin/python" -m pytest "$file" -q || failed=1
     done
     say "Accuracy and topology, the small form"
-    "$venv/bin/python" tests/experiments/accuracy_table.py --small --out "$build/experiments" \
+    "$venv/bin/python" tests/experiments/accuracy/accuracy_table.py --small --out "$build/experiments" \
         --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so" || failed=1
     return "$failed"
 }
@@ -215,11 +215,11 @@ figures() {
     compile all
     local plugin="$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
     say "Accuracy against Poisson and quadric collapse"
-    "$venv/bin/python" tests/experiments/accuracy_table.py --plugin "$plugin" --out out/figures
+    "$venv/bin/python" tests/experiments/accuracy/accuracy_table.py --plugin "$plugin" --out out/figures
     say "Counters against curvature"
-    "$venv/bin/python" tests/experiments/compare_curvature.py --plugin "$plugin" --out out/figures
+    "$venv/bin/python" tests/experiments/accuracy/compare_curvature.py --plugin "$plugin" --out out/figures
     demo
-    tests/experiments/figures.sh "$build" screenshots out/figures
+    tests/experiments/pictures/figures.sh "$build" screenshots out/figures
 }
 
 mkdir -p "$build"

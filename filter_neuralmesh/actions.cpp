@@ -14,7 +14,7 @@
 #include <new>
 #include <sstream>
 
-#include "vcg_core/error.h"
+#include "vcg_core/base/error.h"
 
 namespace neuralmesh {
 

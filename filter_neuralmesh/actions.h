@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "vcg_core/base/progress.h"
 #include "vcg_core/mesh_io.h"
 #include "vcg_core/neural_mesh.h"
-#include "vcg_core/progress.h"
 #include "vcg_core/reconstruct.h"
 #include "vcg_core/settings.h"
 

@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // The ramp and its two ends.
-#include "counter_colors.h"
+#include "vcg_core/counter_colors.h"
 
 #include <algorithm>
 #include <array>

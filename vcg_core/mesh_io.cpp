@@ -3,7 +3,7 @@
 
 // Where the caller's coordinates enter the core's own vcglib, what is said of those that are no numbers, and
 // how far from their origin coordinates may be.
-#include "mesh_io.h"
+#include "vcg_core/mesh_io.h"
 
 #include <algorithm>
 #include <cmath>

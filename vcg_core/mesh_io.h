@@ -17,10 +17,10 @@
 #include <string>
 #include <vector>
 
-#include "counter_colors.h"
-#include "neural_mesh.h"
-#include "settings.h"
-#include "target_space.h"
+#include "vcg_core/counter_colors.h"
+#include "vcg_core/neural_mesh.h"
+#include "vcg_core/settings.h"
+#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 

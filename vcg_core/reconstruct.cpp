@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Target space in, neural mesh out.
-#include "reconstruct.h"
+#include "vcg_core/reconstruct.h"
 
 #include <algorithm>
 #include <chrono>
@@ -10,11 +10,11 @@
 #include <string>
 #include <utility>
 
-#include "distance.h"
-#include "fit.h"
-#include "learner.h"
-#include "shell.h"
-#include "simplify.h"
+#include "vcg_core/fit/fit.h"
+#include "vcg_core/learning/learner.h"
+#include "vcg_core/mesh/simplify.h"
+#include "vcg_core/rms_error.h"
+#include "vcg_core/shell/shell.h"
 
 namespace neuralmesh {
 

@@ -4,10 +4,10 @@
 // The whole job in one call: a target space and settings in, a mesh with counters and figures out.
 #pragma once
 
-#include "neural_mesh.h"
-#include "progress.h"
-#include "settings.h"
-#include "target_space.h"
+#include "vcg_core/base/progress.h"
+#include "vcg_core/neural_mesh.h"
+#include "vcg_core/settings.h"
+#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 

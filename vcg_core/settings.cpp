@@ -2,14 +2,14 @@
 // Copyright the Neural Mesh authors
 
 // The table of parameters, and the check against it.
-#include "settings.h"
+#include "vcg_core/settings.h"
 
 #include <cmath>
 #include <limits>
 #include <locale>
 #include <sstream>
 
-#include "error.h"
+#include "vcg_core/base/error.h"
 
 namespace neuralmesh {
 

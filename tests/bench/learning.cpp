@@ -12,10 +12,10 @@
 #include <memory>
 #include <vector>
 
-#include "vcg_core/counters.h"
-#include "vcg_core/learner.h"
-#include "vcg_core/patches.h"
-#include "vcg_core/winner_search.h"
+#include "vcg_core/engine/eight_steps.h"
+#include "vcg_core/engine/winner_search.h"
+#include "vcg_core/learning/counters.h"
+#include "vcg_core/learning/learner.h"
 
 namespace {
 

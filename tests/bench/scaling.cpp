@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <map>
 
-#include "vcg_core/learner.h"
+#include "vcg_core/learning/learner.h"
 #include "vcg_core/reconstruct.h"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bytes.h"
-#include "tests/unit/referee.h"
+#include "tests/unit/support/referee.h"
 #include "vcg_core/reconstruct.h"
 
 namespace {

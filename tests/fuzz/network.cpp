@@ -3,11 +3,11 @@
 
 // Any sequence of splits, collapses and flips, asked for with any arguments: an operation either keeps the
 // manifold and its topology or is refused and changes nothing; can_...() foretells which.
-#include "vcg_core/network.h"
+#include "vcg_core/mesh/network.h"
 
 #include "bytes.h"
-#include "tests/unit/referee.h"
-#include "tests/unit/shapes.h"
+#include "tests/unit/support/referee.h"
+#include "tests/unit/support/shapes.h"
 
 namespace {
 

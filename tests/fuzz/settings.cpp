@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "bytes.h"
-#include "tests/unit/shapes.h"
-#include "vcg_core/learner.h"
+#include "tests/unit/support/shapes.h"
+#include "vcg_core/learning/learner.h"
 
 namespace {
 

@@ -13,7 +13,8 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "hosts"))
-sys.path.insert(0, str(ROOT / "tests" / "experiments"))
+for folder in ("accuracy", "paper", "pictures"):
+    sys.path.insert(0, str(ROOT / "tests" / "experiments" / folder))
 
 # Before any OpenMP is loaded: threads that wait for work without sleeping make Poisson five times slower on a
 # machine that has other work, too.

@@ -13,7 +13,7 @@ import meshlabserver
 
 BUNNY = Path("/usr/share/glmark2/models/bunny.obj")
 BUNNY_POINTS = Path("out/cloud/bunny_points.ply")
-PICTURE = Path(__file__).resolve().parents[1] / "experiments" / "meshlab_picture.py"
+PICTURE = Path(__file__).resolve().parents[1] / "experiments" / "pictures" / "meshlab_picture.py"
 
 
 def parsed():

@@ -22,7 +22,7 @@ import numpy as np
 
 from gui_session import GuiError, GuiSession, require_programs, wait_until
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "experiments"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "experiments" / "pictures"))
 
 from meshlab_picture import LIBRARIES, PLUGINS, program_copy  # noqa: E402
 

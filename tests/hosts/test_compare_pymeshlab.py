@@ -3,7 +3,7 @@
 
 """The neural mesh against Screened Poisson + Quadric Edge Collapse in pymeshlab, on a set small enough for every
 test run, and the measuring tools themselves on surfaces whose error is known. The large tables are made by
-tests/experiments/compare_accuracy.py."""
+tests/experiments/accuracy/compare_accuracy.py."""
 
 import numpy as np
 import pymeshlab

@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Changes of the network for which there is no room are not begun.
-#include "vcg_core/network.h"
+#include "vcg_core/mesh/network.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "allocations.h"
-#include "tests/unit/referee.h"
-#include "tests/unit/shapes.h"
+#include "tests/unit/support/referee.h"
+#include "tests/unit/support/shapes.h"
 
 namespace neuralmesh {
 namespace {

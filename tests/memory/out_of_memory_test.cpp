@@ -17,11 +17,11 @@
 
 #include "allocations.h"
 #include "filter_neuralmesh/actions.h"
-#include "tests/unit/environment.h"
-#include "tests/unit/layer_mesh.h"
-#include "tests/unit/shapes.h"
-#include "vcg_core/parallel.h"
-#include "vcg_core/random.h"
+#include "tests/unit/support/environment.h"
+#include "tests/unit/support/layer_mesh.h"
+#include "tests/unit/support/shapes.h"
+#include "vcg_core/base/parallel_for.h"
+#include "vcg_core/base/random.h"
 
 namespace neuralmesh {
 namespace {

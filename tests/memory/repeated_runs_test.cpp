@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "allocations.h"
-#include "tests/unit/soundness.h"
+#include "tests/unit/support/soundness.h"
 
 namespace neuralmesh {
 namespace {

@@ -10,8 +10,8 @@
 #include <limits>
 #include <string>
 
-#include "layer_mesh.h"
-#include "shapes.h"
+#include "tests/unit/support/layer_mesh.h"
+#include "tests/unit/support/shapes.h"
 
 namespace neuralmesh {
 namespace {

@@ -10,7 +10,7 @@
 #include <limits>
 #include <set>
 
-#include "vcg_core/error.h"
+#include "vcg_core/base/error.h"
 
 namespace neuralmesh {
 namespace {

@@ -6,9 +6,9 @@
 // signals.
 #include <iostream>
 
-#include "tests/unit/referee.h"
-#include "tests/unit/shapes.h"
-#include "vcg_core/learner.h"
+#include "tests/unit/support/referee.h"
+#include "tests/unit/support/shapes.h"
+#include "vcg_core/learning/learner.h"
 
 int main() {
     using namespace neuralmesh;

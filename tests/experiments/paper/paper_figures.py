@@ -1,0 +1,262 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""The pictures of the documentation and the paper's three figures, drawn by a real MeshLab.
+
+    paper_figures.py --learn build/tests/learn [--data FOLDER] [--out FOLDER] [--pictures FOLDER]
+
+bunny.png: from points to mesh to counters. fig1.png: density of the mesh against curvature. fig2.png: counters as
+colours. fig3.png: levels of detail. The numbers of the captions go to OUT/figures.json. With a data folder Fig. 3 is
+of Max-Planck and Dino, as in the paper, else of models of Debian's packages.
+"""
+
+import argparse
+import json
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pymeshlab
+from matplotlib import colormaps
+from scipy.spatial import cKDTree
+from scipy.stats import spearmanr
+
+EXPERIMENTS = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(EXPERIMENTS / "accuracy"), str(EXPERIMENTS / "pictures")]
+import models  # noqa: E402
+import paper_runs  # noqa: E402
+from compare_accuracy import numbers  # noqa: E402
+from meshlab_picture import Picture, render  # noqa: E402
+from meshlab_picture_sheet import Legend, contact_sheet, legend_of_mesh  # noqa: E402
+from small_png import make_small  # noqa: E402
+
+FIGURES = ("bunny", "fig1", "fig2", "fig3")
+LEVELS = (500, 2000, 5000, 10000, 20000)
+COUNTER_TITLE = "feature counter"
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A model, its name in a caption, and the camera that shows it best."""
+
+    name: str
+    title: str
+    view: tuple = (0.25, 0.15, 1.0)
+    up: tuple = (0.0, 1.0, 0.0)
+    points: int = 200_000
+
+    def pictures(self, meshes, style, color=False, **more):
+        """One Picture for each mesh, all of the same scale."""
+        return [Picture(str(mesh), style, color, self.view, self.up, fit_to=list(map(str, meshes)), **more)
+                for mesh in meshes]
+
+
+BUNNY = Subject("bunny", "Bunny")
+SUBJECTS = {subject.name: subject for subject in (
+    BUNNY,
+    Subject("maxplanck", "Max-Planck", (0.55, 0.08, 1.0), points=100_000),
+    Subject("dino", "Dino", (0.35, 0.2, 1.0), points=225_000),
+    Subject("koala", "Koala", (0.8, 0.25, 1.0)),
+    Subject("feline", "Feline", (-0.25, 1.0, -0.15), (0.0, 0.0, -1.0)),
+    Subject("fandisk", "Fandisk", (-0.8, 0.55, -1.0)),
+    Subject("armadillo", "Armadillo", (0.3, 0.1, -1.0), points=100_000),
+    Subject("elephant", "Elephant", (0.5, 0.2, 1.0)),
+    Subject("camel", "Camel", (1.0, 0.15, 0.4)),
+)}
+# With the data folder first; a figure takes the first ones that can be had.
+PAIR = ("maxplanck", "dino", "armadillo")
+SIX = ("bunny", "maxplanck", "dino", "feline", "koala", "fandisk", "armadillo", "elephant", "camel")
+
+
+class Studio:
+    """Makes clouds and meshes in the scratch folder and sheets in the folder of the pictures."""
+
+    def __init__(self, options):
+        self.options = options
+        self.numbers = {}
+        for folder in (options.out, options.pictures):
+            folder.mkdir(parents=True, exist_ok=True)
+
+    def had(self, names, count):
+        """The first `count` subjects of which the model can be had."""
+        found = []
+        for name in names:
+            if len(found) < count and paper_runs.can_be_had(name, self.options.data):
+                found.append(SUBJECTS[name])
+        return found
+
+    def surface(self, subject):
+        return paper_runs.surface(subject.name, self.options.data)
+
+    def cloud(self, subject):
+        path = self.options.out / f"figure_{subject.name}.ply"
+        if not path.exists():
+            models.save_ply(path, models.make_cloud(*self.surface(subject), subject.points))
+        return path
+
+    def mesh(self, subject, vertices, **settings):
+        """The neural mesh and its report."""
+        label = "".join(f"_{key}{value}" for key, value in settings.items())
+        path = self.options.out / f"figure_{subject.name}_{vertices}{label}.ply"
+        report = paper_runs.learn(self.options.learn, self.cloud(subject), path, target_vertices=vertices, **settings)
+        return path, report
+
+    def sheet(self, name, rows, captions, legend=None, size=(420, 420)):
+        drawn = iter(render([picture for row in rows for picture in row], size))
+        images = [[next(drawn) for _ in row] for row in rows]
+        path = self.options.pictures / f"{name}.png"
+        contact_sheet(images, captions, path, legend=legend)
+        make_small(path)
+        print(f"{path}: {path.stat().st_size / 1000:.0f} kB", flush=True)
+
+
+def bunny(studio):
+    """From points to mesh to counters."""
+    cloud = studio.options.out / "figure_bunny_vertices.ply"
+    models.save_ply(cloud, studio.surface(BUNNY)[0])
+    mesh = studio.options.out / "figure_bunny_3000.ply"
+    report = paper_runs.learn(studio.options.learn, cloud, mesh, target_vertices=3000)
+    shape = {"fit_to": [str(mesh)], "view": BUNNY.view, "up": BUNNY.up}
+    row = [Picture(str(cloud), "points", point_size=0.7, **shape),
+           Picture(str(mesh), "flat-lines", line_width=0.6, **shape),
+           Picture(str(mesh), "smooth", True, **shape)]
+    points = len(studio.surface(BUNNY)[0])
+    captions = [f"{points:,} points, no normals", f"neural mesh, {report['vertices']:,} vertices",
+                "its feature counter"]
+    studio.sheet("bunny", [row], [captions], legend_of_mesh(mesh, COUNTER_TITLE), (460, 460))
+    studio.numbers["bunny"] = report
+
+
+def vertex_areas(vertices, faces):
+    """A third of the area of the faces around each vertex."""
+    corners = vertices[faces]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    return np.bincount(faces.ravel(), np.repeat(area / 3, 3), minlength=len(vertices))
+
+
+def mean_curvature(vertices, faces):
+    """The absolute mean curvature at the vertices, MeshLab's discrete one, averaged over the one-ring."""
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.add_mesh(pymeshlab.Mesh(vertices, faces))
+    meshes.compute_scalar_by_discrete_curvature_per_vertex(curvaturetype="Mean Curvature")
+    values = np.abs(meshes.current_mesh().vertex_scalar_array())
+    values[~np.isfinite(values)] = 0
+    total, count = np.zeros(len(vertices)), np.zeros(len(vertices))
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        np.add.at(total, faces[:, a], values[faces[:, b]])
+        np.add.at(total, faces[:, b], values[faces[:, a]])
+        np.add.at(count, faces[:, a], 1)
+        np.add.at(count, faces[:, b], 1)
+    return (total + values) / (count + 1)
+
+
+def density_correlation(mesh, truth, curvature):
+    """Spearman's rank correlation of the mesh's vertex density with the true surface's mean curvature around."""
+    vertices, faces = models.load_mesh(mesh)
+    areas = vertex_areas(vertices, faces)
+    radius = float(np.median(np.sqrt(areas)))
+    # The curvature over the vertex's own share of the surface, or at least at the place next to it.
+    tree = cKDTree(truth)
+    near = tree.query_ball_point(vertices, radius)
+    _, nearest = tree.query(vertices)
+    around = [curvature[found].mean() if found else curvature[closest] for found, closest in zip(near, nearest)]
+    return float(spearmanr(-areas, around).statistic)
+
+
+def painted(path, vertices, faces, values, low, high):
+    """Saves a mesh painted by its values from low to high."""
+    colors = colormaps["viridis"](np.clip((values - low) / max(high - low, 1e-300), 0, 1))
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.add_mesh(pymeshlab.Mesh(vertices, faces, v_scalar_array=values, v_color_matrix=colors))
+    meshes.save_current_mesh(str(path), save_vertex_quality=True, save_vertex_color=True)
+    return path
+
+
+def fig1(studio):
+    """Where the surface bends the mesh is dense: the captions are the correlation of density with curvature."""
+    rows, captions, told = [], [], {}
+    for subject in studio.had(PAIR, 2):
+        truth, faces = studio.surface(subject)
+        curvature = mean_curvature(truth, faces)
+        low, high = np.percentile(curvature, (5, 95))
+        colored = painted(studio.options.out / f"figure_{subject.name}_curvature.ply", truth, faces, curvature, low,
+                          high)
+        made = {}
+        for label, utility, fit in (("signal counter", 1, 0), ("normal counter", 0, 0), ("default, with fit", 0, 1),
+                                    ("signal counter, with fit", 1, 1)):
+            mesh, _ = studio.mesh(subject, 4000, utility_counter=utility, fit_to_points=fit)
+            made[label] = mesh, density_correlation(mesh, truth, curvature)
+        told[subject.name] = {label: correlation for label, (_, correlation) in made.items()}
+        shown = list(made)[:3]
+        *wires, _ = subject.pictures([*(made[label][0] for label in shown), colored], "wireframe", line_width=0.6)
+        rows.append([*wires, subject.pictures([colored], "smooth", True)[0]])
+        captions.append([*(f"{label}: {made[label][1]:+.2f}" for label in shown), "mean curvature"])
+    ramp = [tuple(int(255 * c) for c in colormaps["viridis"](x)[:3]) for x in np.linspace(0, 1, 128)]
+    studio.sheet("fig1", rows, captions, Legend("mean curvature", ramp, "low", "high"), (380, 380))
+    studio.numbers["fig1"] = told
+
+
+def fig2(studio):
+    """The counters of several models as colours."""
+    subjects = studio.had(SIX, 6)
+    meshes = [studio.mesh(subject, 10000)[0] for subject in subjects]
+    pictures = [subject.pictures([mesh], "smooth", True)[0] for subject, mesh in zip(subjects, meshes)]
+    titles = [subject.title for subject in subjects]
+    rows = [slice(start, start + 3) for start in range(0, len(pictures), 3)]
+    legend = legend_of_mesh(meshes[0], COUNTER_TITLE)
+    legend.low, legend.high = "low", "high"  # each mesh is painted on a scale of its own
+    studio.sheet("fig2", [pictures[row] for row in rows], [titles[row] for row in rows], legend)
+
+
+def fig3(studio):
+    """Levels of detail, with the processor time of each on one thread."""
+    rows, captions, told = [], [], {}
+    for subject in studio.had(PAIR, 2):
+        made = [studio.mesh(subject, level, threads=1) for level in studio.options.levels]
+        rows.append(subject.pictures([mesh for mesh, _ in made], "flat"))
+        captions.append([f"{report['vertices']:,} vertices, {report['processor_seconds']:.1f} s" for _, report in made])
+        told[subject.name] = {"points": subject.points, "levels": [report for _, report in made]}
+    studio.sheet("fig3", rows, captions, size=(320, 320))
+    studio.numbers["fig3"] = told
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--learn", required=True, help="the core as a program (target learn)")
+    parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
+    parser.add_argument("--out", type=Path, default=Path("out/figures"), help="folder of clouds, meshes and numbers")
+    parser.add_argument("--pictures", type=Path, default=Path("screenshots"))
+    parser.add_argument("--figures", type=numbers(str), default=FIGURES, help=f"of {', '.join(FIGURES)}")
+    parser.add_argument("--levels", type=numbers(int), default=LEVELS, help="vertices of Fig. 3")
+    return parser.parse_args(arguments)
+
+
+def main(arguments=None):
+    options = parse(arguments)
+    studio = Studio(options)
+    makers = {"bunny": bunny, "fig1": fig1, "fig2": fig2, "fig3": fig3}
+    unknown = [name for name in options.figures if name not in makers]
+    if unknown:
+        sys.exit(f"There is no figure '{unknown[0]}': there are {', '.join(makers)}.")
+    for name in options.figures:
+        makers[name](studio)
+    told = options.out / "figures.json"
+    earlier = json.loads(told.read_text()) if told.exists() else {}
+    told.write_text(json.dumps({**earlier, **studio.numbers}, indent=1))  # figures may be made one by one
+    for name, told in studio.numbers.get("fig1", {}).items():
+        print(f"fig1, {name}: correlation of density with curvature " +
+              ", ".join(f"{label} {value:+.2f}" for label, value in told.items()))
+    for name, told in studio.numbers.get("fig3", {}).items():
+        print(f"fig3, {name}, {told['points']:,} points: " +
+              ", ".join(f"{level['vertices']:,} vertices in {level['processor_seconds']:.1f} processor seconds, RMS "
+                        f"{level['rms_error']:.4f} %" for level in told["levels"]))
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (RuntimeError, ValueError, OSError) as error:
+        sys.exit(f"paper_figures: {error}")

@@ -1,0 +1,43 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+# The paper's table and figures, and the screenshots: figures.sh [BUILD [PICTURES [OUT]]]
+#   BUILD     the build folder, configured, with plugins and the virtual environment (default build)
+#   PICTURES  where the pictures go (default screenshots)
+#   OUT       where tables, numbers, clouds and meshes go (default out/figures)
+# Models that are in no Debian package are used if NEURAL_MESH_DATA names a folder that has them. Screenshots of
+# MeshLab 2022.02 and 2025.07 are made if tests/hosts/gui_debian_root.sh has made their root directories.
+set -euo pipefail
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
+cd "$here/../../.."
+build="${1:-build}"
+pictures="${2:-screenshots}"
+out="${3:-out/figures}"
+python="${PYTHON:-$build/venv/bin/python}"
+roots="${NEURAL_MESH_ROOTS:-${XDG_CACHE_HOME:-$HOME/.cache}/neural-mesh/roots}"
+mkdir -p "$pictures" "$out"
+
+say() { printf '== %s\n' "$*"; }
+
+# screenshots SCRIPT VERSION: the filter in that MeshLab's window, dialog and result.
+screenshots() {
+    PYTHON="$python" "tests/hosts/$1" "$build/plugins/meshlab-$2/libfilter_neuralmesh.so" \
+        "$out/figure_bunny_vertices.ply" "$out/gui"
+    cp "$out/gui/meshlab_$2"_{dialog,result}.png "$pictures"
+    "$python" "$here/small_png.py" --width 1080 "$pictures/meshlab_$2"_{dialog,result}.png
+}
+
+cmake --build "$build" --target learn counter_trace check_mesh -- --quiet
+say "Figures of the paper"
+"$python" "$here/../paper/paper_figures.py" --learn "$build/tests/learn" --out "$out" --pictures "$pictures"
+say "Screenshots"
+screenshots gui_2020_09.sh 2020.09
+if [ -e "$roots/trixie.complete" ]; then screenshots gui_2022_02.sh 2022.02; fi
+if [ -e "$roots/sid.complete" ]; then screenshots gui_2025_07.sh 2025.07; fi
+say "Table 1 of the paper"
+"$python" "$here/../paper/paper_table1.py" --learn "$build/tests/learn" --check "$build/tests/check_mesh" --out "$out"
+say "Features against every analysis of the final mesh and of the cloud"
+"$python" "$here/../paper/features.py" --learn "$build/tests/learn" --out "$out"
+say "Termination by eq 8"
+"$python" "$here/../paper/paper_termination.py" --learn "$build/tests/learn" --trace "$build/tests/counter_trace" --out "$out"

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// What the experiments' programs share: PLY files through vcglib, and parameters as words.
+#pragma once
+
+#include <vcg/complex/complex.h>
+#include <wrap/io_trimesh/import_ply.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "vcg_core/base/error.h"
+#include "vcg_core/mesh_io.h"
+#include "vcg_core/settings.h"
+
+namespace neuralmesh {
+
+class PlyVertex;
+class PlyFace;
+struct PlyTypes : vcg::UsedTypes<vcg::Use<PlyVertex>::AsVertexType, vcg::Use<PlyFace>::AsFaceType> {};
+/// The quality is double because vcglib's exporter declares it to be of the coordinates' type.
+class PlyVertex : public vcg::Vertex<PlyTypes, vcg::vertex::Coord3d, vcg::vertex::Normal3d,
+                                     vcg::vertex::Color4b, vcg::vertex::Qualityd, vcg::vertex::BitFlags> {};
+class PlyFace : public vcg::Face<PlyTypes, vcg::face::VertexRef, vcg::face::Normal3d, vcg::face::BitFlags> {};
+class PlyMesh : public vcg::tri::TriMesh<std::vector<PlyVertex>, std::vector<PlyFace>> {};
+
+/// Reads the PLY file \p path into the empty \p mesh. \throws InputError if that fails
+inline void read_ply(const std::string& path, PlyMesh& mesh) {
+    if (vcg::tri::io::ImporterPLY<PlyMesh>::Open(mesh, path.c_str()) != 0)
+        throw InputError("Cannot read " + path + " as PLY.");
+}
+
+/// What is learned from the PLY file \p path. \throws InputError as read_ply and target_space_of do
+inline TargetSpace target_of_ply(const std::string& path, const Settings& settings) {
+    PlyMesh mesh;
+    read_ply(path, mesh);
+    vcg::Matrix44d identity;
+    identity.SetIdentity();
+    return target_space_of(mesh, identity, settings);
+}
+
+/// The number that \p text is, or 1 and 0 for true and false where \p kind says so. \return false if it is
+/// none
+inline bool read_value(const std::string& text, SettingInfo::Kind kind, double& value) {
+    if (kind == SettingInfo::Kind::boolean && (text == "true" || text == "false")) {
+        value = text == "true" ? 1 : 0;
+        return true;
+    }
+    char* end = nullptr;
+    value = std::strtod(text.c_str(), &end);
+    return !text.empty() && *end == '\0';
+}
+
+/// Stores \p word, parameter=value with any parameter of the settings table. \throws SettingError if it is
+/// not
+inline void set_parameter(Settings& settings, const std::string& word) {
+    const auto equals = word.find('=');
+    for (const SettingInfo& info : setting_table()) {
+        if (equals == std::string::npos || word.substr(0, equals) != info.id) continue;
+        double value = 0;
+        if (!read_value(word.substr(equals + 1), info.kind, value))
+            throw SettingError("'" + word + "' does not give " + info.id + " a number" +
+                               (info.kind == SettingInfo::Kind::boolean ? ", true or false." : "."));
+        info.store(settings, value);
+        return;
+    }
+    throw SettingError("'" + word + "' is not parameter=value with a known parameter.");
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Every chunk once, by one member at a time, whoever is awake.
+#include "vcg_core/base/thread_team.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+#include <vector>
+
+namespace neuralmesh {
+namespace {
+
+TEST(Team, DoesEveryChunkOnce) {
+    for (const int members : {1, 2, 5}) {
+        Team team(members);
+        ASSERT_EQ(team.members(), members);
+        for (int round = 0; round < 3000; ++round) {
+            const int chunks = round % 40;
+            std::vector<int> done(40, 0);
+            std::vector<int> inside(static_cast<std::size_t>(members), 0);
+            bool alone = true;
+            team.run(chunks, [&](int member, int chunk) {
+                int& here = inside[static_cast<std::size_t>(member)];
+                if (++here != 1) alone = false;
+                ++done[static_cast<std::size_t>(chunk)];
+                --here;
+            });
+            ASSERT_TRUE(alone);
+            for (int c = 0; c < 40; ++c) ASSERT_EQ(done[static_cast<std::size_t>(c)], c < chunks ? 1 : 0);
+        }
+    }
+}
+
+TEST(Team, WakesWhoHasGoneToSleep) {
+    Team team(3);
+    for (int round = 0; round < 20; ++round) {
+        std::vector<int> done(Team::kMost, 0);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        team.run(Team::kMost, [&](int, int chunk) { ++done[static_cast<std::size_t>(chunk)]; });
+        for (const int count : done) ASSERT_EQ(count, 1);
+    }
+}
+
+TEST(Team, HelpersTakePart) {
+    Team team(2);
+    // The caller's chunk ends when the helper's has begun.
+    std::atomic<bool> helped{false};
+    team.run(2, [&](int member, int) {
+        if (member == 1) {
+            helped = true;
+        } else {
+            while (!helped) std::this_thread::yield();
+        }
+    });
+    EXPECT_TRUE(helped);
+}
+
+TEST(Team, DoesOneThingBesideTheCaller) {
+    for (const int members : {1, 2, 5}) {
+        Team team(members);
+        int done = 0;
+        for (int round = 0; round < 3000; ++round) {
+            const auto body = [&] { ++done; };
+            { const Team::Beside beside = team.beside(body); }
+            ASSERT_EQ(done, round + 1);
+        }
+    }
+}
+
+TEST(Team, AHelperDoesItWhileTheCallerGoesOn) {
+    Team team(2);
+    std::atomic<bool> helped{false};
+    const auto body = [&] { helped = true; };
+    const Team::Beside beside = team.beside(body);
+    while (!helped) std::this_thread::yield();
+}
+
+}  // namespace
+}  // namespace neuralmesh

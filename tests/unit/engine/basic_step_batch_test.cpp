@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Regions share the work and change nothing.
+#include "vcg_core/engine/basic_step_batch.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/support/referee.h"
+#include "tests/unit/support/shapes.h"
+#include "vcg_core/target/target_space.h"
+
+namespace neuralmesh {
+namespace {
+
+/// A network that learns with so many threads; its vertices come to lie across the borders of their regions.
+struct Course {
+    Course(const TargetSpace& target, int threads)
+        : network(start(target)), search(network), steps(threads, typical(target)) {}
+
+    static Network start(const TargetSpace& target) {
+        shapes::Shape torus = shapes::torus_grid(40, 24);
+        for (vcg::Point3d& p : torus.positions) p = vcg::Point3d::Construct(target.frame().inside(p));
+        return referee::network_of(torus);
+    }
+    static std::vector<vcg::Point3f> typical(const TargetSpace& target) {
+        Random random(9);
+        std::vector<vcg::Point3f> drawn;
+        for (int i = 0; i < 300; ++i) drawn.push_back(target.sample(random));
+        return drawn;
+    }
+
+    Network network;
+    WinnerSearch search;
+    BasicSteps steps;
+};
+
+void expect_same(const Course& a, const Course& b, int count) {
+    for (int i = 0; i < count; ++i) {
+        ASSERT_EQ(a.steps.winner(i), b.steps.winner(i)) << "signal " << i;
+        ASSERT_EQ(a.steps.delta(i), b.steps.delta(i)) << "signal " << i;
+    }
+    ASSERT_EQ(a.network.slot_count(), b.network.slot_count());
+    for (VertexId v = 0; v < a.network.slot_count(); ++v) {
+        ASSERT_EQ(a.network.position(v), b.network.position(v)) << "vertex " << v;
+    }
+}
+
+TEST(BasicSteps, AreTheSameBytesForAnyNumberOfThreads) {
+    const shapes::Cloud cloud = shapes::torus_cloud(5000, 0.01);
+    const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+    Course alone(target, 1);
+    Course two(target, 2);
+    Course five(target, 5);
+    Random random(3);
+    const StepRates rates{0.06F, 0.05F, 5};
+    std::vector<vcg::Point3f> drawn(1000);
+    for (int batch = 0; batch < 100; ++batch) {
+        // Many for so few vertices, so that displacements of several regions meet at most vertices.
+        const int count = 240 + static_cast<int>(random.below(760));
+        for (int i = 0; i < count; ++i) drawn[static_cast<std::size_t>(i)] = target.sample(random);
+        const auto v = static_cast<VertexId>(random.below(900));
+        for (Course* run : {&alone, &two, &five}) {
+            run->steps.take(drawn.data(), count, rates, run->network, run->search);
+            if (!run->network.can_split(v, 0, 4)) continue;
+            run->search.add(run->network.split(v, 0, 4, run->network.position(v)));
+            run->search.keep_up();
+        }
+        expect_same(alone, two, count);
+        expect_same(alone, five, count);
+        if (testing::Test::HasFatalFailure()) FAIL() << "in batch " << batch;
+    }
+}
+
+}  // namespace
+}  // namespace neuralmesh

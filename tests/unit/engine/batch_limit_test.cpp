@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Few vertices that win most signals: scanners put all they did not hit into one point, for one.
+#include "vcg_core/engine/batch_limit.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/soundness.h"
+#include "vcg_core/learning/learner.h"
+#include "vcg_core/reconstruct.h"
+
+namespace neuralmesh {
+namespace {
+
+using shapes::Cloud;
+
+/// A sphere, and ten times as many points within \p radius of one place on it.
+Cloud crowded_sphere(double radius) {
+    Cloud cloud = shapes::sphere_cloud(2000);
+    const vcg::Point3d place = cloud.front();
+    for (const vcg::Point3d& p : shapes::sphere_cloud(20000, 1, 2)) cloud.push_back(place + p * radius);
+    return cloud;
+}
+
+TEST(Crowding, ManySignalsAtOnePlaceDoNotThrowVerticesOut) {
+    for (const auto& [radius, counter] : {std::pair(0.0, kNormalCounter), std::pair(0.01, kSignalCounter)}) {
+        SCOPED_TRACE(testing::Message() << "radius " << radius << ", counter " << counter);
+        Settings settings;
+        settings.target_vertices = 800;
+        settings.utility_counter = counter;
+        settings.fit_to_points = false;
+        NoProgress progress;
+        const NeuralMesh mesh = reconstruct(soundness::target_of(crowded_sphere(radius)), settings, progress);
+        soundness::expect_exact(mesh, settings);
+        for (const vcg::Point3d& p : mesh.positions) ASSERT_LT(p.Norm(), 1.1);
+    }
+}
+
+void take_batch(Crowding& crowding, int count, int vertices, int wins) {
+    for (VertexId v = 0; v < vertices; ++v)
+        for (int i = 1; i < wins; ++i) crowding.repeated(v);
+    crowding.end_batch(count);
+}
+
+TEST(Crowding, HalvesUntilHardlyAnyVertexWinsOften) {
+    Crowding crowding;
+    const int unlimited = crowding.limit();
+    take_batch(crowding, 400, 100, 2);
+    EXPECT_EQ(crowding.limit(), unlimited);
+    take_batch(crowding, 400, 1, 8);
+    EXPECT_EQ(crowding.limit(), unlimited);
+    take_batch(crowding, 400, 1, 9);
+    EXPECT_EQ(crowding.limit(), 200);
+    take_batch(crowding, 200, 7, 3);
+    EXPECT_EQ(crowding.limit(), 100);
+    take_batch(crowding, 10, 3, 3);
+    EXPECT_EQ(crowding.limit(), 5);
+    take_batch(crowding, 1, 0, 0);
+    EXPECT_EQ(crowding.limit(), 5);
+}
+
+TEST(Crowding, GrowsAgainWhenTheWinsHaveSpread) {
+    Crowding crowding;
+    const int unlimited = crowding.limit();
+    take_batch(crowding, 400, 1, 100);
+    for (int batch = 0; batch < 63; ++batch) take_batch(crowding, 200, 5, 2);
+    EXPECT_EQ(crowding.limit(), 200);
+    take_batch(crowding, 200, 5, 2);
+    EXPECT_EQ(crowding.limit(), 400);
+    for (int batch = 0; batch < 64 * 40; ++batch) take_batch(crowding, 400, 5, 2);
+    EXPECT_EQ(crowding.limit(), unlimited);
+}
+
+/// What happens in the learner: most signals at one vertex make its batches short.
+TEST(Crowding, ShortensTheLearnersBatches) {
+    for (const bool crowded : {false, true}) {
+        Settings settings;
+        settings.target_vertices = 700;
+        const Cloud cloud = crowded ? crowded_sphere(0) : shapes::sphere_cloud(2000);
+        const TargetSpace target = soundness::target_of(cloud);
+        const shapes::Shape start = shapes::icosphere(3);
+        std::vector<vcg::Point3f> positions;
+        for (const vcg::Point3d& p : start.positions) positions.push_back(target.frame().inside(p));
+        Learner learner(target, settings, Network(positions, start.faces));
+        const int most = learner.batch_size();
+        EXPECT_EQ(most, 642 / Learner::kVerticesPerSignal);
+        NoProgress progress;
+        EXPECT_TRUE(learner.settle(10, progress));
+        if (crowded) {
+            EXPECT_LE(learner.batch_size(), most / 2);
+        } else {
+            EXPECT_EQ(learner.batch_size(), most);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace neuralmesh

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The fit to the points: closer, whole, and the same on any number of threads.
+#include "vcg_core/fit/fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "tests/unit/support/shapes.h"
+#include "vcg_core/mesh/self_crossings.h"
+#include "vcg_core/mesh/surface.h"
+#include "vcg_core/rms_error.h"
+
+namespace neuralmesh {
+namespace {
+
+using shapes::Cloud;
+using shapes::Shape;
+
+TargetSpace target_of(const Cloud& cloud) {
+    return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+}
+
+/// The shape as a network in the frame of the target, every vertex moved by up to \p noise (in diagonals).
+Network network_of(const Shape& shape, const TargetSpace& target, double scale = 1, double noise = 0) {
+    Random random(3);
+    std::vector<vcg::Point3f> positions;
+    for (const vcg::Point3d& p : shape.positions)
+        positions.push_back(target.frame().inside(p * scale) +
+                            vcg::Point3f::Construct(shapes::in_ball(random) * noise));
+    return Network(positions, std::vector<Triangle>(shape.faces.begin(), shape.faces.end()));
+}
+
+FitReport fit(Network& network, const TargetSpace& target, const FitOptions& options = {}, int threads = 1) {
+    NoProgress progress;
+    return fit_to_points(network, target, options, threads, 1, progress);
+}
+
+double rms(const TargetSpace& target, const Network& network) {
+    Random random(9);
+    return rms_distance(target, network, 5000, random);
+}
+
+/// The largest angle between the normals of neighbouring faces, as a cosine.
+double sharpest_fold(const Network& network) {
+    const auto normal = [&](VertexId a, VertexId b, VertexId c) {
+        const vcg::Point3f n =
+            (network.position(b) - network.position(a)) ^ (network.position(c) - network.position(a));
+        return n / std::max(n.Norm(), 1e-20F);
+    };
+    double least = 1;
+    for (VertexId a = 0; a < network.slot_count(); ++a) {
+        const Ring& ring = network.ring(a);
+        for (int i = 0; i < ring.valence && ring.open == 0; ++i)
+            least = std::min(least, static_cast<double>(normal(a, ring[i], ring.next(i)) *
+                                                        normal(a, ring.previous(i), ring[i])));
+    }
+    return least;
+}
+
+bool same_bytes(const Network& a, const Network& b) {
+    if (a.slot_count() != b.slot_count() || a.faces() != b.faces()) return false;
+    for (VertexId v = 0; v < a.slot_count(); ++v)
+        if (!(a.position(v) == b.position(v))) return false;
+    return true;
+}
+
+TEST(Fit, BringsAnInflatedSphereToThePoints) {
+    const Cloud cloud = shapes::sphere_cloud(20000);
+    const TargetSpace target = target_of(cloud);
+    Network network = network_of(shapes::icosphere(3), target, 1.1, 0.005);
+    const double before = rms(target, network);
+    const FitReport report = fit(network, target);
+    EXPECT_TRUE(report.improved);
+    EXPECT_LT(report.rms_after, report.rms_before);
+    EXPECT_LT(rms(target, network), before / 20);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.vertex_count(), 642);
+    EXPECT_EQ(network.genus(), 0);
+    EXPECT_GT(sharpest_fold(network), 0.8);
+}
+
+TEST(Fit, KeepsTheHandleOfATorus) {
+    const TargetSpace target = target_of(shapes::torus_cloud(20000));
+    Network network = network_of(shapes::torus_grid(30, 16), target, 1.05, 0.005);
+    const double before = rms(target, network);
+    fit(network, target);
+    EXPECT_LT(rms(target, network), before / 5);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.vertex_count(), 480);
+    EXPECT_EQ(network.genus(), 1);
+}
+
+// The icosphere has no vertex or edge where the cube has its own: they have to be found.
+TEST(Fit, FindsTheCreasesOfACube) {
+    const TargetSpace target = target_of(shapes::box_cloud(20000));
+    Network network = network_of(shapes::icosphere(3), target, 0.6);
+    fit(network, target);
+    EXPECT_LT(rms(target, network), 0.0012);
+    EXPECT_EQ(network.validate(), "");
+}
+
+TEST(Fit, GivesTheSameBytesForAnyNumberOfThreads) {
+    const TargetSpace target = target_of(shapes::torus_cloud(8000, 0.01));
+    Network one = network_of(shapes::torus_grid(40, 20), target, 1.05, 0.005);
+    Network two = one;
+    Network five = one;
+    FitOptions options;
+    options.target_vertices = 500;
+    fit(one, target, options, 1);
+    fit(two, target, options, 2);
+    fit(five, target, options, 5);
+    EXPECT_TRUE(same_bytes(one, two));
+    EXPECT_TRUE(same_bytes(one, five));
+}
+
+// Ten points per vertex with noise: the mesh that learning would leave, nearly on the surface, must not be
+// pulled into the noise.
+TEST(Fit, SmoothsNoiseRatherThanChasingIt) {
+    const Cloud noisy = shapes::sphere_cloud(6420, 0.03);
+    const TargetSpace target = target_of(noisy);
+    Network network = network_of(shapes::icosphere(3), target, 1, 0.006);
+    const auto error = [&] {
+        double sum = 0;
+        for (VertexId v = 0; v < network.slot_count(); ++v) {
+            const double d = target.frame().outside(network.position(v)).Norm() - 1;
+            sum += d * d;
+        }
+        return std::sqrt(sum / network.vertex_count());
+    };
+    const double before = error();
+    fit(network, target);
+    EXPECT_LT(error(), 0.6 * before);
+    EXPECT_LT(error(), 0.006);
+}
+
+TEST(Fit, IsNotDrawnByOutliers) {
+    Cloud cloud = shapes::sphere_cloud(20000);
+    Random random(4);
+    for (int i = 0; i < 400; ++i) cloud.push_back(shapes::in_ball(random) * 1.7);
+    const TargetSpace target = target_of(cloud);
+    Network network = network_of(shapes::icosphere(3), target, 1, 0.004);
+    fit(network, target);
+    double worst = 0;
+    for (VertexId v = 0; v < network.slot_count(); ++v)
+        worst = std::max(worst, std::abs(target.frame().outside(network.position(v)).Norm() - 1));
+    EXPECT_LT(worst, 0.03);
+}
+
+// Half of the sphere has no points at all: the mesh there has nothing to follow and has to stay a surface.
+TEST(Fit, MakesNoSpikesWhereThereAreNoPoints) {
+    Cloud cloud = shapes::sphere_cloud(20000);
+    for (vcg::Point3d& p : cloud) p[2] = std::abs(p[2]);
+    cloud.emplace_back(0.0, 0.0, -1.0);
+    const TargetSpace target = target_of(cloud);
+    Network network = network_of(shapes::icosphere(3), target, 1.02, 0.003);
+    fit(network, target);
+    EXPECT_EQ(network.validate(), "");
+    for (VertexId v = 0; v < network.slot_count(); ++v) {
+        const double r = target.frame().outside(network.position(v)).Norm();
+        EXPECT_GT(r, 0.5);
+        EXPECT_LT(r, 1.2);
+    }
+    EXPECT_GT(sharpest_fold(network), -0.6);
+}
+
+TEST(Fit, LeavesAMeshAloneThatIsRight) {
+    const Shape sphere = shapes::icosphere(2);
+    // The points are drawn from its own faces.
+    const TargetSpace target = TargetSpace::triangles(sphere.faces.size(), [&](std::size_t i, int k) {
+        return sphere.positions[static_cast<std::size_t>(sphere.faces[i][static_cast<std::size_t>(k)])];
+    });
+    Network network = network_of(sphere, target);
+    const double before = rms(target, network);
+    const FitReport report = fit(network, target);
+    EXPECT_LE(report.rms_after, report.rms_before);
+    EXPECT_LT(rms(target, network), before + 1e-5);
+}
+
+TEST(Fit, FitsAnOpenMesh) {
+    const TargetSpace target = target_of(shapes::plane_cloud(5000));
+    Network network = network_of(shapes::grid(12, 12), target, 0.98, 0.005);
+    const double before = rms(target, network);
+    fit(network, target);
+    EXPECT_LT(rms(target, network), before / 2);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.boundary_loop_count(), 1);
+}
+
+TEST(Fit, LeavesAMeshAloneWithHardlyAnyPoints) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(30));
+    Network network = network_of(shapes::icosphere(1), target);
+    const Network before = network;
+    const FitReport report = fit(network, target);
+    EXPECT_FALSE(report.improved);
+    EXPECT_TRUE(same_bytes(before, network));
+}
+
+TEST(Fit, SaysWhereEveryVertexComesFrom) {
+    const TargetSpace target = target_of(shapes::box_cloud(20000));
+    Network network = network_of(shapes::icosphere(3), target, 0.6);
+    const Network before = network;
+    const FitReport report = fit(network, target);
+    ASSERT_EQ(report.origin.size(), static_cast<std::size_t>(network.slot_count()));
+    int moved = 0;
+    for (VertexId v = 0; v < network.slot_count(); ++v) {
+        const VertexId from = report.origin[static_cast<std::size_t>(v)];
+        ASSERT_EQ(from >= 0, network.alive(v));
+        EXPECT_TRUE(from < 0 || before.alive(from));
+        moved += from == v ? 0 : 1;
+    }
+    EXPECT_LE(moved, report.moved_vertices);
+}
+
+// A vertex put in anew takes over the counter of the place it came to: no neighbour of the vertex that it has
+// it from was nearer.
+TEST(Fit, TakesCountersFromWhereTheyWereLearned) {
+    const TargetSpace target = target_of(shapes::box_cloud(20000));
+    Network network = network_of(shapes::icosphere(3), target, 0.6);
+    const Network before = network;
+    const FitReport report = fit(network, target);
+    int taken_over = 0;
+    for (VertexId v = 0; v < network.slot_count(); ++v) {
+        const VertexId from = report.origin[static_cast<std::size_t>(v)];
+        if (!network.alive(v) || from == v) continue;
+        ++taken_over;
+        const float distance = (before.position(from) - network.position(v)).Norm();
+        const Ring& ring = before.ring(from);
+        for (int i = 0; i < ring.valence; ++i)
+            EXPECT_LE(distance, (before.position(ring[i]) - network.position(v)).Norm()) << v;
+    }
+    EXPECT_GT(taken_over, 10);
+}
+
+/// Asks to stop at once.
+class Stop : public Progress {
+public:
+    bool operator()(double, const char*) override { return false; }
+};
+
+TEST(Fit, TakesOutTheVerticesItMissesLeast) {
+    // On a cube the eight corners suffice; of the vertices in its sides none is missed.
+    const TargetSpace target = target_of(shapes::box_cloud(20000));
+    Network network = network_of(shapes::icosphere(3), target, 0.6);
+    const int before = network.vertex_count();
+    FitOptions options;
+    options.target_vertices = 60;
+    const FitReport report = fit(network, target, options);
+    EXPECT_LT(5 * 60, before) << "far fewer than the ids in use";
+    EXPECT_EQ(network.vertex_count(), 60);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.genus(), 0);
+    EXPECT_TRUE(report.improved);
+    EXPECT_LT(rms(target, network), 1e-3);
+    for (VertexId v = 0; v < network.slot_count(); ++v)
+        EXPECT_EQ(report.origin[static_cast<std::size_t>(v)] >= 0, network.alive(v));
+}
+
+TEST(Fit, TakesOutNoMoreThanTheTopologyAllows) {
+    // A torus has at least seven vertices, and a tetrahedron's four are fewer than it can come down to.
+    const TargetSpace target = target_of(shapes::torus_cloud(8000, 0));
+    Network network = network_of(shapes::torus_grid(20, 10), target);
+    FitOptions options;
+    options.target_vertices = 4;
+    fit(network, target, options);
+    EXPECT_GT(network.vertex_count(), 4);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.genus(), 1);
+}
+
+// The walk looks at few faces, the tree is exact: on a smooth surface both find the same.
+TEST(Fit, WalksToTheFaceThatTheTreeFinds) {
+    const TargetSpace target = target_of(shapes::torus_cloud(8000, 0.01));
+    const Network network = network_of(shapes::torus_grid(40, 20), target, 1, 0.002);
+    const Surface surface(network);
+    const FaceTree tree(surface);
+    int differ = 0;
+    for (const vcg::Point3f& p : target.positions()) {
+        const Hit exact = tree.nearest(vec(p));
+        const Place there = place_of(surface, exact);
+        EXPECT_EQ(surface.face_of[index(surface.first_face[index(there.vertex)] + there.turn)], exact.face);
+        for (const Place start : {there, Place{there.vertex, 99}, Place{network.ring(there.vertex)[0], 1}}) {
+            const Hit found = walk_to_nearest(surface, vec(p), start);
+            EXPECT_GE(found.foot.squared_distance, exact.foot.squared_distance);
+            differ += found.foot.squared_distance > exact.foot.squared_distance ? 1 : 0;
+        }
+    }
+    EXPECT_EQ(differ, 0);
+}
+
+TEST(Fit, StopsWhenAskedTo) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(5000));
+    Network network = network_of(shapes::icosphere(2), target, 1.1);
+    const Network before = network;
+    Stop stop;
+    const FitReport report = fit_to_points(network, target, {}, 1, 1, stop);
+    EXPECT_EQ(report.rounds, 0);
+    EXPECT_TRUE(same_bytes(before, network));
+}
+
+// Before anything is smoothed where the surface cuts itself, or taken out.
+TEST(Fit, StoppedAtOnceItLeavesATangledMeshAsItWas) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(5000));
+    Network network = network_of(shapes::icosphere(3), target, 1.1, 0.05);
+    Team team(1);
+    ASSERT_FALSE(crossings_of(Surface(network), team).empty());
+    const Network before = network;
+    FitOptions options;
+    options.target_vertices = 300;
+    Stop stop;
+    EXPECT_FALSE(fit_to_points(network, target, options, 1, 1, stop).improved);
+    EXPECT_TRUE(same_bytes(before, network));
+}
+
+TEST(Fit, ReportsHowMuchOfItIsDone) {
+    class Watch : public Progress {
+    public:
+        bool operator()(double fraction, const char* text) override {
+            EXPECT_GE(fraction, last) << text;
+            EXPECT_LE(fraction, 1);
+            standing_still += fraction == last ? 1 : 0;
+            last = fraction;
+            return true;
+        }
+        double last = -1;
+        int standing_still = 0;
+    };
+    const TargetSpace target = target_of(shapes::sphere_cloud(5000));
+    Network network = network_of(shapes::icosphere(3), target, 1.1, 0.05);
+    FitOptions options;
+    options.target_vertices = 100;
+    Watch progress;
+    fit_to_points(network, target, options, 1, 1, progress);
+    EXPECT_EQ(network.vertex_count(), 100);
+    EXPECT_LT(progress.standing_still, 2) << "the first round of the reduction takes none out";
+    EXPECT_GT(progress.last, 0.6);
+}
+
+}  // namespace
+}  // namespace neuralmesh

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The feature statistic on shapes whose creases are known.
+#include "vcg_core/learning/crease_measure.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/unit/support/referee.h"
+#include "tests/unit/support/shapes.h"
+#include "vcg_core/learning/learner.h"
+
+namespace neuralmesh {
+namespace {
+
+/// A network that has learned a cloud, with its feature values.
+struct Learned {
+    Learned(const shapes::Cloud& cloud, int vertices)
+        : target(TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; })) {
+        settings.target_vertices = vertices;
+        settings.utility_counter = kSignalCounter;
+        settings.settling_signals_per_vertex = 0;
+        shapes::Shape start = shapes::icosphere(1);
+        for (vcg::Point3d& p : start.positions) p *= 0.3;
+        Learner learner(target, settings, referee::network_of(start));
+        NoProgress progress;
+        learner.run(100, progress);
+        FeatureStatistic statistic;
+        Random random(7);
+        for (int sweep = 0; sweep < 30; ++sweep) {
+            for (int i = 0; i < vertices; ++i) learner.basic_step(target.sample(random));
+            if (sweep >= 6) statistic.observe(learner.network());
+        }
+        network = learner.network();
+        values = statistic.values(network);
+    }
+
+    double mean_edge() const {
+        double sum = 0;
+        int count = 0;
+        for (VertexId v = 0; v < network.slot_count(); ++v) {
+            if (!network.alive(v)) continue;
+            const Ring& ring = network.ring(v);
+            for (int i = 0; i < ring.valence; ++i, ++count)
+                sum += static_cast<double>((network.position(ring[i]) - network.position(v)).Norm());
+        }
+        return sum / count;
+    }
+
+    TargetSpace target;
+    Settings settings;
+    Network network;
+    std::vector<float> values;
+};
+
+/// Distance of \p p from the nearest edge of the cube, whose edges have length 1 / sqrt(3) in the core's
+/// frame.
+double distance_from_cube_edge(const vcg::Point3f& p, double half) {
+    double off[3];
+    for (int k = 0; k < 3; ++k) off[k] = half - std::abs(static_cast<double>(p[k]));
+    std::sort(off, off + 3, [](double a, double b) { return std::abs(a) < std::abs(b); });
+    return std::sqrt(off[0] * off[0] + off[1] * off[1]);
+}
+
+struct Hits {
+    int edges = 0, found = 0, faces = 0, wrong = 0;
+};
+
+/// Vertices within 0.4 edge lengths of a cube's edge are to be above 1, those beyond 1.2 below; between lies
+/// the transition.
+Hits hits_on_cube(const Learned& run, double half) {
+    Hits hits;
+    const double edge = run.mean_edge();
+    for (VertexId v = 0; v < run.network.slot_count(); ++v) {
+        if (!run.network.alive(v)) continue;
+        const double d = distance_from_cube_edge(run.network.position(v), half) / edge;
+        const bool above = run.values[static_cast<std::size_t>(v)] > 1;
+        if (d < 0.4) {
+            ++hits.edges;
+            hits.found += above;
+        } else if (d > 1.2) {
+            ++hits.faces;
+            hits.wrong += above;
+        }
+    }
+    return hits;
+}
+
+TEST(FeatureStatistic, FindsTheEdgesOfACube) {
+    const Learned run(shapes::box_cloud(40000), 1500);
+    const Hits hits = hits_on_cube(run, 0.5 / std::sqrt(3.0));
+    ASSERT_GT(hits.edges, 80);
+    ASSERT_GT(hits.faces, 500);
+    EXPECT_GT(hits.found, 0.95 * hits.edges);
+    EXPECT_EQ(hits.wrong, 0);
+}
+
+/// Noise with a standard deviation of a third of the edges of the mesh, where their normals alone say little.
+TEST(FeatureStatistic, FindsTheEdgesOfANoisyCube) {
+    const Learned run(shapes::box_cloud(40000, {1, 1, 1}, 0.055), 1500);
+    const Hits hits = hits_on_cube(run, 0.5 / run.target.frame().diagonal);
+    ASSERT_GT(hits.edges, 80);
+    ASSERT_GT(hits.faces, 500);
+    EXPECT_GT(hits.found, 0.85 * hits.edges);
+    EXPECT_LT(hits.wrong, 0.02 * hits.faces);
+}
+
+TEST(FeatureStatistic, FindsNothingOnASphere) {
+    for (const double noise : {0.0, 0.02}) {
+        const Learned run(shapes::sphere_cloud(40000, noise), 1500);
+        EXPECT_LT(*std::max_element(run.values.begin(), run.values.end()), 0.9F) << noise;
+    }
+}
+
+TEST(FeatureStatistic, FindsNothingOnAPlane) {
+    const Network network = referee::network_of(shapes::grid(12, 9));
+    FeatureStatistic statistic;
+    statistic.observe(network);
+    for (const float value : statistic.values(network)) EXPECT_LT(value, 1e-3F);
+}
+
+TEST(FeatureStatistic, IsIndifferentToScale) {
+    const Learned run(shapes::box_cloud(20000), 500);
+    Network large = run.network;
+    for (VertexId v = 0; v < large.slot_count(); ++v)
+        if (large.alive(v)) large.set_position(v, run.network.position(v) * 8);
+    FeatureStatistic of_small;
+    FeatureStatistic of_large;
+    of_small.observe(run.network);
+    of_large.observe(large);
+    EXPECT_EQ(of_small.moments(), 1);
+    const std::vector<float> a = of_small.values(run.network);
+    const std::vector<float> b = of_large.values(large);
+    EXPECT_GT(*std::max_element(a.begin(), a.end()), 1.0F);
+    for (std::size_t v = 0; v < a.size(); ++v) EXPECT_NEAR(a[v], b[v], 1e-4F);
+}
+
+/// Without a moment the present one counts; a shown vertex takes its planes from its origin, its place from
+/// itself.
+TEST(FeatureStatistic, JudgesAShownVertexWhereItLies) {
+    const Learned run(shapes::box_cloud(40000), 1500);
+    const FeatureStatistic none;
+    FeatureStatistic one;
+    one.observe(run.network);
+    EXPECT_EQ(none.values(run.network), one.values(run.network));
+
+    const double half = 0.5 / std::sqrt(3.0);
+    std::vector<VertexId> origin(static_cast<std::size_t>(run.network.slot_count()));
+    VertexId nearest = -1;
+    for (VertexId v = 0; v < run.network.slot_count(); ++v) {
+        origin[static_cast<std::size_t>(v)] = v;
+        const vcg::Point3f p = run.network.position(v);
+        // In the middle of an edge along x.
+        if (std::abs(p[0]) > 0.1F || p[1] < 0 || p[2] < 0) continue;
+        if (nearest < 0 ||
+            distance_from_cube_edge(p, half) < distance_from_cube_edge(run.network.position(nearest), half))
+            nearest = v;
+    }
+    ASSERT_GE(nearest, 0);
+    Network moved = run.network;
+    const vcg::Point3f p = moved.position(nearest);
+    const auto edge = static_cast<float>(run.mean_edge());
+    moved.set_position(nearest, p - vcg::Point3f(0, edge, 0));
+    const float there = one.values(run.network)[static_cast<std::size_t>(nearest)];
+    const float aside = one.values(run.network, moved, origin)[static_cast<std::size_t>(nearest)];
+    EXPECT_GT(there, 1.0F);
+    EXPECT_LT(aside, 0.5F * there);
+}
+
+}  // namespace
+}  // namespace neuralmesh

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The learner against the reference, step by step, and its promises over whole runs.
+#include "vcg_core/learning/learner.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "tests/unit/reference/reference_learner.h"
+#include "tests/unit/support/referee.h"
+#include "tests/unit/support/shapes.h"
+
+namespace neuralmesh {
+namespace {
+
+TargetSpace target_of(const shapes::Cloud& cloud) {
+    return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+}
+
+Network start_of(shapes::Shape shape, double scale) {
+    for (vcg::Point3d& p : shape.positions) p *= scale;
+    return referee::network_of(shape);
+}
+
+/// Structure equal, positions within \p tolerance, wins equal, counters within a part in a hundred: delta is
+/// a difference of nearly equal normals, so that float leaves it few digits.
+void expect_alike(const Learner& learner, const reference::ReferenceLearner& expected, float tolerance) {
+    ASSERT_EQ(learner.network().faces(), expected.network().faces());
+    ASSERT_EQ(learner.network().slot_count(), expected.network().slot_count());
+    for (VertexId v = 0; v < learner.network().slot_count(); ++v) {
+        if (!learner.network().alive(v)) continue;
+        const auto i = static_cast<std::size_t>(v);
+        ASSERT_LT((learner.network().position(v) - expected.network().position(v)).Norm(), tolerance) << v;
+        ASSERT_EQ(learner.utility_counters().wins(v), expected.wins[i]) << v;
+        ASSERT_NEAR(learner.utility_counters().value(v), expected.utility[i],
+                    0.01 * expected.utility[i] + 1e-3)
+            << v;
+        ASSERT_NEAR(static_cast<double>(learner.feature_counters().value(v)), expected.feature[i],
+                    0.01 * expected.feature[i] + 1e-3)
+            << v;
+    }
+}
+
+/// Runs are short, and short of the moment when a crumpled mesh (its star nearly without area) makes float
+/// and double part: from there both learn, but not the same mesh.
+void compare_runs(const shapes::Cloud& cloud, const Network& start, Settings settings, int signals,
+                  int batch = 1) {
+    settings.target_vertices = 100000;
+    const TargetSpace target = target_of(cloud);
+    Learner learner(target, settings, start);
+    reference::ReferenceLearner expected(start, settings);
+    Random random(3);
+    int last_collapse = 0;
+    int at_collapse = start.vertex_count();
+    for (int i = 0; i < signals;) {
+        std::vector<vcg::Point3f> drawn;
+        while (static_cast<int>(drawn.size()) < batch) drawn.push_back(target.sample(random));
+        learner.basic_steps(drawn.data(), batch);
+        expected.basic_steps(drawn);
+        for (int step = 0; step < batch; ++step) {
+            learner.learn_counters(step);
+            expected.learn_counters(static_cast<std::size_t>(step));
+            if (++i % settings.signals_per_split != 0) continue;
+            ASSERT_EQ(learner.vertex_split(), expected.vertex_split()) << "at signal " << i;
+            ASSERT_EQ(learner.network().faces(), expected.network().faces())
+                << "after the split at signal " << i;
+        }
+        if (i - last_collapse >= at_collapse * settings.signals_per_collapse) {
+            ASSERT_EQ(learner.half_edge_collapse(), expected.half_edge_collapse()) << "at signal " << i;
+            ASSERT_EQ(learner.network().faces(), expected.network().faces())
+                << "after the collapse at signal " << i;
+            last_collapse = i;
+            at_collapse = learner.network().vertex_count();
+        }
+        if (i % 100 < batch) expect_alike(learner, expected, 2e-5F);
+        if (testing::Test::HasFatalFailure()) FAIL() << "at signal " << i;
+    }
+    EXPECT_EQ(learner.signals(), signals);
+    EXPECT_GT(learner.splits(), 10);
+    EXPECT_EQ(learner.network().validate(), "");
+}
+
+TEST(Learner, IsTheReferenceOnASphere) {
+    Settings settings;
+    settings.signals_per_split = 40;
+    compare_runs(shapes::sphere_cloud(2000), start_of(shapes::icosphere(1), 0.25), settings, 4000);
+}
+
+TEST(Learner, IsTheReferenceOnATorusWithTheSignalCounter) {
+    Settings settings;
+    settings.utility_counter = kSignalCounter;
+    settings.signals_per_split = 40;
+    compare_runs(shapes::torus_cloud(2000, 0.02), start_of(shapes::torus_grid(10, 6), 0.3), settings, 4000);
+}
+
+TEST(Learner, IsTheReferenceByTheLetterOfThePaper) {
+    Settings settings;
+    settings.min_wins_per_split = 0;
+    settings.signals_per_split = 30;
+    settings.signals_per_collapse = 4;
+    compare_runs(shapes::box_cloud(2000), start_of(shapes::icosphere(1), 0.25), settings, 1200);
+}
+
+TEST(Learner, IsTheReferenceFromATetrahedron) {
+    Settings settings;
+    settings.utility_counter = kSignalCounter;
+    compare_runs(shapes::sphere_cloud(2000, 0.01), start_of(shapes::tetrahedron(), 0.1), settings, 1500);
+}
+
+TEST(Learner, IsTheReferenceInBatches) {
+    Settings settings;
+    settings.signals_per_split = 40;
+    settings.min_wins_per_split = 5;
+    for (const int threads : {1, 3}) {
+        settings.threads = threads;
+        compare_runs(shapes::sphere_cloud(2000), start_of(shapes::icosphere(1), 0.25), settings, 2600, 13);
+        compare_runs(shapes::torus_cloud(2000, 0.02), start_of(shapes::torus_grid(20, 12), 0.3), settings,
+                     1600, 160);
+    }
+}
+
+/// With regions, and with signals drawn by one thread while the other learns the counters.
+TEST(Learner, SettlesAlikeOnOneThreadAndOnTwo) {
+    const TargetSpace target = target_of(shapes::torus_cloud(5000));
+    NoProgress progress;
+    Settings settings;
+    settings.threads = 1;
+    Learner alone(target, settings, start_of(shapes::torus_grid(70, 50), 0.3));
+    ASSERT_TRUE(alone.settle(1, progress));
+    settings.threads = 2;
+    Learner together(target, settings, start_of(shapes::torus_grid(70, 50), 0.3));
+    ASSERT_TRUE(together.settle(1, progress));
+    EXPECT_EQ(together.signals(), alone.signals());
+    for (VertexId v = 0; v < alone.network().slot_count(); ++v) {
+        ASSERT_EQ(together.network().position(v), alone.network().position(v)) << v;
+        ASSERT_EQ(together.feature_counters().value(v), alone.feature_counters().value(v)) << v;
+        ASSERT_EQ(together.utility_counters().value(v), alone.utility_counters().value(v)) << v;
+    }
+}
+
+TEST(Learner, TakesSignalsOneByOneToTheLetter) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(100));
+    Settings settings;
+    const Network start = start_of(shapes::icosphere(3), 0.25);
+    EXPECT_EQ(Learner(target, settings, start).batch_size(), 642 / Learner::kVerticesPerSignal);
+    settings.min_wins_per_split = 0;
+    EXPECT_EQ(Learner(target, settings, start).batch_size(), 1);
+}
+
+TEST(Learner, RefusesAStartLargerThanTheTarget) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(100));
+    Settings settings;
+    settings.target_vertices = 41;
+    EXPECT_THROW(Learner(target, settings, start_of(shapes::icosphere(1), 0.2)), SettingError);
+    settings.target_vertices = 42;
+    EXPECT_NO_THROW(Learner(target, settings, start_of(shapes::icosphere(1), 0.2)));
+}
+
+TEST(Learner, StaysSoundThroughEveryStepOfARun) {
+    for (const int min_wins : {0, 30}) {
+        for (const shapes::Shape& shape : {shapes::tetrahedron(), shapes::torus_grid(8, 5)}) {
+            Settings settings;
+            settings.min_wins_per_split = min_wins;
+            settings.signals_per_split = 20;
+            settings.signals_per_collapse = 3;
+            const TargetSpace target = target_of(shapes::torus_cloud(3000, 0.01));
+            const Network start = start_of(shape, 0.2);
+            Learner learner(target, settings, start);
+            Random random(4);
+            for (int i = 1; i <= 12000; ++i) {
+                learner.basic_step(target.sample(random));
+                if (i % 20 == 0) learner.vertex_split();
+                if (i % 300 == 0) learner.half_edge_collapse();
+                if (i % 20 != 0) continue;
+                ASSERT_EQ(learner.network().validate(), "") << i;
+                ASSERT_EQ(learner.network().genus(), start.genus()) << i;
+            }
+            EXPECT_GT(learner.collapses(), 0);
+        }
+    }
+}
+
+TEST(Learner, ReachesItsTargetOnAnOpenMeshToo) {
+    Settings settings;
+    settings.target_vertices = 300;
+    const TargetSpace target = target_of(shapes::plane_cloud(3000));
+    NoProgress progress;
+    for (const shapes::Shape& shape : {shapes::grid(2, 2), shapes::grid(5, 5), shapes::tube(5, 3)}) {
+        const Network start = start_of(shape, 0.5);
+        Learner learner(target, settings, start);
+        EXPECT_EQ(learner.run(0, progress), StopReason::target_reached);
+        EXPECT_EQ(learner.network().vertex_count(), 300);
+        EXPECT_EQ(learner.network().validate(), "");
+        EXPECT_EQ(learner.network().boundary_loop_count(), start.boundary_loop_count());
+    }
+}
+
+/// Notes the fractions it is told of.
+class Fractions : public Progress {
+public:
+    bool operator()(double fraction, const char* text) override {
+        EXPECT_GE(fraction, last);
+        EXPECT_LE(fraction, 1);
+        if (std::string(text).rfind("Settling", 0) == 0) {
+            ++settling;
+            standing_still += fraction == last ? 1 : 0;
+        }
+        largest_step = std::max(largest_step, fraction - last);
+        last = fraction;
+        return true;
+    }
+    double last = 0;
+    double largest_step = 0;
+    int settling = 0;
+    int standing_still = 0;  ///< while settling
+};
+
+TEST(Learner, ReportsHowMuchOfTheRunIsDone) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(2000));
+    Settings settings;
+    settings.target_vertices = 900;
+    Learner learner(target, settings, start_of(shapes::icosphere(3), 0.25));
+    Fractions progress;
+    EXPECT_EQ(learner.run(100, progress), StopReason::target_reached);
+    EXPECT_GT(progress.settling, 100) << "at the start mesh and at the end";
+    EXPECT_EQ(progress.standing_still, 0);
+    EXPECT_LT(progress.largest_step, 0.1);
+    EXPECT_GT(progress.last, 0.98);
+}
+
+TEST(Learner, ObservesNothingOfAStartThatIsToGrow) {
+    const TargetSpace target = target_of(shapes::box_cloud(2000));
+    Settings settings;
+    settings.feature_measure = kCreaseMeasure;
+    settings.target_vertices = 643;
+    settings.settling_signals_per_vertex = 0;
+    Learner learner(target, settings, start_of(shapes::icosphere(3), 0.25));
+    NoProgress progress;
+    ASSERT_TRUE(learner.settle(1, progress, false));
+    EXPECT_EQ(learner.feature_statistic().moments(), 0);
+    ASSERT_TRUE(learner.settle(1, progress));
+    EXPECT_GT(learner.feature_statistic().moments(), 0);
+    EXPECT_EQ(learner.run(1, progress), StopReason::target_reached);
+    EXPECT_EQ(learner.feature_statistic().moments(), 0);
+}
+
+}  // namespace
+}  // namespace neuralmesh

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Split, collapse and flip against a referee that edits plain lists of faces: every single operation on small
+// meshes, and random sequences of many.
+#include "vcg_core/mesh/network.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tests/unit/support/network_starts.h"
+#include "tests/unit/support/referee.h"
+#include "tests/unit/support/shapes.h"
+
+namespace neuralmesh {
+namespace {
+
+using network_starts::expect_sound;
+using network_starts::random_operation;
+using network_starts::Start;
+using network_starts::starts;
+using referee::canonical;
+using referee::Census;
+using referee::census;
+using referee::enclosed_volume;
+using referee::network_of;
+
+bool acceptable(const Census& now, const Census& before) {
+    return now.breach.empty() && now.same_topology(before) && now.greatest_valence() <= Ring::kMaxValence;
+}
+
+/// The faces after a split, by the words of the contract: \p u takes over part of the fan of \p v.
+std::vector<Triangle> split_by_hand(const Network& network, VertexId v, int first, int count, VertexId u) {
+    const Ring& ring = network.ring(v);
+    const int k = ring.valence;
+    std::vector<Triangle> faces = canonical(network.faces());
+    for (int i = first; i < first + count - 1; ++i) {
+        const Triangle old = canonical({{v, ring[i % k], ring[(i + 1) % k]}}).front();
+        *std::find(faces.begin(), faces.end(), old) = {u, ring[i % k], ring[(i + 1) % k]};
+    }
+    const VertexId begin = ring[first];
+    const VertexId end = ring[(first + count - 1) % k];
+    const bool from_boundary = ring.open != 0 && first == 0;
+    const bool to_boundary = ring.open != 0 && !from_boundary && first + count == k;
+    if (!from_boundary) faces.push_back({u, v, begin});
+    if (!to_boundary) faces.push_back({u, end, v});
+    return canonical(faces);
+}
+
+/// The faces after a half-edge collapse.
+std::vector<Triangle> collapse_by_hand(const Network& network, VertexId gone, VertexId kept) {
+    std::vector<Triangle> faces;
+    for (Triangle f : network.faces()) {
+        std::replace(f.begin(), f.end(), gone, kept);
+        if (f[0] != f[1] && f[1] != f[2] && f[2] != f[0]) faces.push_back(f);
+    }
+    return canonical(faces);
+}
+
+/// The faces after a flip of an inner edge; \p c follows b around a.
+std::vector<Triangle> flip_by_hand(const Network& network, VertexId a, VertexId b, VertexId c, VertexId d) {
+    std::vector<Triangle> faces = canonical(network.faces());
+    *std::find(faces.begin(), faces.end(), canonical({{a, b, c}}).front()) = {c, a, d};
+    *std::find(faces.begin(), faces.end(), canonical({{a, d, b}}).front()) = {d, b, c};
+    return canonical(faces);
+}
+
+bool on_boundary_edge(const Network& network, VertexId a, VertexId b) {
+    const Ring& ring = network.ring(a);
+    return ring.open != 0 && (ring[0] == b || ring[ring.valence - 1] == b);
+}
+
+TEST(Network, EverySplitDoesWhatItSaysOrRefuses) {
+    int done = 0;
+    int refused = 0;
+    for (const Start& start : starts()) {
+        SCOPED_TRACE(start.name);
+        const Network before = network_of(start.shape);
+        const Census topology = census(before.faces());
+        for (VertexId v = 0; v < before.slot_count(); ++v) {
+            const int k = before.ring(v).valence;
+            for (int first = -1; first <= k; ++first) {
+                for (int count = -1; count <= k + 1; ++count) {
+                    SCOPED_TRACE(testing::Message() << "v " << v << " of valence " << k << ", first " << first
+                                                    << ", count " << count);
+                    const bool in_range = first >= 0 && first < k && count >= 1 && count <= k &&
+                                          (before.ring(v).open == 0 || first + count <= k);
+                    const std::vector<Triangle> expected =
+                        in_range ? split_by_hand(before, v, first, count, before.slot_count())
+                                 : std::vector<Triangle>();
+                    const bool legal = in_range && acceptable(census(expected), topology) &&
+                                       census(expected).vertices == before.vertex_count() + 1;
+                    ASSERT_EQ(before.can_split(v, first, count), legal);
+                    Network network = before;
+                    if (!legal) {
+                        ++refused;
+                        EXPECT_THROW(network.split(v, first, count, {0, 0, 0}), TopologyError);
+                        EXPECT_EQ(network.faces(), before.faces());
+                        expect_sound(network, topology);
+                        continue;
+                    }
+                    ++done;
+                    const VertexId u = network.split(v, first, count, {0.5F, 0.25F, 0.125F});
+                    EXPECT_EQ(u, before.slot_count());
+                    EXPECT_EQ(network.position(u), vcg::Point3f(0.5F, 0.25F, 0.125F));
+                    EXPECT_EQ(canonical(network.faces()), expected);
+                    expect_sound(network, topology);
+                    ASSERT_TRUE(network.can_collapse(u, v));
+                    network.collapse(u, v);
+                    EXPECT_EQ(canonical(network.faces()), canonical(before.faces()));
+                    expect_sound(network, topology);
+                    if (HasFatalFailure()) return;
+                }
+            }
+        }
+    }
+    EXPECT_GT(done, 2000);
+    EXPECT_GT(refused, 1000);
+}
+
+TEST(Network, EveryCollapseKeepsTheTopologyOrRefuses) {
+    int done = 0;
+    int refused = 0;
+    for (const Start& start : starts()) {
+        SCOPED_TRACE(start.name);
+        const Network before = network_of(start.shape);
+        const Census topology = census(before.faces());
+        for (VertexId gone = 0; gone < before.slot_count(); ++gone) {
+            for (VertexId kept = 0; kept < before.slot_count(); ++kept) {
+                SCOPED_TRACE(testing::Message() << gone << " into " << kept);
+                bool legal = gone != kept && before.adjacent(gone, kept) &&
+                             (before.ring(gone).open == 0 || on_boundary_edge(before, gone, kept));
+                const std::vector<Triangle> expected = collapse_by_hand(before, gone, kept);
+                legal = legal && acceptable(census(expected), topology) &&
+                        census(expected).vertices == before.vertex_count() - 1;
+                ASSERT_EQ(before.can_collapse(gone, kept), legal);
+                Network network = before;
+                if (!legal) {
+                    ++refused;
+                    EXPECT_THROW(network.collapse(gone, kept), TopologyError);
+                    EXPECT_EQ(network.faces(), before.faces());
+                    continue;
+                }
+                ++done;
+                network.collapse(gone, kept);
+                EXPECT_FALSE(network.alive(gone));
+                EXPECT_EQ(network.position(kept), before.position(kept));
+                EXPECT_EQ(canonical(network.faces()), expected);
+                expect_sound(network, topology);
+                if (HasFatalFailure()) return;
+            }
+        }
+    }
+    EXPECT_GT(done, 300);
+    EXPECT_GT(refused, 1000);
+}
+
+TEST(Network, EveryFlipSwapsOneEdgeOrRefuses) {
+    int done = 0;
+    int refused = 0;
+    for (const Start& start : starts()) {
+        SCOPED_TRACE(start.name);
+        const Network before = network_of(start.shape);
+        const Census topology = census(before.faces());
+        for (VertexId a = 0; a < before.slot_count(); ++a) {
+            for (VertexId b = 0; b < before.slot_count(); ++b) {
+                SCOPED_TRACE(testing::Message() << "edge " << a << ", " << b);
+                Network network = before;
+                if (a == b || !before.adjacent(a, b) || on_boundary_edge(before, a, b)) {
+                    ASSERT_FALSE(before.can_flip(a, b));
+                    EXPECT_THROW(network.flip(a, b), TopologyError);
+                    continue;
+                }
+                const int i = before.ring(a).find(b);
+                const VertexId c = before.ring(a).next(i);
+                const VertexId d = before.ring(a).previous(i);
+                const std::vector<Triangle> expected = flip_by_hand(before, a, b, c, d);
+                const bool legal = !before.adjacent(c, d) && acceptable(census(expected), topology);
+                ASSERT_EQ(before.can_flip(a, b), legal);
+                if (!legal) {
+                    ++refused;
+                    EXPECT_THROW(network.flip(a, b), TopologyError);
+                    EXPECT_EQ(network.faces(), before.faces());
+                    continue;
+                }
+                ++done;
+                network.flip(a, b);
+                EXPECT_EQ(canonical(network.faces()), expected);
+                expect_sound(network, topology);
+                ASSERT_TRUE(network.can_flip(c, d));
+                network.flip(c, d);
+                EXPECT_EQ(canonical(network.faces()), canonical(before.faces()));
+                if (HasFatalFailure()) return;
+            }
+        }
+    }
+    EXPECT_GT(done, 300);
+    EXPECT_GT(refused, 30);
+}
+
+TEST(Network, OperationsOnASphereKeepItOutwards) {
+    const Network before = network_of(shapes::icosphere(2));
+    const double volume = enclosed_volume(before);
+    ASSERT_GT(volume, 0);
+    for (VertexId v = 0; v < before.slot_count(); ++v) {
+        for (int i = 0; i < before.ring(v).valence; ++i) {
+            Network split = before;
+            split.split(v, i, 3, (before.position(v) + before.position(before.ring(v).next(i))) / 2);
+            EXPECT_NEAR(enclosed_volume(split), volume, 0.05 * volume);
+            Network collapsed = before;
+            collapsed.collapse(v, before.ring(v)[i]);
+            EXPECT_NEAR(enclosed_volume(collapsed), volume, 0.05 * volume);
+            Network flipped = before;
+            flipped.flip(v, before.ring(v)[i]);
+            EXPECT_NEAR(enclosed_volume(flipped), volume, 0.05 * volume);
+        }
+    }
+}
+
+TEST(Network, StaysAManifoldOverTenThousandRandomOperations) {
+    for (const Start& start : starts()) {
+        SCOPED_TRACE(start.name);
+        for (const int most : {20, 150}) {
+            Network network = network_of(start.shape);
+            const Census topology = census(network.faces());
+            Random random(static_cast<std::uint64_t>(most));
+            for (int step = 0; step < 10000; ++step) {
+                random_operation(network, random, 1, most);
+                ASSERT_EQ(network.validate(), "") << "at step " << step;
+                ASSERT_EQ(network.euler_characteristic(), start.euler) << "at step " << step;
+                ASSERT_EQ(network.boundary_loop_count(), start.loops) << "at step " << step;
+                ASSERT_EQ(network.component_count(), start.components) << "at step " << step;
+                if (step % 200 == 0) expect_sound(network, topology);
+                if (HasFatalFailure()) return;
+            }
+            EXPECT_EQ(network.genus(), start.genus);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace neuralmesh

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// What a network is built from, what it refuses, and how its vertices are numbered.
+#include "vcg_core/mesh/network.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/unit/support/network_starts.h"
+#include "tests/unit/support/referee.h"
+#include "tests/unit/support/shapes.h"
+
+namespace neuralmesh {
+namespace {
+
+using network_starts::expect_sound;
+using network_starts::random_operation;
+using network_starts::Start;
+using network_starts::starts;
+using network_starts::together;
+using referee::canonical;
+using referee::census;
+using referee::network_of;
+using shapes::Shape;
+
+TEST(Network, CountsWhatItIsBuiltFrom) {
+    for (const Start& start : starts()) {
+        SCOPED_TRACE(start.name);
+        const Network network = network_of(start.shape);
+        EXPECT_EQ(canonical(network.faces()), canonical(start.shape.faces));
+        EXPECT_EQ(network.vertex_count(), static_cast<int>(start.shape.positions.size()));
+        EXPECT_EQ(network.euler_characteristic(), start.euler);
+        EXPECT_EQ(network.boundary_loop_count(), start.loops);
+        EXPECT_EQ(network.component_count(), start.components);
+        EXPECT_EQ(network.genus(), start.genus);
+        expect_sound(network, census(start.shape.faces));
+    }
+}
+
+TEST(Network, RingsRunCounterClockwise) {
+    const Network network = network_of(shapes::icosphere(2));
+    for (VertexId v = 0; v < network.slot_count(); ++v) {
+        const Ring& ring = network.ring(v);
+        const vcg::Point3f p = network.position(v);
+        for (int i = 0; i < ring.valence; ++i) {
+            const vcg::Point3f n = (network.position(ring[i]) - p) ^ (network.position(ring.next(i)) - p);
+            EXPECT_GT(n * p, 0);
+            EXPECT_EQ(ring.previous(ring.find(ring.next(i))), ring[i]);
+        }
+    }
+}
+
+TEST(Network, OpenRingsRunFromBoundaryToBoundary) {
+    const Network network = network_of(shapes::grid(4, 4));
+    for (VertexId v = 0; v < network.slot_count(); ++v) {
+        const Ring& ring = network.ring(v);
+        const vcg::Point3f p = network.position(v);
+        const bool at_rim = std::max(std::abs(p[0]), std::abs(p[1])) > 0.49F;
+        ASSERT_EQ(ring.open != 0, at_rim);
+        if (!at_rim) continue;
+        EXPECT_EQ(ring.face_count(), ring.valence - 1);
+        EXPECT_EQ(network.ring(ring[0]).open, 1);
+        EXPECT_EQ(network.ring(ring[ring.valence - 1]).open, 1);
+    }
+}
+
+TEST(Network, ANewVertexIsOfItsParentsRegion) {
+    Network network = referee::network_of(shapes::torus_grid(6, 5));
+    network.set_region(7, 3);
+    EXPECT_EQ(network.ring(network.split(7, 0, 4, network.position(7))).region, 3);
+    EXPECT_EQ(network.ring(network.split(8, 0, 4, network.position(8))).region, 0);
+}
+
+TEST(Network, UsesTheIdsOfRemovedVerticesAgain) {
+    Network network = network_of(shapes::icosphere(1));
+    const int slots = network.slot_count();
+    network.collapse(7, network.ring(7)[0]);
+    EXPECT_FALSE(network.alive(7));
+    EXPECT_EQ(network.vertex_count(), slots - 1);
+    EXPECT_EQ(network.split(20, 0, 3, {0, 0, 0}), 7);
+    EXPECT_TRUE(network.alive(7));
+    EXPECT_EQ(network.slot_count(), slots);
+    EXPECT_EQ(network.split(20, 0, 3, {0, 0, 0}), slots);
+}
+
+TEST(Network, RenumberedAlongACurveIsTheSameMesh) {
+    Network network = referee::network_of(shapes::torus_grid(30, 20));
+    Random random(5);
+    std::vector<VertexId> shuffled = network.along_curve();
+    for (std::size_t i = shuffled.size(); i > 1; --i)
+        std::swap(shuffled[i - 1], shuffled[random.below(static_cast<std::uint32_t>(i))]);
+    network.renumber(shuffled);
+    for (int i = 0; i < 50; ++i)  // and again free slots
+        if (network.alive(i) && network.can_collapse(i, network.ring(i)[0]))
+            network.collapse(i, network.ring(i)[0]);
+    const Network before = network;
+    const std::vector<VertexId> order = network.along_curve();
+    ASSERT_EQ(static_cast<int>(order.size()), network.vertex_count());
+    const std::vector<VertexId> moved = network.renumber(order);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.slot_count(), before.vertex_count());
+    double length_before = 0;
+    double length = 0;
+    for (VertexId v = 0; v < before.slot_count(); ++v) {
+        const VertexId now = moved[static_cast<std::size_t>(v)];
+        ASSERT_EQ(now >= 0, before.alive(v));
+        if (now < 0) continue;
+        EXPECT_EQ(order[static_cast<std::size_t>(now)], v);
+        EXPECT_EQ(network.position(now), before.position(v));
+        ASSERT_EQ(network.ring(now).valence, before.ring(v).valence);
+        for (int i = 0; i < before.ring(v).valence; ++i)
+            EXPECT_EQ(network.ring(now)[i], moved[static_cast<std::size_t>(before.ring(v)[i])]);
+        if (v > 0 && before.alive(v - 1))
+            length_before += static_cast<double>((before.position(v) - before.position(v - 1)).Norm());
+        if (now > 0)
+            length += static_cast<double>((network.position(now) - network.position(now - 1)).Norm());
+    }
+    EXPECT_LT(4 * length, length_before);
+}
+
+TEST(Network, NewVerticesTakeTheFreeIdsNearTheirParents) {
+    Network network = referee::network_of(shapes::torus_grid(30, 20));
+    std::vector<VertexId> order;
+    for (const VertexId v : network.along_curve()) {
+        order.push_back(v);
+        if (order.size() % 5 == 4) order.push_back(-1);
+    }
+    const auto faces = network.face_count();
+    network.renumber(order);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.vertex_count(), 600);
+    EXPECT_EQ(network.face_count(), faces);
+    EXPECT_EQ(network.slot_count(), 750);
+    EXPECT_FALSE(network.alive(4));
+    for (const VertexId v : {2, 333, 747})
+        EXPECT_EQ(network.split(v, 0, 4, network.position(v)), v / 5 * 5 + 4);
+    EXPECT_EQ(network.slot_count(), 750);
+    EXPECT_EQ(network.validate(), "");
+}
+
+TEST(Network, CompactRenumbersAndChangesNothingElse) {
+    Network network = network_of(shapes::torus_grid(8, 6));
+    Random random(5);
+    for (int step = 0; step < 2000; ++step) random_operation(network, random, 10, 60);
+    for (int step = 0; step < 500; ++step) random_operation(network, random, 1, 1);
+    ASSERT_LT(network.vertex_count(), network.slot_count());
+    const Network before = network;
+    const std::vector<VertexId> moved = network.compact();
+
+    ASSERT_EQ(moved.size(), static_cast<std::size_t>(before.slot_count()));
+    EXPECT_EQ(network.slot_count(), before.vertex_count());
+    expect_sound(network, census(before.faces()));
+    VertexId next = 0;
+    for (VertexId v = 0; v < before.slot_count(); ++v) {
+        const VertexId now = moved[static_cast<std::size_t>(v)];
+        ASSERT_EQ(now, before.alive(v) ? next : -1);
+        if (now < 0) continue;
+        ++next;
+        EXPECT_EQ(network.position(now), before.position(v));
+    }
+    std::vector<Triangle> expected = before.faces();
+    for (Triangle& f : expected)
+        for (VertexId& v : f) v = moved[static_cast<std::size_t>(v)];
+    EXPECT_EQ(network.faces(), expected);
+    for (VertexId v = 0; v < network.slot_count(); ++v) {
+        if (!network.can_split(v, 0, 2)) continue;
+        EXPECT_EQ(network.split(v, 0, 2, {0, 0, 0}), before.vertex_count());
+        break;
+    }
+    EXPECT_EQ(network.validate(), "");
+}
+
+TEST(Network, ListsEachFaceOnceFromItsSmallestVertex) {
+    const std::vector<Triangle> faces = network_of(shapes::icosphere(1)).faces();
+    ASSERT_EQ(faces.size(), 80U);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        EXPECT_LT(faces[i][0], std::min(faces[i][1], faces[i][2]));
+        EXPECT_LE(faces[i == 0 ? 0 : i - 1][0], faces[i][0]);
+    }
+    EXPECT_EQ(canonical(faces).size(), std::set<Triangle>(faces.begin(), faces.end()).size());
+}
+
+void expect_refused(const Shape& shape, const char* why) {
+    EXPECT_THROW(network_of(shape), TopologyError) << why;
+}
+
+TEST(Network, RefusesWhatIsNoOrientedManifold) {
+    Shape s = shapes::tetrahedron();
+    std::swap(s.faces[0][0], s.faces[0][1]);
+    expect_refused(s, "one face turned over");
+
+    s = shapes::tetrahedron();
+    s.faces.push_back(s.faces[0]);
+    expect_refused(s, "a face twice");
+
+    s = shapes::grid(3, 3);
+    s.positions.emplace_back(0.0, 0.0, 1.0);
+    s.faces.push_back({0, 4, 9});
+    expect_refused(s, "three faces at an edge");
+
+    s = shapes::tetrahedron();
+    s.positions.emplace_back(3.0, 0.0, 0.0);
+    expect_refused(s, "a vertex without faces");
+
+    s = shapes::tetrahedron();
+    s.faces[0][0] = 4;
+    expect_refused(s, "a face naming a vertex that does not exist");
+    s.faces[0][0] = -1;
+    expect_refused(s, "a face naming a negative vertex");
+
+    s = shapes::tetrahedron();
+    s.faces[0][1] = s.faces[0][0];
+    expect_refused(s, "a face with a corner twice");
+
+    expect_refused(shapes::bipyramid(16), "a closed valence of 16");
+    expect_refused(shapes::fan(15), "an open valence of 16");
+    expect_refused(shapes::fan(40), "an open valence of 41");
+    expect_refused({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}}, "a closed valence of 2");
+
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        s = shapes::tetrahedron();
+        s.positions[2][1] = bad;
+        expect_refused(s, "a position that is not finite");
+    }
+}
+
+TEST(Network, RefusesTwoFansThatMeetInOneVertex) {
+    for (const Shape& part : {shapes::tetrahedron(), shapes::fan(3)}) {
+        Shape s = together(part, part, {5, 0, 0});
+        const auto twin = static_cast<VertexId>(part.positions.size());
+        for (Triangle& f : s.faces)
+            for (VertexId& v : f) {
+                if (v == twin) v = 0;
+                if (v > twin) --v;
+            }
+        s.positions.erase(s.positions.begin() + twin);
+        expect_refused(s, "a pinched vertex");
+    }
+}
+
+TEST(Network, ValidateNamesAPositionThatIsNotFinite) {
+    Network network = network_of(shapes::cube());
+    network.set_position(5, {0, std::numeric_limits<float>::quiet_NaN(), 0});
+    EXPECT_NE(network.validate().find("vertex 5"), std::string::npos);
+}
+
+TEST(Network, AnEmptyNetworkIsSound) {
+    const Network network;
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.vertex_count(), 0);
+    EXPECT_EQ(network.euler_characteristic(), 0);
+    EXPECT_TRUE(network.faces().empty());
+}
+
+}  // namespace
+}  // namespace neuralmesh

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The start mesh around clouds of known topology.
+#include "vcg_core/shell/shell.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "tests/unit/support/shell_shapes.h"
+#include "vcg_core/mesh/network.h"
+
+namespace neuralmesh {
+namespace {
+
+StartMesh shell(const std::vector<vcg::Point3d>& cloud, const ShellOptions& options = {}) {
+    const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+    Random random(1);
+    NoProgress progress;
+    return shell_of(target, options, random, progress);
+}
+
+StartMesh shell_of_samples(const shell_shapes::Shape& shape, std::size_t count, double noise = 0) {
+    Random random(7);
+    return shell(shell_shapes::sample(shape, count, random, noise));
+}
+
+double volume(const StartMesh& mesh) {
+    double six_volumes = 0;
+    for (const auto& [a, b, c] : mesh.faces) {
+        const auto p = [&](int i) {
+            return vcg::Point3d::Construct(mesh.positions[static_cast<std::size_t>(i)]);
+        };
+        six_volumes += p(a) * (p(b) ^ p(c));
+    }
+    return six_volumes / 6;
+}
+
+bool warns_of(const StartMesh& mesh, const std::string& word) {
+    return std::any_of(mesh.warnings.begin(), mesh.warnings.end(),
+                       [&](const std::string& w) { return w.find(word) != std::string::npos; });
+}
+
+/// All that is promised of every start mesh, whatever the cloud.
+void expect_sound(const StartMesh& mesh) {
+    const Network network(mesh.positions, mesh.faces);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.boundary_loop_count(), 0);
+    EXPECT_EQ(network.component_count(), mesh.components);
+    EXPECT_EQ(network.genus(), mesh.genus);
+    for (VertexId v = 0; v < network.vertex_count(); ++v) {
+        EXPECT_GE(network.ring(v).valence, 3);
+        EXPECT_LE(network.ring(v).valence, 12);
+    }
+    EXPECT_GT(volume(mesh), 0);
+}
+
+void expect_topology(const StartMesh& mesh, int components, int genus) {
+    expect_sound(mesh);
+    EXPECT_EQ(mesh.components, components);
+    EXPECT_EQ(mesh.genus, genus);
+    EXPECT_LE(mesh.positions.size(), 400U);
+}
+
+TEST(Shell, Sphere) {
+    for (const std::size_t count : {500U, 5000U, 50000U}) {
+        const StartMesh mesh = shell_of_samples(shell_shapes::sphere(1), count);
+        expect_topology(mesh, 1, 0);
+        EXPECT_GT(mesh.confidence, 0.9);
+        EXPECT_TRUE(mesh.warnings.empty());
+    }
+}
+
+TEST(Shell, Torus) {
+    const StartMesh mesh = shell_of_samples(shell_shapes::torus(1, 0.3), 20000);
+    expect_topology(mesh, 1, 1);
+    EXPECT_GT(mesh.confidence, 0.5);
+}
+
+TEST(Shell, TwoSpheresAreTwoComponents) {
+    shell_shapes::Shape both = shell_shapes::sphere(1);
+    shell_shapes::append(both, shell_shapes::sphere(1), {2.3, 0, 0});
+    expect_topology(shell_of_samples(both, 20000), 2, 0);
+}
+
+TEST(Shell, LinkedToriStayLinked) {
+    expect_topology(shell_of_samples(shell_shapes::chain(4, 1, 0.2, 1.3), 20000), 4, 4);
+}
+
+TEST(Shell, ThinWalledCupStaysOpen) {
+    const StartMesh mesh = shell_of_samples(shell_shapes::cup(1, 2, 0.06), 20000);
+    expect_topology(mesh, 1, 0);
+    // In a frame of diagonal 1 a filled cup has a volume of 0.151, and more at the shell's distance.
+    EXPECT_LT(volume(mesh), 0.15);
+}
+
+TEST(Shell, NoiseDoesNotMakeHandles) {
+    const double diagonal = 2 * std::sqrt(1.3 * 1.3 * 2 + 0.3 * 0.3);
+    for (const double noise : {0.001, 0.003, 0.006})
+        expect_topology(shell_of_samples(shell_shapes::torus(1, 0.3), 20000, noise * diagonal), 1, 1);
+}
+
+TEST(Shell, NoiseDoesNotJoinLinks) {
+    const shell_shapes::Shape chain = shell_shapes::chain(4, 1, 0.2, 1.3);
+    expect_topology(shell_of_samples(chain, 200000, 0.001 * 6.9), 4, 4);
+}
+
+TEST(Shell, OutliersAreIgnoredAndReported) {
+    Random random(3);
+    std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
+    for (int i = 0; i < 19; ++i)
+        cloud.emplace_back(3 + 0.01 * static_cast<double>(random.unit()), 3, 3);  // a small group far away
+    cloud.emplace_back(-50, 0, 0);  // so far that the sphere shrinks to a dot in the frame
+    const StartMesh mesh = shell(cloud);
+    expect_topology(mesh, 1, 0);
+    EXPECT_EQ(mesh.ignored_points, 20);
+    EXPECT_TRUE(warns_of(mesh, "outliers"));
+}
+
+TEST(Shell, OpenScanIsClosedWithAWarning) {
+    Random random(5);
+    std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 40000, random);
+    shell_shapes::cut_off(cloud, [](const vcg::Point3d& p) { return p[2] > 0.9; });
+    const StartMesh mesh = shell(cloud);
+    expect_topology(mesh, 1, 0);
+    EXPECT_TRUE(mesh.encloses_space);
+    EXPECT_GT(volume(mesh), 0.08);  // a ball in a frame of diagonal 1: about 0.1
+    EXPECT_TRUE(warns_of(mesh, "holes"));
+}
+
+TEST(Shell, SheetIsClosedAroundBothSidesWithAWarning) {
+    Random random(5);
+    std::vector<vcg::Point3d> cloud;
+    for (int i = 0; i < 20000; ++i) {
+        const double x = static_cast<double>(random.unit()), y = static_cast<double>(random.unit());
+        cloud.emplace_back(x, y, 0.2 * x * y);
+    }
+    const StartMesh mesh = shell(cloud);
+    expect_topology(mesh, 1, 0);
+    EXPECT_FALSE(mesh.encloses_space);
+    EXPECT_TRUE(warns_of(mesh, "enclose no space"));
+}
+
+TEST(Shell, NestedSpheresComeAsTheOuterOne) {
+    shell_shapes::Shape both = shell_shapes::sphere(1);
+    shell_shapes::append(both, shell_shapes::sphere(0.4), {0, 0, 0});
+    expect_topology(shell_of_samples(both, 20000), 1, 0);
+}
+
+TEST(Shell, AFewPointsAreEnough) {
+    for (const int count : {4, 5, 8, 20, 60}) {
+        Random random(static_cast<std::uint64_t>(count));
+        std::vector<vcg::Point3d> cloud;
+        for (int i = 0; i < count; ++i) {
+            const double x = static_cast<double>(random.unit()), y = static_cast<double>(random.unit());
+            cloud.emplace_back(x, y, static_cast<double>(random.unit()));
+        }
+        expect_sound(shell(cloud));
+    }
+}
+
+TEST(Shell, PiecesOfASparseCloudAreNoComponents) {
+    for (const int count : {400, 800, 2000}) {
+        Random random(16);
+        const StartMesh mesh = shell(
+            shell_shapes::sample(shell_shapes::torus(1, 0.35), static_cast<std::size_t>(count), random));
+        expect_topology(mesh, 1, 1);
+        EXPECT_EQ(mesh.ignored_points, 0);
+    }
+}
+
+TEST(Shell, VerticesFollowTheBudget) {
+    Random random(2);
+    const auto cloud = shell_shapes::sample(shell_shapes::torus(1, 0.4), 20000, random);
+    ShellOptions options;
+    for (const int target : {100, 400, 1000}) {
+        options.target_vertices = target;
+        EXPECT_EQ(shell(cloud, options).positions.size(), static_cast<std::size_t>(target / 4));
+    }
+}
+
+TEST(Shell, SameCloudSameBytes) {
+    Random random(2);
+    const auto cloud = shell_shapes::sample(shell_shapes::torus(1, 0.4), 20000, random);
+    const StartMesh a = shell(cloud), b = shell(cloud);
+    ASSERT_EQ(a.positions.size(), b.positions.size());
+    EXPECT_EQ(std::memcmp(a.positions.data(), b.positions.data(), a.positions.size() * sizeof(vcg::Point3f)),
+              0);
+    EXPECT_EQ(a.faces, b.faces);
+}
+
+TEST(Shell, MeshAsTarget) {
+    const shell_shapes::Shape torus = shell_shapes::torus(1, 0.3);
+    const TargetSpace target = TargetSpace::triangles(torus.faces.size(), [&](std::size_t i, int k) {
+        return torus.positions[static_cast<std::size_t>(torus.faces[i][static_cast<std::size_t>(k)])];
+    });
+    Random random(1);
+    NoProgress progress;
+    ShellOptions options;
+    options.samples = 30000;
+    expect_topology(shell_of(target, options, random, progress), 1, 1);
+}
+
+TEST(Shell, BadOptionsAreRefused) {
+    Random random(2);
+    const auto cloud = shell_shapes::sample(shell_shapes::sphere(1), 100, random);
+    ShellOptions options;
+    options.max_vertices = 3;
+    EXPECT_THROW(shell(cloud, options), SettingError);
+}
+
+}  // namespace
+}  // namespace neuralmesh

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// A mesh with the components that a host's layer has for us, in single precision.
+#pragma once
+
+#include <vcg/complex/complex.h>
+
+#include <cstddef>
+#include <vector>
+
+#include "tests/unit/support/shapes.h"
+
+namespace neuralmesh::layer_mesh {
+
+class Vertex;
+class Face;
+struct Types : vcg::UsedTypes<vcg::Use<Vertex>::AsVertexType, vcg::Use<Face>::AsFaceType> {};
+class Vertex : public vcg::Vertex<Types, vcg::vertex::Coord3f, vcg::vertex::Qualityf, vcg::vertex::Color4b,
+                                  vcg::vertex::BitFlags> {};
+class Face : public vcg::Face<Types, vcg::face::VertexRef, vcg::face::BitFlags> {};
+class Mesh : public vcg::tri::TriMesh<std::vector<Vertex>, std::vector<Face>> {};
+
+/// Adds the vertices of \p shape to \p mesh, which has none, and if asked for its faces.
+inline void fill(Mesh& mesh, const shapes::Shape& shape, bool with_faces) {
+    for (const vcg::Point3d& p : shape.positions)
+        vcg::tri::Allocator<Mesh>::AddVertex(mesh, vcg::Point3f::Construct(p));
+    if (!with_faces) return;
+    for (const auto& [a, b, c] : shape.faces)
+        vcg::tri::Allocator<Mesh>::AddFace(mesh, static_cast<std::size_t>(a), static_cast<std::size_t>(b),
+                                           static_cast<std::size_t>(c));
+}
+
+}  // namespace neuralmesh::layer_mesh

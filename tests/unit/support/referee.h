@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// A slow, obvious judge of meshes, which looks at nothing but their list of faces.
+#pragma once
+
+#include <vcg/space/point3.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/unit/support/shapes.h"
+#include "vcg_core/mesh/network.h"
+
+namespace neuralmesh::referee {
+
+/// The shape as a network.
+inline Network network_of(const shapes::Shape& shape) {
+    std::vector<vcg::Point3f> positions;
+    for (const vcg::Point3d& p : shape.positions) positions.push_back(vcg::Point3f::Construct(p));
+    return {positions, shape.faces};
+}
+
+/// Every face turned to start with its smallest vertex, sorted: equal for equal meshes.
+inline std::vector<Triangle> canonical(std::vector<Triangle> faces) {
+    for (Triangle& f : faces) std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
+    std::sort(faces.begin(), faces.end());
+    return faces;
+}
+
+/// What a list of faces amounts to, found by counting.
+struct Census {
+    std::string breach;  ///< empty if the faces form an oriented 2-manifold with or without boundary
+    int vertices = 0;
+    int edges = 0;
+    int faces = 0;
+    int components = 0;
+    int loops = 0;
+    std::map<VertexId, int> valence;
+
+    int euler() const { return vertices - edges + faces; }
+    int greatest_valence() const {
+        int most = 0;
+        for (const auto& entry : valence) most = std::max(most, entry.second);
+        return most;
+    }
+    bool same_topology(const Census& other) const {
+        return euler() == other.euler() && components == other.components && loops == other.loops;
+    }
+};
+
+/// Groups the keys of \p graph into connected parts; \return how many.
+inline int connected_parts(const std::map<VertexId, std::set<VertexId>>& graph) {
+    std::set<VertexId> seen;
+    int parts = 0;
+    for (const auto& entry : graph) {
+        if (!seen.insert(entry.first).second) continue;
+        ++parts;
+        std::vector<VertexId> open{entry.first};
+        while (!open.empty()) {
+            const VertexId v = open.back();
+            open.pop_back();
+            for (const VertexId w : graph.at(v))
+                if (seen.insert(w).second) open.push_back(w);
+        }
+    }
+    return parts;
+}
+
+inline Census census(const std::vector<Triangle>& faces) {
+    Census result;
+    std::set<std::pair<VertexId, VertexId>> directed;
+    std::map<VertexId, std::set<VertexId>> neighbours;
+    std::map<VertexId, std::map<VertexId, std::set<VertexId>>> links;
+    for (const Triangle& f : faces) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const VertexId a = f[k];
+            const VertexId b = f[(k + 1) % 3];
+            const VertexId c = f[(k + 2) % 3];
+            if (a == b) result.breach = "a face has a corner twice";
+            if (!directed.emplace(a, b).second)
+                result.breach = "two faces run along an edge in one direction";
+            neighbours[a].insert(b);
+            neighbours[b].insert(a);
+            links[a][b].insert(c);
+            links[a][c].insert(b);
+        }
+    }
+    std::map<VertexId, std::set<VertexId>> boundary;
+    int ends = 0;
+    for (const auto& entry : neighbours) {
+        ends += static_cast<int>(entry.second.size());
+        result.valence[entry.first] = static_cast<int>(entry.second.size());
+        if (connected_parts(links[entry.first]) != 1)
+            result.breach = "the faces at a vertex form no single fan";
+    }
+    for (const auto& edge : directed) {
+        if (directed.count({edge.second, edge.first}) != 0) continue;
+        boundary[edge.first].insert(edge.second);
+        boundary[edge.second].insert(edge.first);
+    }
+    for (const auto& entry : result.valence)
+        if (entry.second < (boundary.count(entry.first) != 0 ? 2 : 3)) result.breach = "a valence is too low";
+    result.vertices = static_cast<int>(neighbours.size());
+    result.edges = ends / 2;
+    result.faces = static_cast<int>(faces.size());
+    result.components = connected_parts(neighbours);
+    result.loops = connected_parts(boundary);
+    return result;
+}
+
+/// Six times the volume that the faces enclose; positive if they are counter-clockwise seen from outside.
+template <class Position>
+double enclosed_volume(const std::vector<Triangle>& faces, const Position& position) {
+    double sum = 0;
+    for (const Triangle& f : faces) {
+        const auto a = vcg::Point3d::Construct(position(f[0]));
+        const auto b = vcg::Point3d::Construct(position(f[1]));
+        const auto c = vcg::Point3d::Construct(position(f[2]));
+        sum += a * (b ^ c);
+    }
+    return sum;
+}
+
+inline double enclosed_volume(const Network& network) {
+    return enclosed_volume(network.faces(), [&](VertexId v) { return network.position(v); });
+}
+
+}  // namespace neuralmesh::referee

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// What is true of every result of reconstruct(), whatever was learned, with which settings, to the end or
+// not.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/support/referee.h"
+#include "tests/unit/support/shapes.h"
+#include "vcg_core/reconstruct.h"
+
+namespace neuralmesh::soundness {
+
+inline TargetSpace target_of(const shapes::Cloud& cloud) {
+    return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+}
+
+/// A closed, oriented manifold whose figures are those of the report, all numbers finite.
+inline void expect_sound(const NeuralMesh& mesh) {
+    const referee::Census census = referee::census(mesh.faces);
+    EXPECT_EQ(census.breach, "");
+    EXPECT_EQ(census.vertices, static_cast<int>(mesh.positions.size()));
+    EXPECT_EQ(census.loops, 0);
+    EXPECT_LE(census.greatest_valence(), Ring::kMaxValence);
+    EXPECT_EQ(census.vertices, mesh.report.vertices);
+    EXPECT_EQ(census.faces, mesh.report.faces);
+    EXPECT_EQ(census.components, mesh.report.components);
+    EXPECT_EQ(census.loops, mesh.report.boundary_loops);
+    EXPECT_EQ(census.euler(), 2 * mesh.report.components - 2 * mesh.report.genus);
+    ASSERT_EQ(mesh.counters.size(), mesh.positions.size());
+    ASSERT_EQ(mesh.features.size(), mesh.positions.size());
+    int features = 0;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        EXPECT_TRUE((mesh.positions[i] - mesh.positions[i]) == vcg::Point3d(0, 0, 0)) << i;
+        EXPECT_TRUE(mesh.counters[i] >= 0 && mesh.counters[i] < 1e30F) << i << ": " << mesh.counters[i];
+        features += mesh.features[i];
+    }
+    EXPECT_EQ(features, mesh.report.feature_vertices);
+    EXPECT_TRUE(mesh.report.rms_error >= 0 && mesh.report.rms_error < 1000);
+}
+
+inline void expect_exact(const NeuralMesh& mesh, const Settings& settings) {
+    expect_sound(mesh);
+    EXPECT_EQ(mesh.report.vertices, settings.target_vertices);
+    EXPECT_EQ(mesh.report.stop_reason, StopReason::target_reached);
+}
+
+}  // namespace neuralmesh::soundness

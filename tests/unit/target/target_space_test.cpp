@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// What can be learned, what cannot and how the user is told, and that samples are uniform.
+#include "vcg_core/target/target_space.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "tests/unit/support/shapes.h"
+
+namespace neuralmesh {
+namespace {
+
+using shapes::Cloud;
+using vcg::Point3d;
+
+TargetSpace cloud_target(const Cloud& cloud) {
+    return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+}
+
+TargetSpace face_target(const shapes::Shape& shape) {
+    return TargetSpace::triangles(shape.faces.size(), [&](std::size_t i, int k) {
+        return shape.positions[static_cast<std::size_t>(shape.faces[i][static_cast<std::size_t>(k)])];
+    });
+}
+
+/// The message the cloud is refused with; empty if it is taken.
+std::string complaint(const Cloud& cloud) {
+    try {
+        cloud_target(cloud);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+void expect_complaint(const Cloud& cloud, const std::string& part) {
+    EXPECT_NE(complaint(cloud).find(part), std::string::npos) << complaint(cloud);
+}
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(TargetSpace, RefusesNothing) { expect_complaint({}, "no points"); }
+
+TEST(TargetSpace, CountsCoordinatesThatAreNotFinite) {
+    Cloud cloud = shapes::sphere_cloud(100);
+    cloud[3][0] = kNan;
+    cloud[50][1] = kInfinity;
+    cloud[99][2] = -kInfinity;
+    expect_complaint(cloud, "3 of the 100 ");
+    expect_complaint(Cloud(5, Point3d(kNan, kNan, kNan)), "5 of the 5 ");
+}
+
+TEST(TargetSpace, RefusesFewerThanFourDistinctPoints) {
+    expect_complaint({{1, 2, 3}}, "at least 4");
+    expect_complaint(Cloud(1000, Point3d(5, 5, 5)), "at least 4");
+    expect_complaint({{0, 0, 0}, {1, 0, 0}}, "only 2 distinct points");
+    Cloud cloud;
+    for (int i = 0; i < 3000; ++i) cloud.emplace_back(i % 3 == 0 ? 1 : 0, i % 3 == 1 ? 1 : 0, 0);
+    expect_complaint(cloud, "only 3 distinct points");
+    cloud.emplace_back(1, 1, 0);
+    EXPECT_EQ(complaint(cloud), "");
+}
+
+/// Where and how large a cloud may be, exact in double at least to the precision of the core.
+struct Place {
+    Point3d offset;
+    double scale;
+};
+const Place kPlaces[] = {{{0, 0, 0}, 1},         {{1e7, -1e7, 1e7}, 1},   {{0, 0, 0}, 1e-9},
+                         {{0, 0, 0}, 1e9},       {{1e9, 1e9, -1e9}, 1e9}, {{1, 1, 1}, 1e-6},
+                         {{5e6, 4e5, 100}, 200}, {{0, 0, 0}, 1e100},      {{0, 0, 0}, 1e-100}};
+
+Cloud placed(Cloud cloud, const Place& place) {
+    for (Point3d& p : cloud) p = p * place.scale + place.offset;
+    return cloud;
+}
+
+TEST(TargetSpace, RefusesPointsOnALineWhereverItIs) {
+    for (const Place& place : kPlaces) {
+        SCOPED_TRACE(testing::Message() << place.offset[0] << " scale " << place.scale);
+        for (const Point3d& direction :
+             {Point3d(1, 0, 0), Point3d(0, 0, 1), Point3d(1, 2, 3), Point3d(-3, 1e-3, 2)}) {
+            Random random(1);
+            Cloud cloud;
+            for (int i = 0; i < 500; ++i) cloud.push_back(direction * shapes::signed_unit(random));
+            expect_complaint(placed(cloud, place), "straight line");
+        }
+    }
+}
+
+TEST(TargetSpace, TakesAnythingThatIsNoLine) {
+    for (const Place& place : kPlaces) {
+        SCOPED_TRACE(testing::Message() << place.offset[0] << " scale " << place.scale);
+        EXPECT_EQ(complaint(placed(shapes::sphere_cloud(100), place)), "");
+        EXPECT_EQ(complaint(placed(shapes::plane_cloud(100), place)), "");
+        EXPECT_EQ(complaint(placed({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, place)), "");
+    }
+    Cloud nearly;
+    for (int i = 0; i < 100; ++i) nearly.emplace_back(i, 0, 0);
+    nearly[60] = {60, 0.01, 0};
+    EXPECT_EQ(complaint(nearly), "");
+}
+
+TEST(TargetSpace, RefusesABoxBeyondDoublePrecision) {
+    expect_complaint(placed(shapes::sphere_cloud(50), {{0, 0, 0}, 1e308}), "scale it");
+    expect_complaint(placed(shapes::sphere_cloud(50), {{0, 0, 0}, 1e-200}), "scale it");
+}
+
+TEST(TargetSpace, TakesAPlaneNearTheEndOfDouble) {
+    const double far = 1.7e308;
+    const TargetSpace target = cloud_target({{far, 0, 0}, {far, 1, 0}, {far, 0, 1}, {far, 1, 1}});
+    EXPECT_EQ(target.frame().centre, Point3d(far, 0.5, 0.5));
+    for (const vcg::Point3f& p : target.positions()) EXPECT_EQ(p[0], 0);
+}
+
+TEST(TargetSpace, FrameIsCentredWithDiagonalOne) {
+    for (const Place& place : kPlaces) {
+        const Cloud cloud = placed(shapes::box_cloud(2000, {1, 2, 3}), place);
+        const TargetSpace target = cloud_target(cloud);
+        vcg::Box3d box;
+        for (const vcg::Point3f& p : target.positions()) box.Add(Point3d::Construct(p));
+        EXPECT_NEAR((box.max - box.min).Norm(), 1, 1e-5);
+        EXPECT_NEAR((box.max + box.min).Norm(), 0, 1e-6);
+        ASSERT_EQ(target.positions().size(), cloud.size());
+        for (std::size_t i = 0; i < cloud.size(); ++i) {
+            const Point3d back = target.frame().outside(target.positions()[i]);
+            ASSERT_LT((back - cloud[i]).Norm(), 1e-7 * target.frame().diagonal);
+            ASSERT_EQ(target.frame().inside(cloud[i]), target.positions()[i]);
+        }
+    }
+}
+
+TEST(TargetSpace, ReadsPointsAndTrianglesAsTheyAre) {
+    const TargetSpace points = cloud_target(shapes::sphere_cloud(10));
+    EXPECT_FALSE(points.has_faces());
+    const TargetSpace faces = face_target(shapes::cube());
+    EXPECT_TRUE(faces.has_faces());
+    EXPECT_EQ(faces.positions().size(), 36U);
+}
+
+/// Sum of (seen - expected)^2 / expected.
+double chi_square(const std::vector<int>& seen, const std::vector<double>& expected) {
+    double sum = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i)
+        sum += (seen[i] - expected[i]) * (seen[i] - expected[i]) / expected[i];
+    return sum;
+}
+
+/// Exceeded by a uniform sample in one of ten thousand cases (Wilson and Hilferty's approximation).
+double limit(int degrees) {
+    const double a = 2.0 / (9.0 * degrees);
+    return degrees * std::pow(1 - a + 3.719 * std::sqrt(a), 3);
+}
+
+TEST(TargetSpace, DrawsEveryPointEquallyOften) {
+    const int n = 500;
+    const TargetSpace target = cloud_target(shapes::sphere_cloud(n));
+    std::map<std::array<float, 3>, int> seen;
+    Random random(1);
+    for (int i = 0; i < 100 * n; ++i) {
+        const vcg::Point3f p = target.sample(random);
+        ++seen[{p[0], p[1], p[2]}];
+    }
+    ASSERT_EQ(seen.size(), static_cast<std::size_t>(n));
+    std::vector<int> counts;
+    for (const auto& entry : seen) counts.push_back(entry.second);
+    EXPECT_LT(chi_square(counts, std::vector<double>(counts.size(), 100)), limit(n - 1));
+}
+
+TEST(TargetSpace, DrawsFromFacesInProportionToArea) {
+    // Triangles side by side in a strip, of areas 1 to 60 and, every third, 0.
+    shapes::Shape strip;
+    std::vector<double> area;
+    for (int i = 0; i < 60; ++i) {
+        const int a = 3 * i;
+        const double height = i % 3 == 2 ? 0 : i + 1;
+        strip.positions.insert(strip.positions.end(),
+                               {{i + 0.0, 0, 0}, {i + 0.9, 0, 0}, {i + 0.3, height, 0}});
+        strip.faces.push_back({a, a + 1, a + 2});
+        area.push_back(height);
+    }
+    const TargetSpace target = face_target(strip);
+    double whole = 0;
+    for (const double a : area) whole += a;
+    std::vector<int> seen(60, 0);
+    const int n = 200000;
+    Random random(2);
+    for (int i = 0; i < n; ++i)
+        ++seen[static_cast<std::size_t>(target.frame().outside(target.sample(random))[0] + 1e-4)];
+    std::vector<int> counts;
+    std::vector<double> expected;
+    for (std::size_t i = 0; i < area.size(); ++i) {
+        if (area[i] == 0) {
+            EXPECT_EQ(seen[i], 0) << i;
+            continue;
+        }
+        counts.push_back(seen[i]);
+        expected.push_back(n * area[i] / whole);
+    }
+    EXPECT_LT(chi_square(counts, expected), limit(static_cast<int>(counts.size()) - 1));
+}
+
+TEST(TargetSpace, DrawsUniformlyWithinATriangle) {
+    const shapes::Shape triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}}};
+    const TargetSpace target = face_target(triangle);
+    const int cells = 10;
+    std::vector<int> seen(std::size_t{cells} * cells, 0);
+    const int n = 100000;
+    Random random(3);
+    for (int i = 0; i < n; ++i) {
+        const Point3d p = target.frame().outside(target.sample(random));
+        ASSERT_NEAR(p[2], 0, 1e-6);
+        const auto cell = [&](double x) {
+            return std::min(cells - 1, std::max(0, static_cast<int>(x * cells)));
+        };
+        ASSERT_TRUE(p[0] > -1e-6 && p[0] < 1 + 1e-6 && p[1] > -1e-6 && p[1] < 1 + 1e-6);
+        const int hit = cell(p[0]) * cells + cell(p[1]);
+        ++seen[static_cast<std::size_t>(hit)];
+    }
+    EXPECT_LT(chi_square(seen, std::vector<double>(seen.size(), n / double(cells * cells))),
+              limit(cells * cells - 1));
+}
+
+TEST(TargetSpace, RefusesFacesWithoutArea) {
+    shapes::Shape flat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 1}, {2, 3, 3}}};
+    try {
+        face_target(flat);
+        FAIL() << "taken";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("no area"), std::string::npos) << error.what();
+    }
+}
+
+TEST(TargetSpace, LeavesPointsOut) {
+    const Cloud cloud = shapes::sphere_cloud(100);
+    std::vector<std::uint8_t> left_out(100, 0);
+    left_out[0] = left_out[7] = left_out[99] = 1;
+    const std::optional<TargetSpace> rest = cloud_target(cloud).without(left_out);
+    ASSERT_TRUE(rest.has_value());
+    ASSERT_EQ(rest->positions().size(), 97U);
+    const auto outside = [&](std::size_t i) { return rest->frame().outside(rest->positions()[i]); };
+    EXPECT_LT((outside(0) - cloud[1]).Norm(), 1e-6);
+    EXPECT_LT((outside(6) - cloud[8]).Norm(), 1e-6);
+    EXPECT_LT((outside(96) - cloud[98]).Norm(), 1e-6);
+}
+
+/// The frame that is left is as good as if the far point had never been there.
+TEST(TargetSpace, LeavesAFarPointOutWithoutATrace) {
+    Cloud cloud = shapes::sphere_cloud(1000);
+    const TargetSpace alone = cloud_target(cloud);
+    cloud.emplace_back(3e5, -1e5, 7e5);
+    std::vector<std::uint8_t> left_out(1001, 0);
+    left_out.back() = 1;
+    const std::optional<TargetSpace> rest = cloud_target(cloud).without(left_out);
+    ASSERT_TRUE(rest.has_value());
+    EXPECT_NEAR(rest->frame().diagonal, alone.frame().diagonal, 1e-6);
+    for (std::size_t i = 0; i < 1000; ++i)
+        ASSERT_LT((rest->frame().outside(rest->positions()[i]) - cloud[i]).Norm(), 1e-6) << i;
+}
+
+TEST(TargetSpace, SaysWhereAFewFarPointsHideTheRest) {
+    Cloud cloud = shapes::sphere_cloud(1000);
+    cloud.emplace_back(1e30, 0, 0);
+    expect_complaint(cloud, "delete the few that lie far away");
+}
+
+TEST(TargetSpace, LeavesNothingOutIfNoSurfaceRemains) {
+    Cloud line;
+    for (int i = 0; i < 30; ++i) line.emplace_back(i, 0, 0);
+    line.emplace_back(15, 10, 0);
+    std::vector<std::uint8_t> left_out(31, 0);
+    left_out[30] = 1;
+    EXPECT_FALSE(cloud_target(line).without(left_out).has_value());
+    EXPECT_FALSE(cloud_target(line).without(std::vector<std::uint8_t>(31, 1)).has_value());
+}
+
+/// The places of the cloud, sorted; empty if it is to be taken as it is.
+std::vector<vcg::Point3f> places_once(const Cloud& cloud) {
+    const std::optional<TargetSpace> once = cloud_target(cloud).each_place_once();
+    return once ? once->positions() : std::vector<vcg::Point3f>();
+}
+
+TEST(TargetSpace, TakesAFewRepeatsAsTheyAre) {
+    Cloud cloud = shapes::sphere_cloud(1000);
+    for (int i = 0; i < 100; ++i) cloud.push_back(cloud[static_cast<std::size_t>(i)]);
+    EXPECT_TRUE(places_once(cloud).empty());
+    EXPECT_TRUE(places_once(shapes::sphere_cloud(300000)).empty());
+}
+
+TEST(TargetSpace, TakesEveryPlaceOnceWhereManyRepeat) {
+    Cloud cloud = shapes::sphere_cloud(1000);
+    cloud[0] = {0.0, 0.5, 0.5};
+    for (int i = 0; i < 112; ++i) cloud.push_back(cloud[static_cast<std::size_t>(i)]);
+    EXPECT_EQ(places_once(cloud).size(), 1000U);
+}
+
+/// Where the share of repeats is an estimate: a few places that hold many points, and many that hold two.
+TEST(TargetSpace, SeesRepeatsInLargeClouds) {
+    Cloud heavy = shapes::sphere_cloud(300000);
+    heavy.insert(heavy.end(), 200000, heavy[5]);
+    EXPECT_EQ(places_once(heavy).size(), 300000U);
+    Cloud twice = shapes::sphere_cloud(300000);
+    for (std::size_t i = 0; i < 60000; ++i) twice.push_back(twice[i]);
+    EXPECT_EQ(places_once(twice).size(), 300000U);
+}
+
+TEST(TargetSpace, FacesAreNeverRepeats) {
+    shapes::Shape shape = shapes::cube();
+    EXPECT_FALSE(face_target(shape).each_place_once().has_value());
+}
+
+}  // namespace
+}  // namespace neuralmesh

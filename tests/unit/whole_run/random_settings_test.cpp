@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Every parameter at the ends of its range, and random settings on random clouds: no crash, no run beyond the
+// signals that the settings allow, always a sound mesh. NEURALMESH_RANDOM_RUNS=500 tries more of them than
+// every test run has the time for, NEURALMESH_RANDOM_FIRST=N starts with the N-th, to have a failure again.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include "tests/unit/support/environment.h"
+#include "tests/unit/support/soundness.h"
+#include "vcg_core/learning/learner.h"
+
+namespace neuralmesh {
+namespace {
+
+using shapes::Cloud;
+using Kind = SettingInfo::Kind;
+
+/// Stops after \p patience looks: some settings mean billions of signals, and are meant to.
+class Patience : public Progress {
+public:
+    explicit Patience(int patience) : left_(patience) {}
+    bool operator()(double /*fraction*/, const char* /*text*/) override { return left_-- > 0; }
+    bool spent() const { return left_ < 0; }
+
+private:
+    int left_;
+};
+
+constexpr int kPatience = 400;  ///< looks, one in a thousand signals while it learns
+
+/// The most signals that one growth may take: the start mesh comes down, the network grows, it settles.
+std::int64_t most_of_growth(const TargetSpace& target, const Settings& settings) {
+    const Learner learner(target, settings, referee::network_of(shapes::tetrahedron()));
+    const std::int64_t vertices = settings.target_vertices;
+    const auto learning = [&](std::int64_t per_vertex) {
+        return std::max<std::int64_t>(60000, per_vertex * vertices);
+    };
+    return learning(100) + learner.signal_bound() + learning(settings.settling_signals_per_vertex);
+}
+
+/// Of a run, which learns up to four times the vertices asked for and, if that stalls, begins anew.
+std::int64_t most_signals(const TargetSpace& target, const Settings& settings) {
+    Settings more = settings;
+    more.target_vertices *= 4;
+    return most_of_growth(target, more) + most_of_growth(target, settings);
+}
+
+/// Network's own check beside the referee's, and the box: nothing flies away from the points.
+void expect_near_the_points(const NeuralMesh& mesh, const TargetSpace& target) {
+    vcg::Box3f box;
+    for (const vcg::Point3f& p : target.positions()) box.Add(p);
+    // The box has a diagonal of 1; a start mesh may stand off by its radius, which is about that of the box
+    // where there is but a handful of places. Vertices that never win stay there.
+    const std::optional<TargetSpace> once = target.each_place_once();
+    const double limit = (once ? *once : target).positions().size() < 20 ? 1.5 : 1;
+    std::vector<vcg::Point3f> positions;
+    for (const vcg::Point3d& p : mesh.positions) {
+        positions.push_back(target.frame().inside(p));
+        ASSERT_LT((positions.back() - box.Center()).Norm(), limit);
+    }
+    EXPECT_EQ(Network(positions, mesh.faces).validate(), "");
+}
+
+void expect_kept_promises(const TargetSpace& target, const Settings& settings) {
+    Patience patience(kPatience);
+    const NeuralMesh mesh = reconstruct(target, settings, patience);
+    soundness::expect_sound(mesh);
+    expect_near_the_points(mesh, target);
+    EXPECT_LE(mesh.report.signals, most_signals(target, settings));
+    EXPECT_LE(mesh.report.vertices, settings.target_vertices);
+    if (mesh.report.stop_reason == StopReason::target_reached) {
+        EXPECT_EQ(mesh.report.vertices, settings.target_vertices);
+    } else if (mesh.report.stop_reason == StopReason::converged) {
+        EXPECT_GT(settings.stop_below_mean_counter, 0);
+    } else {
+        EXPECT_EQ(mesh.report.stop_reason, StopReason::cancelled);
+        EXPECT_TRUE(patience.spent());
+    }
+}
+
+TEST(RandomSettings, EveryParameterLearnsAtBothEndsOfItsRange) {
+    const TargetSpace target = soundness::target_of(shapes::sphere_cloud(500));
+    for (const SettingInfo& info : setting_table()) {
+        for (const double end : {info.low, info.high}) {
+            SCOPED_TRACE(testing::Message() << info.id << " = " << end);
+            Settings settings;
+            settings.target_vertices = 60;
+            settings.settling_signals_per_vertex = 10;
+            info.store(settings, end);
+            expect_kept_promises(target, settings);
+        }
+    }
+}
+
+// ---- random settings
+// --------------------------------------------------------------------------------------------
+
+double fraction(Random& random) { return static_cast<double>(random.unit()); }
+
+/// Uniform between the bounds in the logarithm, so that small and large values are as frequent.
+double log_uniform(Random& random, double low, double high) {
+    const double shift = low <= 0 ? 1e-3 - low : 0;
+    return std::clamp(
+        std::exp(std::log(low + shift) + fraction(random) * std::log((high + shift) / (low + shift))) - shift,
+        low, high);
+}
+
+/// Half of the parameters as they are, the others anywhere in their ranges, now and then at an end.
+Settings random_settings(Random& random) {
+    Settings settings;
+    for (const SettingInfo& info : setting_table()) {
+        if (random.below(2) == 0) continue;
+        double value = log_uniform(random, info.low, info.high);
+        if (info.kind == Kind::boolean || info.kind == Kind::choice)
+            value = random.below(static_cast<std::uint32_t>(info.high) + 1);
+        if (random.below(6) == 0) value = random.below(2) == 0 ? info.low : info.high;
+        info.store(settings, value);
+    }
+    settings.target_vertices = static_cast<int>(log_uniform(random, 4, 400));
+    if (random.below(4) != 0)
+        settings.settling_signals_per_vertex = std::min(settings.settling_signals_per_vertex, 100);
+    // Above this the shell and the fit run at the pace of their points, which is no business of the
+    // parameters.
+    settings.smoothing_steps = std::min(settings.smoothing_steps, 30);
+    return settings;
+}
+
+Cloud random_cloud(Random& random) {
+    const int count = static_cast<int>(log_uniform(random, 4, 3000));
+    const std::uint64_t seed = random.bits();
+    const double noise = random.below(2) == 0 ? 0 : 0.1 * fraction(random);
+    const auto edge = [&] { return log_uniform(random, 1e-4, 1); };
+    Cloud cloud;
+    switch (random.below(5)) {
+        case 0: cloud = shapes::sphere_cloud(count, noise, seed); break;
+        case 1: cloud = shapes::torus_cloud(count, noise, seed); break;
+        case 2: cloud = shapes::box_cloud(count, {edge(), edge(), edge()}, noise, seed); break;
+        case 3: cloud = shapes::plane_cloud(count, seed); break;
+        default:
+            for (int i = 0; i < count; ++i) cloud.push_back(shapes::in_ball(random));
+            break;
+    }
+    const auto any = [&] { return random.below(static_cast<std::uint32_t>(cloud.size())); };
+    if (random.below(4) == 0)  // many times the same points
+        for (vcg::Point3d& p : cloud) p = cloud[any() % 50 % cloud.size()];
+    if (random.below(4) == 0)  // gross outliers
+        for (int i = 0; i < count; i += 100) cloud[any()] *= log_uniform(random, 2, 1000);
+    if (random.below(4) == 0)  // a thousand times denser on one side
+        for (vcg::Point3d& p : cloud)
+            if (p[0] < 0 && random.below(1000) != 0) p[0] = -p[0];
+    const double scale = log_uniform(random, 1e-9, 1e9);
+    for (vcg::Point3d& p : cloud) p *= scale;
+    return cloud;
+}
+
+/// The cloud's points, or triangles between points taken as they come.
+TargetSpace random_target(Random& random) {
+    const Cloud cloud = random_cloud(random);
+    if (random.below(4) != 0 || cloud.size() < 6) return soundness::target_of(cloud);
+    return TargetSpace::triangles(
+        cloud.size() / 3, [&](std::size_t i, int k) { return cloud[3 * i + static_cast<std::size_t>(k)]; });
+}
+
+/// What differs from the defaults.
+std::string changes(const Settings& settings) {
+    std::ostringstream text;
+    for (const SettingInfo& info : setting_table())
+        if (info.value(settings) != info.value(Settings()))
+            text << info.id << '=' << info.value(settings) << ' ';
+    return text.str();
+}
+
+TEST(RandomSettings, KeepThePromisesOnRandomClouds) {
+    const int runs = environment::number_of("NEURALMESH_RANDOM_RUNS", 40, 1);
+    const int first = environment::number_of("NEURALMESH_RANDOM_FIRST", 0, 0);
+    if (HasFailure()) return;
+    int learned = 0;
+    for (int i = first; i < first + runs; ++i) {
+        Random random(static_cast<std::uint64_t>(i) + 1000);
+        const Settings settings = random_settings(random);
+        SCOPED_TRACE(testing::Message() << "run " << i << ": " << changes(settings));
+        try {
+            const TargetSpace target = random_target(random);
+            expect_kept_promises(target, settings);
+            ++learned;
+        } catch (const InputError& error) {
+            // A cloud that came out flat on a line, or with fewer points than a surface needs.
+            EXPECT_EQ(std::string(error.what()).back(), '.') << error.what();
+        }
+        if (HasFailure()) break;
+    }
+    EXPECT_GE(learned, runs * 8 / 10);
+}
+
+}  // namespace
+}  // namespace neuralmesh

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Vertex split, half-edge collapse and edge flip on ordered one-rings.
+#include "vcg_core/mesh/network.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace neuralmesh {
+
+namespace {
+
+constexpr int kMax = Ring::kMaxValence;
+
+auto at(Ring& ring, int i) { return ring.neighbours.begin() + i; }
+
+void insert(Ring& ring, int i, VertexId v) {
+    std::copy_backward(at(ring, i), at(ring, ring.valence), at(ring, ring.valence + 1));
+    *at(ring, i) = v;
+    ++ring.valence;
+    ring.repeat();
+}
+
+void insert_before(Ring& ring, VertexId where, VertexId v) { insert(ring, ring.find(where), v); }
+void insert_after(Ring& ring, VertexId where, VertexId v) { insert(ring, ring.find(where) + 1, v); }
+
+void erase(Ring& ring, VertexId v) {
+    const int i = ring.find(v);
+    std::copy(at(ring, i + 1), at(ring, ring.valence), at(ring, i));
+    --ring.valence;
+    ring.repeat();
+}
+
+void replace(Ring& ring, VertexId old, VertexId now) {
+    *at(ring, ring.find(old)) = now;
+    ring.repeat();
+}
+
+void replace(Ring& ring, VertexId old, const VertexId* now, int count) {
+    const int i = ring.find(old);
+    const int grown = ring.valence + count - 1;
+    std::array<VertexId, kMax> tail;
+    const auto end = std::copy(at(ring, i + 1), at(ring, ring.valence), tail.begin());
+    std::copy(tail.begin(), end, std::copy(now, now + count, at(ring, i)));
+    ring.valence = static_cast<std::uint8_t>(grown);
+    ring.repeat();
+}
+
+/// Starts the cycle of a closed ring at position i.
+void rotate(Ring& ring, int i) {
+    std::rotate(at(ring, 0), at(ring, i), at(ring, ring.valence));
+    ring.repeat();
+}
+
+int least_valence(const Ring& ring) { return ring.open != 0 ? 2 : 3; }
+
+int common_neighbours(const Ring& a, const Ring& b) {
+    int count = 0;
+    for (int i = 0; i < a.valence; ++i) count += b.find(a[i]) >= 0 ? 1 : 0;
+    return count;
+}
+
+/// Position i of an open ring lies on one of the two boundary edges.
+bool at_end(const Ring& ring, int i) { return ring.open != 0 && (i == 0 || i + 1 == ring.valence); }
+
+}  // namespace
+
+void Network::reserve(int vertices) {
+    rings_.reserve(static_cast<std::size_t>(vertices));
+    slots_.reserve(static_cast<std::size_t>(vertices) + 1);
+}
+
+void Network::set_position(VertexId v, const vcg::Point3f& p) {
+    Slot& slot = slots()[v];
+    slot.x = p[0];
+    slot.y = p[1];
+    slot.z = p[2];
+}
+
+VertexId Network::new_vertex(VertexId parent, const vcg::Point3f& where) {
+    VertexId v = slot_count();
+    if (gaps_.count() > 0) {
+        v = gaps_.take(parent);
+    } else if (!free_.empty()) {
+        v = free_.back();
+        free_.pop_back();
+    } else {
+        // A slot that is there already is left from a time when there was no room for the ring.
+        slots_.resize(rings_.size() + 2, Slot{0, 0, 0, -1});
+        rings_.push_back(Ring{});
+    }
+    set_position(v, where);
+    ++vertex_count_;
+    return v;
+}
+
+bool Network::can_split(VertexId v, int first, int count) const {
+    const Ring& r = ring(v);
+    const int k = r.valence;
+    if (first < 0 || first >= k || count < 1 || count > k) return false;
+    if (r.open != 0) {
+        if (first + count > k) return false;
+        if (first == 0 || first + count == k) {
+            const VertexId shared = first == 0 ? r[count - 1] : r[first];
+            return k - count + 2 <= kMax && count + 1 <= kMax && ring(shared).valence < kMax;
+        }
+    }
+    const VertexId e2 = r[first];
+    const VertexId e1 = r[(first + count - 1) % k];
+    return count >= 2 && k - count + 3 <= kMax && count + 1 <= kMax && ring(e1).valence < kMax &&
+           ring(e2).valence < kMax;
+}
+
+VertexId Network::split(VertexId v, int first, int count, const vcg::Point3f& where) {
+    if (!alive(v) || !can_split(v, first, count))
+        throw TopologyError("This vertex split would break the network; ask can_split() first.");
+    const VertexId u = new_vertex(v, where);
+    Ring& rv = ring_of(v);
+    Ring& ru = ring_of(u);
+    const bool takes_start = rv.open != 0 && first == 0;
+    const bool takes_end = rv.open != 0 && !takes_start && first + count == rv.valence;
+    if (rv.open == 0) {
+        rotate(rv, first);
+        first = 0;
+    }
+
+    ru = Ring{};
+    std::copy(at(rv, first), at(rv, first + count), at(ru, 0));
+    ru.valence = static_cast<std::uint8_t>(count);
+    ru.open = (takes_start || takes_end) ? 1 : 0;
+    ru.region = rv.region;
+    const VertexId e2 = ru[0];
+    const VertexId e1 = ru[count - 1];
+    insert(ru, takes_end ? 0 : count, v);
+
+    // What v keeps: all outside the fan, and the shared ends of the fan with u between them.
+    const int keep_from = takes_start ? first : first + 1;
+    const int keep_to = takes_end ? first + count : first + count - 1;
+    std::copy(at(rv, keep_to), at(rv, rv.valence), at(rv, keep_from));
+    rv.valence = static_cast<std::uint8_t>(rv.valence - (keep_to - keep_from));
+    insert(rv, keep_from, u);
+
+    const bool shares_e2 = !takes_start || count == 1;
+    const bool shares_e1 = !takes_end;
+    for (int i = 0; i < ru.valence; ++i) {
+        const VertexId t = ru[i];
+        if (t == v) continue;
+        if (t == e1 && shares_e1) {
+            insert_after(ring_of(t), v, u);
+        } else if (t == e2 && shares_e2) {
+            insert_before(ring_of(t), v, u);
+        } else {
+            replace(ring_of(t), v, u);
+        }
+    }
+    return u;
+}
+
+bool Network::can_collapse(VertexId gone, VertexId kept) const {
+    const Ring& rg = ring(gone);
+    const Ring& rk = ring(kept);
+    const int i = rg.find(kept);
+    if (i < 0) return false;
+    const bool on_boundary = at_end(rg, i);
+    // A boundary vertex may only slide along its boundary, or the boundary would move or be pinched.
+    if (rg.open != 0 && !on_boundary) return false;
+    const int opposite = on_boundary ? 1 : 2;
+    if (common_neighbours(rg, rk) != opposite) return false;
+    const int valence = on_boundary ? rg.valence + rk.valence - 3 : rg.valence + rk.valence - 4;
+    if (valence < least_valence(rk) || valence > kMax) return false;
+    const auto can_lose_one = [&](VertexId w) { return ring(w).valence > least_valence(ring(w)); };
+    if (on_boundary) return can_lose_one(i == 0 ? rg[1] : rg[i - 1]);
+    return can_lose_one(rg.next(i)) && can_lose_one(rg.previous(i));
+}
+
+void Network::collapse(VertexId gone, VertexId kept) {
+    if (!can_collapse(gone, kept))
+        throw TopologyError("This half-edge collapse would break the network; ask can_collapse() first.");
+    // Before the first change, as there may be no room for it.
+    if (gaps_.count() > 0) {
+        gaps_.add(gone);
+    } else {
+        free_.push_back(gone);
+    }
+    Ring rg = ring(gone);
+    const bool on_boundary = rg.open != 0;
+    const int i = rg.find(kept);
+    // [from, to) of gone's ring is what kept takes over; the one or two vertices beside it lose an edge.
+    int from = 2;
+    int to = rg.valence - 1;
+    if (!on_boundary) {
+        rotate(rg, i);
+        erase(ring_of(rg[1]), gone);
+        erase(ring_of(rg[rg.valence - 1]), gone);
+    } else if (i == 0) {
+        to = rg.valence;
+        erase(ring_of(rg[1]), gone);
+    } else {
+        from = 0;
+        to = rg.valence - 2;
+        erase(ring_of(rg[to]), gone);
+    }
+    for (int j = from; j < to; ++j) replace(ring_of(rg[j]), gone, kept);
+    replace(ring_of(kept), gone, rg.neighbours.data() + from, to - from);
+    ring_of(gone) = Ring{};
+    --vertex_count_;
+}
+
+bool Network::can_flip(VertexId a, VertexId b) const {
+    const Ring& ra = ring(a);
+    const Ring& rb = ring(b);
+    const int i = ra.find(b);
+    if (i < 0 || at_end(ra, i)) return false;
+    const VertexId c = ra.next(i);
+    const VertexId d = ra.previous(i);
+    return ra.valence > least_valence(ra) && rb.valence > least_valence(rb) && ring(c).valence < kMax &&
+           ring(d).valence < kMax && !adjacent(c, d);
+}
+
+void Network::flip(VertexId a, VertexId b) {
+    if (!can_flip(a, b)) throw TopologyError("This edge flip would break the network; ask can_flip() first.");
+    const int i = ring(a).find(b);
+    const VertexId c = ring(a).next(i);
+    const VertexId d = ring(a).previous(i);
+    erase(ring_of(a), b);
+    erase(ring_of(b), a);
+    insert_after(ring_of(c), a, d);
+    insert_after(ring_of(d), b, c);
+}
+
+std::vector<VertexId> Network::compact() {
+    std::vector<VertexId> order;
+    for (VertexId v = 0; v < slot_count(); ++v)
+        if (alive(v)) order.push_back(v);
+    return renumber(order);
+}
+
+std::vector<VertexId> Network::renumber(const std::vector<VertexId>& order) {
+    std::vector<VertexId> moved(rings_.size(), -1);
+    FreeIds gaps;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        if (order[i] >= 0) {
+            moved[static_cast<std::size_t>(order[i])] = static_cast<VertexId>(i);
+        } else {
+            gaps.add(static_cast<VertexId>(i));
+        }
+    }
+    HugeVector<Ring> rings;
+    HugeVector<Slot> slots_in_order;
+    rings.reserve(std::max(rings_.capacity(), order.size()));
+    slots_in_order.reserve(std::max(slots_.capacity(), order.size() + 1));
+    slots_in_order.push_back(kNobody);
+    for (const VertexId old : order) {
+        rings.push_back(old < 0 ? Ring{} : ring(old));
+        slots_in_order.push_back(old < 0 ? Slot{0, 0, 0, -1} : slots()[old]);
+        Ring& r = rings.back();
+        for (int i = 0; i < r.valence; ++i) *at(r, i) = moved[static_cast<std::size_t>(r[i])];
+        r.repeat();
+    }
+    rings_.swap(rings);
+    slots_.swap(slots_in_order);
+    free_.clear();
+    gaps_ = std::move(gaps);
+    return moved;
+}
+
+std::vector<VertexId> Network::along_curve() const {
+    // 21 bits for each coordinate of the core's frame and what lies around it.
+    const auto spread = [](float coordinate) {
+        const float scaled = (std::clamp(coordinate, -1.0F, 0.999F) + 1) * 0x1p20F;
+        auto x = static_cast<std::uint64_t>(scaled);
+        x = (x | x << 32) & 0x1f00000000ffffu;
+        x = (x | x << 16) & 0x1f0000ff0000ffu;
+        x = (x | x << 8) & 0x100f00f00f00f00fu;
+        x = (x | x << 4) & 0x10c30c30c30c30c3u;
+        return (x | x << 2) & 0x1249249249249249u;
+    };
+    std::vector<std::pair<std::uint64_t, VertexId>> places;
+    places.reserve(static_cast<std::size_t>(vertex_count_));
+    for (VertexId v = 0; v < slot_count(); ++v) {
+        if (!alive(v)) continue;
+        const vcg::Point3f p = position(v);
+        places.emplace_back(spread(p[0]) | spread(p[1]) << 1 | spread(p[2]) << 2, v);
+    }
+    std::sort(places.begin(), places.end());
+    std::vector<VertexId> order;
+    order.reserve(places.size());
+    for (const auto& place : places) order.push_back(place.second);
+    return order;
+}
+
+}  // namespace neuralmesh

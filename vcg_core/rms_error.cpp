@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// By the tree of faces that the fit has.
+#include "vcg_core/rms_error.h"
+
+#include <cmath>
+
+#include "vcg_core/mesh/surface.h"
+
+namespace neuralmesh {
+
+double rms_distance(const TargetSpace& target, const Network& network, int samples, Random& random) {
+    const Surface surface(network);
+    const FaceTree tree(surface);
+    double sum = 0;
+    for (int i = 0; i < samples; ++i)
+        sum += static_cast<double>(tree.nearest(vec(target.sample(random))).foot.squared_distance);
+    return std::sqrt(sum / samples);
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// How far the target is from the learned surface.
+#pragma once
+
+#include "vcg_core/base/random.h"
+#include "vcg_core/mesh/network.h"
+#include "vcg_core/target/target_space.h"
+
+namespace neuralmesh {
+
+/// Root mean square distance of \p samples random points of \p target from the surface of \p network, in the
+/// core's frame (1 is the bounding box's diagonal). Exact nearest faces. O(faces log faces + samples
+/// x log faces) expected.
+double rms_distance(const TargetSpace& target, const Network& network, int samples, Random& random);
+
+}  // namespace neuralmesh

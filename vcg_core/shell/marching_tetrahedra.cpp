@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Marching tetrahedra.
+#include "vcg_core/shell/marching_tetrahedra.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
+
+namespace neuralmesh {
+namespace {
+
+using vcg::Point3f;
+
+/// Kuhn's six tetrahedra of a cube, positively oriented; corner bits: 1 = x, 2 = y, 4 = z.
+constexpr std::array<std::array<int, 4>, 6> kTetrahedra = {
+    {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 3, 2, 7}, {0, 6, 4, 7}, {0, 5, 1, 7}}};
+
+/// Even permutations of a tetrahedron's vertices, by their first one and, for pairs, by the first two.
+constexpr std::array<std::array<int, 4>, 4> kVertexFirst = {
+    {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
+constexpr std::array<std::array<int, 4>, 6> kPairFirst = {
+    {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
+
+/// A lattice edge: seven per node, by the corner bits of its other end.
+using EdgeKey = std::uint64_t;
+
+/// Collects triangles whose corners are lattice edges.
+class Tetrahedra {
+public:
+    Tetrahedra(const Lattice& lattice, const std::vector<float>& values)
+        : lattice_(lattice), values_(values) {}
+
+    void add_cube(int x, int y, int z);
+    IndexedMesh mesh() const;
+
+private:
+    void add_tetrahedron(std::size_t node, const std::array<int, 4>& corners, unsigned solid_corners);
+    void add_triangle(EdgeKey a, EdgeKey b, EdgeKey c) { keys_.insert(keys_.end(), {a, b, c}); }
+    std::size_t offset(int corner) const {
+        return lattice_.index(corner & 1, (corner >> 1) & 1, corner >> 2);
+    }
+    Point3f crossing(EdgeKey key) const;
+
+    const Lattice& lattice_;
+    const std::vector<float>& values_;
+    std::vector<EdgeKey> keys_;
+};
+
+void Tetrahedra::add_cube(int x, int y, int z) {
+    const std::size_t node = lattice_.index(x, y, z);
+    unsigned solid = 0;
+    for (int corner = 0; corner < 8; ++corner)
+        if (values_[node + offset(corner)] < 0) solid |= 1U << corner;
+    if (solid == 0 || solid == 255) return;
+    for (const std::array<int, 4>& corners : kTetrahedra) add_tetrahedron(node, corners, solid);
+}
+
+void Tetrahedra::add_tetrahedron(std::size_t node, const std::array<int, 4>& corners,
+                                 unsigned solid_corners) {
+    const auto corner = [&](int i) { return corners[static_cast<std::size_t>(i)]; };
+    const auto solid = [&](int i) { return (solid_corners >> corner(i) & 1U) != 0; };
+    // The corner bits of one end of a lattice edge contain those of the other.
+    const auto edge = [&](int i, int j) {
+        const int low = corner(i) & corner(j), high = corner(i) | corner(j);
+        return static_cast<EdgeKey>(node + offset(low)) * 8 + static_cast<EdgeKey>(high - low);
+    };
+    const int count = solid(0) + solid(1) + solid(2) + solid(3);
+    if (count == 1 || count == 3) {
+        for (const auto& [p, a, b, c] : kVertexFirst) {
+            if (solid(p) != (count == 1)) continue;
+            if (count == 1) {
+                add_triangle(edge(p, a), edge(p, b), edge(p, c));
+            } else {
+                add_triangle(edge(p, a), edge(p, c), edge(p, b));
+            }
+        }
+    } else if (count == 2) {
+        for (const auto& [i, j, k, l] : kPairFirst) {
+            if (!solid(i) || !solid(j)) continue;
+            add_triangle(edge(i, k), edge(i, l), edge(j, l));
+            add_triangle(edge(i, k), edge(j, l), edge(j, k));
+        }
+    }
+}
+
+Point3f Tetrahedra::crossing(EdgeKey key) const {
+    const std::size_t node = static_cast<std::size_t>(key / 8);
+    const int corner = static_cast<int>(key % 8);
+    const std::size_t nx = static_cast<std::size_t>(lattice_.nx), ny = static_cast<std::size_t>(lattice_.ny);
+    const Point3f start = lattice_.position(static_cast<int>(node % nx), static_cast<int>(node / nx % ny),
+                                            static_cast<int>(node / nx / ny));
+    const Point3f along(static_cast<float>(corner & 1), static_cast<float>((corner >> 1) & 1),
+                        static_cast<float>(corner >> 2));
+    const float a = values_[node], b = values_[node + offset(corner)];
+    const float t = std::min(0.9F, std::max(0.1F, a / (a - b)));  // away from the nodes: no degenerate faces
+    return start + along * (t * lattice_.step);
+}
+
+IndexedMesh Tetrahedra::mesh() const {
+    std::vector<EdgeKey> unique = keys_;
+    std::sort(unique.begin(), unique.end());
+    unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
+    IndexedMesh result;
+    for (const EdgeKey key : unique) result.positions.push_back(crossing(key));
+    const auto id = [&](EdgeKey key) {
+        return static_cast<VertexId>(std::lower_bound(unique.begin(), unique.end(), key) - unique.begin());
+    };
+    for (std::size_t i = 0; i < keys_.size(); i += 3)
+        result.faces.push_back({id(keys_[i]), id(keys_[i + 1]), id(keys_[i + 2])});
+    return result;
+}
+
+}  // namespace
+
+IndexedMesh marching_tetrahedra(const Lattice& lattice, const std::vector<float>& values) {
+    Tetrahedra tetrahedra(lattice, values);
+    for (int z = 0; z + 1 < lattice.nz; ++z)
+        for (int y = 0; y + 1 < lattice.ny; ++y)
+            for (int x = 0; x + 1 < lattice.nx; ++x) tetrahedra.add_cube(x, y, z);
+    return tetrahedra.mesh();
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// A buffer from whose front is taken and at whose end is drawn.
+#include "vcg_core/target/signal_stream.h"
+
+#include <algorithm>
+
+namespace neuralmesh {
+
+const vcg::Point3f* Signals::take(int count) {
+    draw_ahead(count);
+    const vcg::Point3f* taken = &drawn_[begin_];
+    begin_ += static_cast<std::size_t>(count);
+    return taken;
+}
+
+void Signals::draw_ahead(int count) noexcept {
+    const std::size_t wanted = begin_ + static_cast<std::size_t>(count);
+    if (wanted <= end_) return;
+    std::size_t more = wanted - end_;
+    if (wanted > drawn_.size()) {
+        const auto from = drawn_.begin();
+        std::copy(from + static_cast<std::ptrdiff_t>(begin_), from + static_cast<std::ptrdiff_t>(end_), from);
+        end_ -= begin_;
+        begin_ = 0;
+    }
+    for (; more > 0; --more) drawn_[end_++] = target_.sample(random_);
+}
+
+}  // namespace neuralmesh

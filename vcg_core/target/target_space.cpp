@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Drawing signals, and refusing clouds that span nothing.
+#include "vcg_core/target/target_space.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace neuralmesh {
+
+namespace {
+
+constexpr double kSmallPart = 1e-3;              ///< of the box, where most points are
+constexpr double kManyRepeats = 0.1;             ///< of the points
+constexpr std::size_t kEnoughForShare = 100000;  ///< points, to estimate that share
+constexpr double kCollinear = 1e-6;  ///< distance from the line, in diagonals, below which points lie on it
+
+double squared_distance_to_line(const vcg::Point3f& p, const vcg::Point3f& a, const vcg::Point3f& direction) {
+    const vcg::Point3f d = p - a;
+    const float along = d * direction / direction.SquaredNorm();
+    return static_cast<double>((d - direction * along).SquaredNorm());
+}
+
+bool by_coordinates(const vcg::Point3f& p, const vcg::Point3f& q) {
+    return std::tie(p[0], p[1], p[2]) < std::tie(q[0], q[1], q[2]);
+}
+
+/// Equal for equal points, 0 and -0 included.
+std::uint32_t hash_of(const vcg::Point3f& p) {
+    std::uint64_t hash = 0;
+    for (int k = 0; k < 3; ++k) {
+        const float x = p[k] + 0.0F;
+        std::uint32_t bits = 0;
+        std::memcpy(&bits, &x, sizeof bits);
+        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 29;
+    }
+    return static_cast<std::uint32_t>(hash >> 32);
+}
+
+/// Sorts \p points and leaves each place once.
+void keep_each_once(std::vector<vcg::Point3f>& points) {
+    std::sort(points.begin(), points.end(), by_coordinates);
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+}
+
+/// The share of \p points that repeat others of them.
+double share_of_repeats(std::vector<vcg::Point3f> points) {
+    const auto all = static_cast<double>(points.size());
+    keep_each_once(points);
+    return all > 0 ? 1 - static_cast<double>(points.size()) / all : 0;
+}
+
+/// Places that hold few points each show where all points of some places are taken, those that hold many
+/// where some points of all places are.
+double estimated_share_of_repeats(const std::vector<vcg::Point3f>& points) {
+    const std::size_t stride = points.size() / kEnoughForShare + 1;
+    if (stride == 1) return share_of_repeats(points);
+    std::vector<vcg::Point3f> of_some_places;
+    std::vector<vcg::Point3f> some_of_all;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (hash_of(points[i]) % stride == 0) of_some_places.push_back(points[i]);
+        if (i % stride == 0) some_of_all.push_back(points[i]);
+    }
+    return std::max(share_of_repeats(std::move(of_some_places)), share_of_repeats(std::move(some_of_all)));
+}
+
+}  // namespace
+
+vcg::Point3f Frame::inside(const vcg::Point3d& p) const {
+    return vcg::Point3f::Construct((p - centre) / diagonal);
+}
+
+vcg::Point3d Frame::outside(const vcg::Point3f& p) const {
+    return centre + vcg::Point3d::Construct(p) * diagonal;
+}
+
+void TargetSpace::set_frame(const vcg::Box3d& box, std::size_t not_finite, std::size_t count) {
+    if (count == 0)
+        throw InputError(
+            "The layer has no points to learn: choose a layer with at least 4 distinct vertices.");
+    if (not_finite > 0)
+        throw InputError(std::to_string(not_finite) + " of the " + std::to_string(count) +
+                         " points have coordinates that are not finite (NaN or infinite): remove them.");
+    frame_.centre = box.min / 2 + box.max / 2;  // the sum of both may be beyond double
+    frame_.diagonal = (box.max - box.min).Norm();
+    if (box.min == box.max)
+        throw InputError("All points of the layer are equal: a surface needs at least 4 distinct points.");
+    if (!((frame_.diagonal - frame_.diagonal) == 0 && frame_.diagonal > 1e-150))
+        throw InputError(
+            "The layer's bounding box is too large or too small for double precision: scale it first.");
+}
+
+void TargetSpace::centre_on(const vcg::Box3d& most) {
+    const double diagonal = (most.max - most.min).Norm();
+    off_centre_ = diagonal > 0 && diagonal < kSmallPart * frame_.diagonal;
+    if (off_centre_) frame_.centre = most.min / 2 + most.max / 2;
+}
+
+std::string TargetSpace::lack_of_spread() const {
+    const vcg::Point3f& a = positions_.front();
+    const auto far = std::max_element(
+        positions_.begin(), positions_.end(),
+        [&](const auto& p, const auto& q) { return (p - a).SquaredNorm() < (q - a).SquaredNorm(); });
+    const vcg::Point3f direction = *far - a;
+    std::vector<vcg::Point3f> distinct;
+    bool collinear = true;
+    for (const vcg::Point3f& p : positions_) {
+        if (distinct.size() < 4 && std::find(distinct.begin(), distinct.end(), p) == distinct.end())
+            distinct.push_back(p);
+        collinear = collinear && squared_distance_to_line(p, a, direction) < kCollinear * kCollinear;
+        if (!collinear && distinct.size() == 4) return "";
+    }
+    if (distinct.size() < 4)
+        return "The layer has only " + std::to_string(distinct.size()) +
+               " distinct points: a surface needs at least 4.";
+    if (off_centre_)
+        return "All points of the layer but a few lie, compared with its bounding box, in one place: delete "
+               "the few that lie far away.";
+    return "All points of the layer lie on one straight line: a surface cannot be learned from it. Choose a "
+           "layer whose points surround a surface.";
+}
+
+void TargetSpace::check_spread() const {
+    const std::string lack = lack_of_spread();
+    if (!lack.empty()) throw InputError(lack);
+}
+
+void TargetSpace::accumulate_areas() {
+    double sum = 0;
+    cumulative_area_.reserve(positions_.size() / 3);
+    for (std::size_t i = 0; i + 2 < positions_.size(); i += 3) {
+        const vcg::Point3f n = (positions_[i + 1] - positions_[i]) ^ (positions_[i + 2] - positions_[i]);
+        sum += static_cast<double>(n.Norm());
+        cumulative_area_.push_back(sum);
+    }
+    if (!(sum > 0))
+        throw InputError(
+            "The faces of the layer have no area to draw samples from: switch 'Draw from faces' off to learn "
+            "its vertices instead.");
+}
+
+std::optional<TargetSpace> TargetSpace::without(const std::vector<std::uint8_t>& left_out) const {
+    TargetSpace rest;
+    rest.positions_.reserve(static_cast<std::size_t>(std::count(left_out.begin(), left_out.end(), 0)));
+    for (std::size_t i = 0; i < positions_.size(); ++i)
+        if (left_out[i] == 0) rest.positions_.push_back(positions_[i]);
+    vcg::Box3d box;
+    for (const vcg::Point3f& p : rest.positions_) box.Add(vcg::Point3d::Construct(p));
+    if (box.IsNull() || box.min == box.max) return std::nullopt;
+    const Frame inner{(box.min + box.max) / 2, (box.max - box.min).Norm()};
+    for (vcg::Point3f& p : rest.positions_) p = inner.inside(vcg::Point3d::Construct(p));
+    if (!rest.lack_of_spread().empty()) return std::nullopt;
+    rest.frame_ = {frame_.centre + inner.centre * frame_.diagonal, inner.diagonal * frame_.diagonal};
+    return rest;
+}
+
+std::optional<TargetSpace> TargetSpace::each_place_once() const {
+    if (has_faces() || estimated_share_of_repeats(positions_) <= kManyRepeats) return std::nullopt;
+    TargetSpace once;
+    once.frame_ = frame_;
+    once.positions_ = positions_;
+    keep_each_once(once.positions_);
+    return once;
+}
+
+vcg::Point3f TargetSpace::sample(Random& random) const {
+    if (!has_faces()) return positions_[random.below(static_cast<std::uint32_t>(positions_.size()))];
+    const double fraction = (random.bits() + 0.5) * 0x1p-32;
+    const auto it = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end(),
+                                     fraction * cumulative_area_.back());
+    const auto face =
+        static_cast<std::size_t>(std::min(it, cumulative_area_.end() - 1) - cumulative_area_.begin());
+    float u = random.unit();
+    float v = random.unit();
+    if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+    }
+    const vcg::Point3f& a = positions_[3 * face];
+    return a + (positions_[3 * face + 1] - a) * u + (positions_[3 * face + 2] - a) * v;
+}
+
+}  // namespace neuralmesh
