@@ -170,7 +170,7 @@ sanitizer_tests() {
     "$build/sanitize-light/tests/fuzz_cloud" tests/fuzz/corpus/cloud.txt || return 1
     say "Tests of threads with the thread sanitizer"
     sanitized threads thread_tests || return 1
-    matching "$build/threads/tests/thread_tests" 'Team.*' 'BasicSteps.*' Learner.IsTheReferenceInBatches \
+    matching "$build/threads/tests/thread_tests" 'ThreadTeam.*' 'BasicStepBatch.*' Learner.IsTheReferenceInBatches \
         'Learner.SettlesAlike*' Fit.GivesTheSameBytesForAnyNumberOfThreads Shell.PiecesOfASparseCloudAreNoComponents
 }
 

@@ -11,7 +11,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 command -v gcovr > /dev/null || { echo "gcovr is missing: install it." >&2; exit 2; }
 build=build/coverage
-repeated="RandomSettings.*:Crowding.ManySignals*:Determinism.*:Reconstruct.Hostile*:Reconstruct.CanBeCancelled*"
+repeated="RandomSettings.*:BatchLimit.ManySignals*:Determinism.*:Reconstruct.Hostile*:Reconstruct.CanBeCancelled*"
 repeated+=":Reconstruct.GivesTheExact*"
 cmake --preset coverage > /dev/null
 cmake --build --preset coverage --target unit_tests fuzz_network fuzz_settings fuzz_cloud -- --quiet

@@ -129,8 +129,7 @@ void write_counters(const Learner& learner, const Network& network, const std::v
                     const Settings& settings, NeuralMesh& mesh) {
     const bool creases = settings.feature_measure == kCreaseMeasure;
     const std::vector<float> measure =
-        creases ? learner.feature_statistic().values(learner.network(), network, origin)
-                : std::vector<float>();
+        creases ? learner.crease_measure().values(learner.network(), network, origin) : std::vector<float>();
     double sum = 0;
     for (VertexId v = 0; v < network.slot_count(); ++v) {
         if (!network.alive(v)) continue;

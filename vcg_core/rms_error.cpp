@@ -15,7 +15,7 @@ double rms_distance(const TargetSpace& target, const Network& network, int sampl
     const FaceTree tree(surface);
     double sum = 0;
     for (int i = 0; i < samples; ++i)
-        sum += static_cast<double>(tree.nearest(vec(target.sample(random))).foot.squared_distance);
+        sum += static_cast<double>(tree.nearest(to_eigen(target.sample(random))).foot.squared_distance);
     return std::sqrt(sum / samples);
 }
 

@@ -157,7 +157,7 @@ std::vector<std::vector<VertexId>> groups(Network& network) {
     for (const VertexId w : winners(network)) {
         auto& group = of_valence[network.ring(w).valence];
         group.push_back(w);
-        if (group.size() < Patches::kLanes) continue;
+        if (group.size() < EightSteps::kLanes) continue;
         result.push_back(group);
         group.clear();
     }
@@ -168,8 +168,8 @@ template <class Part>
 void per_group(benchmark::State& state, const Part& part) {
     Network network = learned(static_cast<int>(state.range(0)));
     const auto all = groups(network);
-    Patches patches;
-    patches.gather(network, all.front().data(), Patches::kLanes);
+    EightSteps patches;
+    patches.gather(network, all.front().data(), EightSteps::kLanes);
     for (auto _ : state)
         for (const auto& group : all) {
             part(network, group, patches);
@@ -179,21 +179,21 @@ void per_group(benchmark::State& state, const Part& part) {
 }
 
 void part_gather(benchmark::State& state) {
-    per_group(state, [](const Network& network, const std::vector<VertexId>& group, Patches& patches) {
-        patches.gather(network, group.data(), Patches::kLanes);
+    per_group(state, [](const Network& network, const std::vector<VertexId>& group, EightSteps& patches) {
+        patches.gather(network, group.data(), EightSteps::kLanes);
     });
 }
 
 /// Five sweeps, on what has been gathered.
 void part_smoothing(benchmark::State& state) {
-    per_group(state, [](const Network&, const std::vector<VertexId>&, Patches& patches) {
+    per_group(state, [](const Network&, const std::vector<VertexId>&, EightSteps& patches) {
         patches.smooth(5, 0.05F);
     });
 }
 
 /// The normals before and after.
 void part_normals(benchmark::State& state) {
-    per_group(state, [](const Network&, const std::vector<VertexId>&, Patches& patches) {
+    per_group(state, [](const Network&, const std::vector<VertexId>&, EightSteps& patches) {
         EightVectors n;
         patches.take_normals(n);
         patches.take_normals(n);
@@ -202,9 +202,9 @@ void part_normals(benchmark::State& state) {
 }
 
 void part_displacements(benchmark::State& state) {
-    per_group(state, [](const Network&, const std::vector<VertexId>&, Patches& patches) {
-        Four moved[Patches::kLanes][1 + Ring::kMaxValence];
-        Four* to[Patches::kLanes];
+    per_group(state, [](const Network&, const std::vector<VertexId>&, EightSteps& patches) {
+        Four moved[EightSteps::kLanes][1 + Ring::kMaxValence];
+        Four* to[EightSteps::kLanes];
         std::copy(std::begin(moved), std::end(moved), std::begin(to));
         patches.displacements(to);
         benchmark::DoNotOptimize(moved);

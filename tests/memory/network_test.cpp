@@ -51,10 +51,10 @@ TEST(OutOfMemory, ASplitThatHasNoRoomIsNotBegun) {
 }
 
 TEST(OutOfMemory, ACollapseThatHasNoRoomIsNotBegun) {
-    for (const bool with_gaps : {false, true}) {
+    for (const bool interleave_free : {false, true}) {
         Network network = referee::network_of(shapes::icosphere(1));
-        if (with_gaps) {
-            std::vector<VertexId> order = network.along_curve();
+        if (interleave_free) {
+            std::vector<VertexId> order = network.morton_order();
             order.insert(order.begin(), -1);
             network.renumber(order);
         }
@@ -64,7 +64,7 @@ TEST(OutOfMemory, ACollapseThatHasNoRoomIsNotBegun) {
             failures += failures_before(network, [&] { network.collapse(v, network.ring(v)[0]); });
             ASSERT_EQ(network.validate(), "");
         }
-        EXPECT_EQ(failures > 0, !with_gaps) << "one word holds all these gaps";
+        EXPECT_EQ(failures > 0, !interleave_free) << "one word holds all these gaps";
     }
 }
 

@@ -149,7 +149,7 @@ TEST(OutOfMemory, ALoopDoesWithTheThreadsItCanHave) {
     constexpr int kChunks = 50;
     const auto loop = [] {
         std::array<std::atomic<int>, kChunks> done{};
-        Team team(4);
+        ThreadTeam team(4);
         for_chunks(kChunks, 1, team, [&](std::size_t chunk, std::size_t, std::size_t) { ++done[chunk]; });
         return std::all_of(done.begin(), done.end(), [](const auto& times) { return times == 1; });
     };

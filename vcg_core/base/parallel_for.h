@@ -18,12 +18,12 @@ namespace neuralmesh {
 /// are the same for any number of threads; a body writes only what belongs to its chunk. A member of the team
 /// whose body throws takes no more chunks, the others go on; then one of the exceptions is thrown on.
 template <class Body>
-void for_chunks(std::size_t count, std::size_t size, Team& team, const Body& body) {
+void for_chunks(std::size_t count, std::size_t size, ThreadTeam& team, const Body& body) {
     const std::size_t chunks = (count + size - 1) / size;
     const int members = static_cast<int>(std::min(static_cast<std::size_t>(team.members()), chunks));
     std::vector<std::exception_ptr> errors(static_cast<std::size_t>(team.members()));
     std::atomic<std::size_t> next{0};
-    team.run(members, [&](int member, int) {
+    team.parallel(members, [&](int member, int) {
         try {
             for (std::size_t c = next++; c < chunks; c = next++)
                 body(c, c * size, std::min(count, (c + 1) * size));

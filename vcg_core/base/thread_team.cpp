@@ -27,19 +27,19 @@ void relax() {
 
 }  // namespace
 
-Team::Team(int members) {
+ThreadTeam::ThreadTeam(int members) {
     const int most = std::min(members, kMost);
     helpers_.reserve(static_cast<std::size_t>(std::max(most - 1, 0)));
     for (int i = 1; i < most; ++i) {
         try {
-            helpers_.emplace_back(&Team::help, this, i);
+            helpers_.emplace_back(&ThreadTeam::help, this, i);
         } catch (const std::exception&) {
             break;  // no memory or no thread left for one more: fewer do the same work
         }
     }
 }
 
-Team::~Team() {
+ThreadTeam::~ThreadTeam() {
     over_.store(true);
     {
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -48,7 +48,7 @@ Team::~Team() {
     for (std::thread& t : helpers_) t.join();
 }
 
-void Team::start(Call call, const void* body, int chunks) {
+void ThreadTeam::start(Call call, const void* body, int chunks) {
     // The caller's own chunk is not up for claims, which would pass the word to and fro between the cores.
     offer(call, body, (bit(chunks - 1) - 1) << 1);
     call(body, 0, 0);
@@ -56,7 +56,7 @@ void Team::start(Call call, const void* body, int chunks) {
 }
 
 /// Puts the chunks whose bits are set up for claims.
-void Team::offer(Call call, const void* body, std::uint64_t chunks) {
+void ThreadTeam::offer(Call call, const void* body, std::uint64_t chunks) {
     call_ = call;
     body_ = body;
     open_.store(__builtin_popcountll(chunks), std::memory_order_relaxed);
@@ -68,7 +68,7 @@ void Team::offer(Call call, const void* body, std::uint64_t chunks) {
 }
 
 /// Does what nobody has claimed, and waits for the rest.
-void Team::finish() {
+void ThreadTeam::finish() {
     work(0);
     for (int turn = 0; open_.load(std::memory_order_acquire) > 0; ++turn) {
         if (turn < kSpins) {
@@ -80,7 +80,7 @@ void Team::finish() {
 }
 
 /// Does chunks until there is none left, its own first. \return whether there was one.
-bool Team::work(int member) {
+bool ThreadTeam::work(int member) {
     bool worked = false;
     for (;;) {
         const std::uint64_t seen = unclaimed_.load(std::memory_order_relaxed);
@@ -94,7 +94,7 @@ bool Team::work(int member) {
     }
 }
 
-void Team::help(int member) {
+void ThreadTeam::help(int member) {
     int turns = 0;
     while (!over_.load(std::memory_order_relaxed)) {
         if (work(member)) {

@@ -23,17 +23,17 @@ inline int thread_count(int threads) {
 /// asleep. A helper that is late, because the machine has other things to do, is not waited for: whoever is
 /// there does the chunks. Where all are there, member i does chunk i, so that what belongs to a chunk stays
 /// in one core's cache from one loop to the next.
-class Team {
+class ThreadTeam {
 public:
     /// Chunks of one loop, and members, at most.
     static constexpr int kMost = 64;
 
     /// \p members threads in all, at least 1. Where the system gives no thread, the team is smaller.
-    explicit Team(int members);
-    ~Team();
+    explicit ThreadTeam(int members);
+    ~ThreadTeam();
 
-    Team(const Team&) = delete;
-    Team& operator=(const Team&) = delete;
+    ThreadTeam(const ThreadTeam&) = delete;
+    ThreadTeam& operator=(const ThreadTeam&) = delete;
 
     int members() const { return 1 + static_cast<int>(helpers_.size()); }
 
@@ -41,7 +41,7 @@ public:
     /// done. member < members(), and no two calls of one member overlap. A body must not throw and writes
     /// only what belongs to its chunk or its member. \p chunks <= kMost. About a microsecond beyond the work.
     template <class Body>
-    void run(int chunks, const Body& body) {
+    void parallel(int chunks, const Body& body) {
         if (members() == 1 || chunks <= 1) {
             for (int c = 0; c < chunks; ++c) body(0, c);
             return;
@@ -50,28 +50,28 @@ public:
               &body, chunks);
     }
 
-    /// While it lives a helper does what beside() was given.
-    class [[nodiscard]] Beside {
+    /// While it lives a helper does what run_in_background() was given.
+    class [[nodiscard]] BackgroundTask {
     public:
-        Beside() = default;  ///< nothing is being done
-        explicit Beside(Team& team) : team_(&team) {}
-        ~Beside() {
+        BackgroundTask() = default;  ///< nothing is being done
+        explicit BackgroundTask(ThreadTeam& team) : team_(&team) {}
+        ~BackgroundTask() {
             if (team_ != nullptr) team_->finish();
         }
-        Beside(const Beside&) = delete;
-        Beside& operator=(const Beside&) = delete;
+        BackgroundTask(const BackgroundTask&) = delete;
+        BackgroundTask& operator=(const BackgroundTask&) = delete;
 
     private:
-        Team* team_ = nullptr;
+        ThreadTeam* team_ = nullptr;
     };
 
     /// Calls \p body() once, in a helper while the caller goes on, and at the latest when the result is
-    /// destroyed. Until then run() and beside() must not be called, nor anything be touched that \p body
-    /// touches. It must not throw, and must live as long as the result.
+    /// destroyed. Until then parallel() and run_in_background() must not be called, nor anything be touched
+    /// that \p body touches. It must not throw, and must live as long as the result.
     template <class Body>
-    Beside beside(const Body& body) {
+    BackgroundTask run_in_background(const Body& body) {
         offer([](const void* b, int, int) { (*static_cast<const Body*>(b))(); }, &body, bit(1));
-        return Beside(*this);
+        return BackgroundTask(*this);
     }
 
 private:

@@ -11,16 +11,16 @@
 
 namespace neuralmesh {
 
-Slabs::Slabs(const std::vector<vcg::Point3f>& sample) {
+AxisPartition::AxisPartition(const std::vector<vcg::Point3f>& sample) {
     vcg::Box3f box;
     for (const vcg::Point3f& p : sample) box.Add(p);
     axis_ = sample.empty() ? 0 : box.MaxDim();
     for (const vcg::Point3f& p : sample) places_.push_back(p[axis_]);
     std::sort(places_.begin(), places_.end());
-    cut(1);
+    split(1);
 }
 
-void Slabs::cut(int count) {
+void AxisPartition::split(int count) {
     constexpr float kEnd = std::numeric_limits<float>::infinity();
     const auto slabs = static_cast<std::size_t>(count);
     borders_.assign(slabs + 1, kEnd);
@@ -29,7 +29,7 @@ void Slabs::cut(int count) {
         borders_[i] = places_[places_.size() * i / slabs];
 }
 
-int Slabs::of(const vcg::Point3f& p) const {
+int AxisPartition::of(const vcg::Point3f& p) const {
     int slab = 0;
     while (!range(slab).holds(p)) ++slab;
     return slab;

@@ -11,13 +11,13 @@
 namespace neuralmesh {
 
 /// Slabs across the longest axis of a sample, cut so that each holds as many of its points as the others.
-class Slabs {
+class AxisPartition {
 public:
     /// One slab, which is all space. O(n log n) in the points of the \p sample.
-    explicit Slabs(const std::vector<vcg::Point3f>& sample);
+    explicit AxisPartition(const std::vector<vcg::Point3f>& sample);
 
     /// Cuts anew into \p count slabs, at least 1. O(count).
-    void cut(int count);
+    void split(int count);
     int count() const { return static_cast<int>(borders_.size()) - 1; }
 
     struct Range {

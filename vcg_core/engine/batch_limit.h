@@ -15,7 +15,7 @@ namespace neuralmesh {
 /// overshoots their mean (alpha_w = 0.06), its neighbours overshoot theirs at 5, and from twice as many on
 /// both swing ever wider. So batches are halved until hardly any vertex wins more than twice in one, and
 /// doubled again when that has held for a while. Where signals spread evenly nothing comes of it.
-class Crowding {
+class BatchLimit {
 public:
     /// The most signals the next batch should have; at least 1.
     int limit() const { return limit_; }
@@ -37,7 +37,7 @@ private:
     int limit_ = kUnlimited;
 };
 
-inline void Crowding::repeated(VertexId winner) {
+inline void BatchLimit::repeated(VertexId winner) {
     if (excess_ > kMostTolerated) return;
     bool third = false;
     for (const VertexId v : repeated_) third = third || v == winner;
@@ -48,7 +48,7 @@ inline void Crowding::repeated(VertexId winner) {
     }
 }
 
-inline void Crowding::end_batch(int count) {
+inline void BatchLimit::end_batch(int count) {
     if (excess_ > std::min(kTolerated + count / kSignalsPerTolerated, kMostTolerated)) {
         limit_ = count > 1 ? count / 2 : 1;
         calm_ = 0;

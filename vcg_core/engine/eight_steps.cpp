@@ -22,22 +22,23 @@ constexpr float kTiny = 1e-36F;
 }  // namespace
 
 /// The loops over the lanes, each compiled for every instruction set.
-struct Patches::Kernels {
+struct EightSteps::Kernels {
     static constexpr int kOuter = 4;  ///< outer vertices of a star that are gathered without a branch
     static constexpr int kPast = 2;   ///< in the ring of r_i, from w past w itself and r_(i-1)
 
-    [[gnu::always_inline]] static inline void gather_star(Patches& p, const Network& network, int i);
-    static void gather_whole(Star& star, const Patches& p, const Slot* slots, const Ring& ring, int lane);
-    NEURALMESH_MULTIVERSIONED static void gather(Patches& p, const Network& network);
-    NEURALMESH_MULTIVERSIONED static void move_winners(Patches& p, const vcg::Point3f* signals,
+    [[gnu::always_inline]] static inline void gather_star(EightSteps& p, const Network& network, int i);
+    static void gather_whole(Star& star, const EightSteps& p, const VertexRecord* slots, const Ring& ring,
+                             int lane);
+    NEURALMESH_MULTIVERSIONED static void gather(EightSteps& p, const Network& network);
+    NEURALMESH_MULTIVERSIONED static void move_winners(EightSteps& p, const vcg::Point3f* signals,
                                                        float alpha_w);
-    NEURALMESH_MULTIVERSIONED static void smooth(Patches& p, int sweeps, float alpha_l);
-    NEURALMESH_MULTIVERSIONED static void take_normals(const Patches& p, EightVectors& normals);
-    NEURALMESH_MULTIVERSIONED static void displacements(const Patches& p, Four* const* to);
+    NEURALMESH_MULTIVERSIONED static void smooth(EightSteps& p, int sweeps, float alpha_l);
+    NEURALMESH_MULTIVERSIONED static void take_normals(const EightSteps& p, EightVectors& normals);
+    NEURALMESH_MULTIVERSIONED static void displacements(const EightSteps& p, Four* const* to);
 };
 
-NEURALMESH_MULTIVERSIONED void Patches::Kernels::gather(Patches& p, const Network& network) {
-    const Slot* slots = network.slots();
+NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::gather(EightSteps& p, const Network& network) {
+    const VertexRecord* slots = network.slots();
     Four points[kLanes];
     for (int lane = 0; lane < kLanes; ++lane) {
         p.rings_[lane] = &network.ring(p.winners_[lane]);
@@ -56,8 +57,8 @@ NEURALMESH_MULTIVERSIONED void Patches::Kernels::gather(Patches& p, const Networ
     close_cycle(p.at_, p.valence_);
 }
 
-void Patches::Kernels::gather_star(Patches& p, const Network& network, int i) {
-    const Slot* slots = network.slots();
+void EightSteps::Kernels::gather_star(EightSteps& p, const Network& network, int i) {
+    const VertexRecord* slots = network.slots();
     Star& star = p.stars_[i];
     Four points[kOuter][kLanes];
     EightInts counts;
@@ -66,8 +67,9 @@ void Patches::Kernels::gather_star(Patches& p, const Network& network, int i) {
         const Ring& ring = network.ring((*p.rings_[lane])[i]);
         // How many there are nobody can predict, so there is no branch for it: past the last the ring goes
         // on, and what is read there does not count.
-        const VertexId* outer = ring.neighbours.data() + std::min(ring.position_of(p.winners_[lane]) + kPast,
-                                                                  Ring::kMaxValence - kOuter);
+        const VertexId* outer =
+            ring.neighbours.data() +
+            std::min(ring.find_existing(p.winners_[lane]) + kPast, Ring::kMaxValence - kOuter);
         for (int m = 0; m < kOuter; ++m) points[m][lane] = load_raw(&slots[outer[m]]);
         counts[lane] = ring.valence - 3;
         star.moves[lane] = static_cast<std::int32_t>(ring.open) - 1;
@@ -99,10 +101,10 @@ void Patches::Kernels::gather_star(Patches& p, const Network& network, int i) {
 }
 
 /// One lane of a star with many outer vertices.
-void Patches::Kernels::gather_whole(Star& star, const Patches& p, const Slot* slots, const Ring& ring,
-                                    int lane) {
+void EightSteps::Kernels::gather_whole(Star& star, const EightSteps& p, const VertexRecord* slots,
+                                       const Ring& ring, int lane) {
     const vcg::Point3f origin(p.origin_.x[lane], p.origin_.y[lane], p.origin_.z[lane]);
-    const int past = ring.position_of(p.winners_[lane]) + kPast;
+    const int past = ring.find_existing(p.winners_[lane]) + kPast;
     const auto outer = [&](int m) { return slots[ring[(past + m) % ring.valence]].point() - origin; };
     vcg::Point3f last = outer(0);
     vcg::Point3f sum = last;
@@ -124,8 +126,8 @@ void Patches::Kernels::gather_whole(Star& star, const Patches& p, const Slot* sl
     store(star.area, area);
 }
 
-NEURALMESH_MULTIVERSIONED void Patches::Kernels::move_winners(Patches& p, const vcg::Point3f* signals,
-                                                              float alpha_w) {
+NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::move_winners(EightSteps& p, const vcg::Point3f* signals,
+                                                                 float alpha_w) {
     EightVectors s;
     for (int lane = 0; lane < kLanes; ++lane) {
         s.x[lane] = signals[lane][0];
@@ -139,7 +141,7 @@ NEURALMESH_MULTIVERSIONED void Patches::Kernels::move_winners(Patches& p, const 
     p.winner_at_.z += s.z * alpha_w;
 }
 
-NEURALMESH_MULTIVERSIONED void Patches::Kernels::smooth(Patches& p, int sweeps, float alpha_l) {
+NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::smooth(EightSteps& p, int sweeps, float alpha_l) {
     const EightVectors w = p.winner_at_;
     Eight rate[kMost];
     for (int i = 0; i < p.valence_; ++i) {
@@ -181,7 +183,7 @@ NEURALMESH_MULTIVERSIONED void Patches::Kernels::smooth(Patches& p, int sweeps, 
     for (int i = 0; i < p.valence_ + 2; ++i) p.at_[i] = from[i];
 }
 
-NEURALMESH_MULTIVERSIONED void Patches::Kernels::take_normals(const Patches& p, EightVectors& normals) {
+NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::take_normals(const EightSteps& p, EightVectors& normals) {
     const EightVectors w = p.winner_at_;
     EightVectors sum{};
     EightVectors a = p.at_[1];
@@ -210,7 +212,7 @@ NEURALMESH_MULTIVERSIONED void Patches::Kernels::take_normals(const Patches& p, 
     normals.z = sum.z / length;
 }
 
-NEURALMESH_MULTIVERSIONED void Patches::Kernels::displacements(const Patches& p, Four* const* to) {
+NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::displacements(const EightSteps& p, Four* const* to) {
     Four moved[kLanes];
     transpose(p.winner_at_, moved);
     for (int lane = 0; lane < kLanes; ++lane) to[lane][0] = moved[lane];
@@ -222,20 +224,20 @@ NEURALMESH_MULTIVERSIONED void Patches::Kernels::displacements(const Patches& p,
     }
 }
 
-void Patches::gather(const Network& network, const VertexId* winners, int count) {
+void EightSteps::gather(const Network& network, const VertexId* winners, int count) {
     valence_ = network.ring(winners[0]).valence;
     for (int lane = 0; lane < kLanes; ++lane) winners_[lane] = winners[lane < count ? lane : 0];
     Kernels::gather(*this, network);
 }
 
-void Patches::move_winners(const vcg::Point3f* signals, float alpha_w) {
+void EightSteps::move_winners(const vcg::Point3f* signals, float alpha_w) {
     Kernels::move_winners(*this, signals, alpha_w);
 }
 
-void Patches::smooth(int sweeps, float alpha_l) { Kernels::smooth(*this, sweeps, alpha_l); }
+void EightSteps::smooth(int sweeps, float alpha_l) { Kernels::smooth(*this, sweeps, alpha_l); }
 
-void Patches::take_normals(EightVectors& normals) const { Kernels::take_normals(*this, normals); }
+void EightSteps::take_normals(EightVectors& normals) const { Kernels::take_normals(*this, normals); }
 
-void Patches::displacements(Four* const* to) const { Kernels::displacements(*this, to); }
+void EightSteps::displacements(Four* const* to) const { Kernels::displacements(*this, to); }
 
 }  // namespace neuralmesh

@@ -20,7 +20,7 @@ namespace neuralmesh {
 /// So what they add to the mean and to the area vector of the star of r_i is summed once, and a sweep costs
 /// two cross products and one division per ring vertex. (Where three edges bound no face, or a ring
 /// vertex has valence 3, an o_j is itself in the ring; it is then seen where it stood before the sweeps.)
-class Patches {
+class EightSteps {
 public:
     static constexpr int kLanes = 8;
 

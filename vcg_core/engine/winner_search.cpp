@@ -33,7 +33,7 @@ constexpr float kFar = 1e30F;
 /// Squared distance and vertex in one number that orders by distance, then by id: the bits of a non-negative
 /// float order like the float.
 using Candidate = std::uint64_t;
-constexpr Candidate kNobody = Candidate{0x7f800000} << 32 | 0xffffffff;
+constexpr Candidate kSentinel = Candidate{0x7f800000} << 32 | 0xffffffff;
 
 Candidate candidate(float squared_distance, VertexId v) {
     std::uint32_t bits = 0;
@@ -41,7 +41,7 @@ Candidate candidate(float squared_distance, VertexId v) {
     return Candidate{bits} << 32 | static_cast<std::uint32_t>(v);
 }
 
-Candidate candidate(const Slot& slot, VertexId v, const vcg::Point3f& s) {
+Candidate candidate(const VertexRecord& slot, VertexId v, const vcg::Point3f& s) {
     const float x = slot.x - s[0];
     const float y = slot.y - s[1];
     const float z = slot.z - s[2];
@@ -83,7 +83,7 @@ template <class Ints>
 
 /// The nearest vertex in the 2 x 2 x 2 cells from \p low on. The eight lists are walked abreast, to the end
 /// of the longest and without a branch per vertex: which cells are empty is unpredictable.
-NEURALMESH_MULTIVERSIONED Candidate scan_eight_cells(const Slot* slots, const VertexId* heads,
+NEURALMESH_MULTIVERSIONED Candidate scan_eight_cells(const VertexRecord* slots, const VertexId* heads,
                                                      const WinnerSearch::CellLists& lists, FourInts low,
                                                      const vcg::Point3f& s) {
     EightWords buckets;
@@ -116,9 +116,9 @@ NEURALMESH_MULTIVERSIONED Candidate scan_eight_cells(const Slot* slots, const Ve
     std::int32_t winners[8];
     std::memcpy(distances, &least, sizeof distances);
     std::memcpy(winners, &nearest, sizeof winners);
-    Candidate best = kNobody;
+    Candidate best = kSentinel;
     for (int i = 0; i < 8; ++i) best = std::min(best, candidate(distances[i], winners[i]));
-    return squared_distance_of(best) < kFar ? best : kNobody;
+    return squared_distance_of(best) < kFar ? best : kSentinel;
 }
 
 /// Mean edge length, from every vertex's first edge.
@@ -168,7 +168,7 @@ void WinnerSearch::lay_out() {
         if (network_.alive(v)) add(v);
 }
 
-void WinnerSearch::divide(int axis, float place) {
+void WinnerSearch::split_table(int axis, float place) {
     divided_ = true;
     axis_ = axis;
     place_ = std::clamp(place, -1.0F, 1.0F);
@@ -183,15 +183,15 @@ std::size_t WinnerSearch::bucket_of(std::int32_t x, std::int32_t y, std::int32_t
 }
 
 void WinnerSearch::link(VertexId v, std::size_t bucket) {
-    network_.slots()[v].next_in_cell = heads_[bucket];
+    network_.slots()[v].link = heads_[bucket];
     heads_[bucket] = v;
 }
 
 void WinnerSearch::unlink(VertexId v, std::size_t bucket) {
-    Slot* slots = network_.slots();
+    VertexRecord* slots = network_.slots();
     VertexId* link = &heads_[bucket];
-    while (*link != v) link = &slots[*link].next_in_cell;
-    *link = slots[v].next_in_cell;
+    while (*link != v) link = &slots[*link].link;
+    *link = slots[v].link;
 }
 
 void WinnerSearch::enter(FourInts cell) {
@@ -246,26 +246,26 @@ void WinnerSearch::prefetch_vertices(const vcg::Point3f& s) const {
 }
 
 std::uint64_t WinnerSearch::scan_box(const vcg::Point3f& s, float reach) const {
-    const Slot* slots = network_.slots();
+    const VertexRecord* slots = network_.slots();
     const FourInts low = cell_of(s - vcg::Point3f(reach, reach, reach));
     const FourInts high = cell_of(s + vcg::Point3f(reach, reach, reach));
-    Candidate best = kNobody;
+    Candidate best = kSentinel;
     for (std::int32_t z = low[2]; z <= high[2]; ++z)
         for (std::int32_t y = low[1]; y <= high[1]; ++y)
             for (std::int32_t x = low[0]; x <= high[0]; ++x)
-                for (VertexId v = heads_[bucket_of(x, y, z)]; v >= 0; v = slots[v].next_in_cell)
+                for (VertexId v = heads_[bucket_of(x, y, z)]; v >= 0; v = slots[v].link)
                     best = std::min(best, candidate(slots[v], v, s));
     return best;
 }
 
 std::uint64_t WinnerSearch::scan_far(const vcg::Point3f& s) const {
-    const Slot* slots = network_.slots();
-    Candidate best = kNobody;
+    const VertexRecord* slots = network_.slots();
+    Candidate best = kSentinel;
     const float to_cells = inverse_edge_ * inverse_edge_;
     inhabited_.nearest({(s[0] + kOffset) * inverse_edge_, (s[1] + kOffset) * inverse_edge_,
                         (s[2] + kOffset) * inverse_edge_},
                        kFarRounding, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
-                           for (VertexId v = heads_[bucket_of(x, y, z)]; v >= 0; v = slots[v].next_in_cell)
+                           for (VertexId v = heads_[bucket_of(x, y, z)]; v >= 0; v = slots[v].link)
                                best = std::min(best, candidate(slots[v], v, s));
                            // Those at the same distance count, too: the smaller id wins.
                            return squared_distance_of(best) * to_cells * (1 + kRounding * kRounding);
@@ -274,8 +274,8 @@ std::uint64_t WinnerSearch::scan_far(const vcg::Point3f& s) const {
 }
 
 std::uint64_t WinnerSearch::scan_all(const vcg::Point3f& s) const {
-    const Slot* slots = network_.slots();
-    Candidate best = kNobody;
+    const VertexRecord* slots = network_.slots();
+    Candidate best = kSentinel;
     for (VertexId v = 0; v < network_.slot_count(); ++v)
         if (network_.alive(v)) best = std::min(best, candidate(slots[v], v, s));
     return best;
@@ -286,8 +286,8 @@ VertexId WinnerSearch::winner(const vcg::Point3f& s) const {
     const float rounding = std::max(kRounding * edge_, kLeastRounding);
     const float sure = 0.5F * edge_ - rounding;
     if (squared_distance_of(best) < sure * sure) return vertex_of(best);
-    if (best == kNobody) best = scan_box(s, 2 * edge_);
-    if (best != kNobody) {
+    if (best == kSentinel) best = scan_box(s, 2 * edge_);
+    if (best != kSentinel) {
         const float reach = std::sqrt(squared_distance_of(best)) + rounding;
         if (2 * reach * inverse_edge_ < kMostAcross) return vertex_of(scan_box(s, reach));
     }

@@ -54,36 +54,36 @@ public:
     /// \p v is about to be removed. O(1) expected.
     void remove(VertexId v);
     /// A vertex that has moved from one cell to another, of which the grid does not know yet.
-    struct Crossing {
+    struct CellChange {
         FourInts from;
         FourInts to;
         VertexId vertex;
     };
     /// Moves \p v to \p where (x, y, z, 0) in the network. If it leaves its cell it is only added to \p
-    /// crossings, which are to be handed to follow() before the next search: so threads may move different
+    /// cell_changes, which are to be handed to follow() before the next search: so threads may move different
     /// vertices at once. O(1).
-    void move(VertexId v, Four where, std::vector<Crossing>& crossings) {
-        Slot* slot = &network_.slots()[v];
+    void move(VertexId v, Four where, std::vector<CellChange>& cell_changes) {
+        VertexRecord* slot = &network_.slots()[v];
         const FourInts from = cell_of(load_xyz(slot));
         const FourInts to = cell_of(where);
         if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0)
-            crossings.push_back({from, to, v});
+            cell_changes.push_back({from, to, v});
         store_xyz(slot, where);
     }
     /// Those of one vertex must come in their order. O(1) expected for each.
-    void follow(const std::vector<Crossing>& crossings) {
-        for (const Crossing& c : crossings) relink(c.vertex, c.from, c.to);
+    void follow(const std::vector<CellChange>& cell_changes) {
+        for (const CellChange& c : cell_changes) relink(c.vertex, c.from, c.to);
     }
     /// Moves \p v to \p where, in the network and in the grid. O(1) expected.
     void move(VertexId v, const vcg::Point3f& where) {
-        std::vector<Crossing> crossings;
-        move(v, Four{where[0], where[1], where[2], 0}, crossings);
-        follow(crossings);
+        std::vector<CellChange> cell_changes;
+        move(v, Four{where[0], where[1], where[2], 0}, cell_changes);
+        follow(cell_changes);
     }
     /// From now on cells on different sides of the plane where coordinate \p axis is \p place never share a
     /// list: for two threads, one on each side, which else would look at each other's vertices all over the
     /// mesh. O(vertices).
-    void divide(int axis, float place);
+    void split_table(int axis, float place);
     /// Lays the grid out anew if the network has outgrown it.
     void keep_up();
 

@@ -42,34 +42,36 @@ int face_with(const Surface& surface, VertexId a, VertexId b, VertexId c) {
     return -1;
 }
 
-Vec normal_of(const Vec& a, const Vec& b, const Vec& c) { return area_vector(a, b, c).normalized(); }
+Vector3 normal_of(const Vector3& a, const Vector3& b, const Vector3& c) {
+    return area_vector(a, b, c).normalized();
+}
 
 class Judge {
 public:
-    Judge(const Surface& surface, const FacePoints& points, const Support& support)
+    Judge(const Surface& surface, const PointsByFace& points, const Support& support)
         : surface_(surface), points_(points), support_(support) {}
 
     /// Drop of the sum of squared distances by the flip of \p q; negative if the flip is out of the question.
     float gain(const Quad& q, float least_gain) const {
-        const Vec& a = at(q.a);
-        const Vec& b = at(q.b);
-        const Vec& c = at(q.c);
-        const Vec& d = at(q.d);
-        const Vec old_f = normal_of(a, b, c);
-        const Vec old_g = normal_of(b, a, d);
-        const Vec new_f = normal_of(c, d, b);
-        const Vec new_g = normal_of(d, c, a);
+        const Vector3& a = at(q.a);
+        const Vector3& b = at(q.b);
+        const Vector3& c = at(q.c);
+        const Vector3& d = at(q.d);
+        const Vector3 old_f = normal_of(a, b, c);
+        const Vector3 old_g = normal_of(b, a, d);
+        const Vector3 new_f = normal_of(c, d, b);
+        const Vector3 new_g = normal_of(d, c, a);
         // The other four edges of the quad, and its diagonal.
-        const Vec bc = normal_beyond(surface_, q.b, q.c);
-        const Vec ca = normal_beyond(surface_, q.c, q.a);
-        const Vec ad = normal_beyond(surface_, q.a, q.d);
-        const Vec db = normal_beyond(surface_, q.d, q.b);
+        const Vector3 bc = normal_beyond(surface_, q.b, q.c);
+        const Vector3 ca = normal_beyond(surface_, q.c, q.a);
+        const Vector3 ad = normal_beyond(surface_, q.a, q.d);
+        const Vector3 db = normal_beyond(surface_, q.d, q.b);
         const float old_fold =
             std::min({old_f.dot(bc), old_f.dot(ca), old_g.dot(ad), old_g.dot(db), old_f.dot(old_g)});
         const float new_fold =
             std::min({new_f.dot(bc), new_g.dot(ca), new_g.dot(ad), new_f.dot(db), new_f.dot(new_g)});
         const bool unfolds = old_fold < kSharpestFold && new_fold > old_fold + kUnfolding;
-        const Vec mean = (old_f + old_g).normalized();
+        const Vector3 mean = (old_f + old_g).normalized();
         if (!unfolds && !(new_f.dot(mean) > kLeastTurn && new_g.dot(mean) > kLeastTurn)) return -1;
         if (new_fold < std::min(kSharpestFold, old_fold)) return -1;
         const float old_quality = std::min(triangle_quality(a, b, c), triangle_quality(b, a, d));
@@ -84,7 +86,7 @@ public:
     }
 
 private:
-    const Vec& at(VertexId v) const { return surface_.at[index(v)]; }
+    const Vector3& at(VertexId v) const { return surface_.at[index(v)]; }
 
     /// \return a negative number for a flip that would stretch surface over where there are no points
     float distance_drop(const Quad& q) const {
@@ -94,7 +96,7 @@ private:
         float count_f = 0;
         for (const int face : {q.f, q.g}) {
             for (int i = points_.first[index(face)]; i < points_.first[index(face) + 1]; ++i) {
-                const FacePoints::Tie& tie = points_.ties[index(i)];
+                const PointsByFace::Tie& tie = points_.ties[index(i)];
                 const float f = foot_on_triangle(tie.point, at(q.c), at(q.d), at(q.b)).squared_distance;
                 const float g = foot_on_triangle(tie.point, at(q.d), at(q.c), at(q.a)).squared_distance;
                 drop += tie.influence * (tie.foot.squared_distance - std::min(f, g));
@@ -125,14 +127,14 @@ private:
     float area(VertexId a, VertexId b, VertexId c) const { return area_vector(at(a), at(b), at(c)).norm(); }
 
     const Surface& surface_;
-    const FacePoints& points_;
+    const PointsByFace& points_;
     const Support& support_;
 };
 
 }  // namespace
 
-std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface, const FacePoints& points,
-                                 float least_gain, Team& team) {
+std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface, const PointsByFace& points,
+                                 float least_gain, ThreadTeam& team) {
     constexpr std::size_t kChunk = 256;
     const Support support(network, surface, points);
     const Judge judge(surface, points, support);

@@ -20,8 +20,8 @@ struct EdgeFlip {
 /// sliver. Where the points do not care and the surface is flat, a flip counts with a gain of 0 if it makes
 /// the worse of the two faces better by a fifth, in triangle_quality(). \p surface and \p points are those of
 /// the network. O(points x 3), by \p team, with the same result for any number of them.
-std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface, const FacePoints& points,
-                                 float least_gain, Team& team);
+std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface, const PointsByFace& points,
+                                 float least_gain, ThreadTeam& team);
 
 /// Flips those of \p found in their order that have no face in common with one flipped before and no corner
 /// that is \p barred (by slot). \return the number of flips

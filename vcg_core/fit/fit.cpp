@@ -37,8 +37,8 @@ void settle_origins(const Network& before, const Network& after, std::vector<Ver
     for (VertexId v = 0; v < after.slot_count(); ++v) {
         if (!after.alive(v)) origin[index(v)] = -1;
         if (!after.alive(v) || origin[index(v)] == v) continue;
-        const Vec here = vec(after.position(v));
-        const auto distance = [&](VertexId u) { return (vec(before.position(u)) - here).squaredNorm(); };
+        const Vector3 here = to_eigen(after.position(v));
+        const auto distance = [&](VertexId u) { return (to_eigen(before.position(u)) - here).squaredNorm(); };
         VertexId nearest = origin[index(v)];
         for (VertexId from = -1; from != nearest;) {
             from = nearest;
@@ -55,12 +55,12 @@ int automatic_rounds(int vertices) { return std::min(20, std::max(8, 40000 / std
 
 /// What the rounds come to.
 struct Rounds {
-    Followed at_start;  ///< the points held back, with the directions of the mesh before
+    TrackedPoints at_start;  ///< the points held back, with the directions of the mesh before
     Network best;
     double best_error = 0;
 };
 
-Rounds take_rounds(Network& network, FitSteps& steps, const FitOptions& options, FitReport& report,
+Rounds take_rounds(Network& network, Fitter& steps, const FitOptions& options, FitReport& report,
                    Progress& progress) {
     const int rounds = options.rounds > 0 ? options.rounds : automatic_rounds(network.vertex_count());
     Rounds result{{}, network};
@@ -70,7 +70,7 @@ Rounds take_rounds(Network& network, FitSteps& steps, const FitOptions& options,
         const std::string text = "Fitting to the points, round " + std::to_string(round + 1);
         if (!progress(static_cast<double>(round) / rounds, text.c_str())) break;
         Surface surface(network);
-        FacePoints ties = steps.tie(surface, round == 0);
+        PointsByFace ties = steps.tie(surface, round == 0);
         if (options.redistribute && round >= kFirstShift && round + kQuietRounds < rounds) {
             const int moved = steps.shift_vertices(surface, ties);
             report.moved_vertices += moved;
@@ -103,7 +103,7 @@ Rounds take_rounds(Network& network, FitSteps& steps, const FitOptions& options,
 /// The verdict: whether the mesh after the fit is closer to the points held back than the one before, both
 /// along the directions of the one before.
 /// \param learned_share see kLearnedShare
-void judge(Rounds& rounds, FitSteps& steps, double learned_share, FitReport& report) {
+void judge(Rounds& rounds, Fitter& steps, double learned_share, FitReport& report) {
     const Surface fitted(rounds.best);
     steps.find_again(std::move(rounds.at_start), fitted);
     const double error = steps.held_error(fitted);
@@ -131,8 +131,8 @@ FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOp
     const double learned_share = target.has_faces() ? 0.0
                                                     : kLearnedShare * network.vertex_count() /
                                                           static_cast<double>(target.positions().size());
-    Team team(thread_count(threads));
-    FitSteps steps(network, std::move(points), team);
+    ThreadTeam team(thread_count(threads));
+    Fitter steps(network, std::move(points), team);
     // By time: the reduction takes about as long as the rounds.
     PartOf untangling(progress, 0, 0.1);
     PartOf reducing(progress, 0.1, 0.5);

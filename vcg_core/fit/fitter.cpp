@@ -56,19 +56,19 @@ constexpr int kTries = 3;
 
 }  // namespace
 
-FitSteps::FitSteps(Network& network, Split points, Team& team)
+Fitter::Fitter(Network& network, Split points, ThreadTeam& team)
     : network_(network), points_(std::move(points)), team_(team), origin_(own_places(network)) {}
 
-bool FitSteps::untangle_surface(Progress& progress) {
+bool Fitter::untangle_surface(Progress& progress) {
     std::optional<std::vector<Crossing>> left = untangle(network_, team_, progress);
     if (left) guard_ = CrossingGuard(std::move(*left));
     return left.has_value();
 }
 
-FacePoints FitSteps::tie(const Surface& surface, bool exact) {
+PointsByFace Fitter::tie(const Surface& surface, bool exact) {
     const std::vector<Hit> hits =
         exact ? exact_hits(surface, points_.fitted, team_) : walked_hits(surface, points_.fitted, team_);
-    FacePoints ties = by_face(surface, points_.fitted, hits);
+    PointsByFace ties = by_face(surface, points_.fitted, hits);
     noise_ = noise_variance(surface, ties);
     if (!(outlier_ > 0)) {
         std::vector<float> distances(hits.size());
@@ -77,20 +77,20 @@ FacePoints FitSteps::tie(const Surface& surface, bool exact) {
         const float deviation = 1.4826F * median(std::move(distances));
         outlier_ = std::max(kOutlierDeviations * deviation, kOutlierEdges * mean_edge(surface));
     }
-    for (FacePoints::Tie& tie : ties.ties)
+    for (PointsByFace::Tie& tie : ties.ties)
         tie.influence = std::min(1.0F, outlier_ * outlier_ / std::max(tie.foot.squared_distance, 1e-20F));
     return ties;
 }
 
-void FitSteps::aim(const Surface& surface) {
-    const std::vector<Vec> normals = smoothed_normals(network_, surface);
-    Followed& held = points_.held;
+void Fitter::aim(const Surface& surface) {
+    const std::vector<Vector3> normals = smoothed_normals(network_, surface);
+    TrackedPoints& held = points_.held;
     held.directions.resize(held.points.size());
     for_chunks(held.points.size(), kChunk, team_, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Hit hit = walk_to_nearest(surface, held.points[i], held.near[i]);
             const Triangle& f = surface.faces[index(hit.face)];
-            held.near[i] = place_of(surface, hit);
+            held.near[i] = walk_start_of(surface, hit);
             held.directions[i] =
                 (hit.foot.weights[0] * normals[index(f[0])] + hit.foot.weights[1] * normals[index(f[1])] +
                  hit.foot.weights[2] * normals[index(f[2])])
@@ -99,20 +99,20 @@ void FitSteps::aim(const Surface& surface) {
     });
 }
 
-double FitSteps::held_error(const Surface& surface) const {
+double Fitter::held_error(const Surface& surface) const {
     constexpr int kSteps = 2;
-    const Followed& held = points_.held;
+    const TrackedPoints& held = points_.held;
     std::vector<float> squared(held.points.size());
     for_chunks(held.points.size(), kChunk, team_, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             // The point of the line nearest to the surface's point nearest to it, and so on: where they meet.
-            Place near = held.near[i];
+            WalkStart near = held.near[i];
             float along = 0;
             for (int step = 0; step < kSteps; ++step) {
-                const Vec from = held.points[i] + along * held.directions[i];
+                const Vector3 from = held.points[i] + along * held.directions[i];
                 const Hit hit = walk_to_nearest(surface, from, near);
-                near = place_of(surface, hit);
-                Vec foot = Vec::Zero();
+                near = walk_start_of(surface, hit);
+                Vector3 foot = Vector3::Zero();
                 for (std::size_t k = 0; k < 3; ++k) foot += hit.foot.weights[k] * surface.corner(hit.face, k);
                 along += (foot - from).dot(held.directions[i]);
                 if (step + 1 == kSteps) squared[i] = along * along;
@@ -124,7 +124,7 @@ double FitSteps::held_error(const Surface& surface) const {
     return std::sqrt(sum / static_cast<double>(squared.size()));
 }
 
-double FitSteps::move(const FacePoints& ties, Surface& surface) {
+double Fitter::move(const PointsByFace& ties, Surface& surface) {
     std::vector<float> weights{weight_, weight_ / kWeightDown, weight_ * kWeightUp};
     if (moves_ == 0) weights.assign(std::begin(kFirstWeights), std::end(kFirstWeights));
     float least = kFirstLeastWeight;
@@ -138,8 +138,8 @@ double FitSteps::move(const FacePoints& ties, Surface& surface) {
     weights.erase(std::unique(weights.begin(), weights.end()), weights.end());
     const Surface start = surface;
     const MoveLimits limits(network_, start);
-    const FitSystem system(network_, surface, ties, team_);
-    std::vector<std::vector<Vec>> moved(weights.size());
+    const PointToPlaneSystem system(network_, surface, ties, team_);
+    std::vector<std::vector<Vector3>> moved(weights.size());
     for_chunks(weights.size(), 1, team_, [&](std::size_t i, std::size_t, std::size_t) {
         moved[i] = limits.bounded(system.solve(weights[i]));
     });
@@ -160,17 +160,17 @@ double FitSteps::move(const FacePoints& ties, Surface& surface) {
         best_rms = held_error(surface);
     }
     for (VertexId v = 0; v < network_.slot_count(); ++v)
-        if (network_.alive(v)) network_.set_position(v, point(surface.at[index(v)]));
+        if (network_.alive(v)) network_.set_position(v, to_vcg(surface.at[index(v)]));
     return best_rms;
 }
 
 /// New feet after the vertices have moved, on the same faces.
-void FitSteps::follow(const Surface& surface, FacePoints& ties) const {
+void Fitter::follow(const Surface& surface, PointsByFace& ties) const {
     for_chunks(surface.faces.size(), kChunk, team_, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
             const int face = static_cast<int>(f);
             for (int i = ties.first[f]; i < ties.first[f + 1]; ++i) {
-                FacePoints::Tie& tie = ties.ties[index(i)];
+                PointsByFace::Tie& tie = ties.ties[index(i)];
                 tie.foot = foot_on_triangle(tie.point, surface.corner(face, 0), surface.corner(face, 1),
                                             surface.corner(face, 2));
             }
@@ -179,7 +179,7 @@ void FitSteps::follow(const Surface& surface, FacePoints& ties) const {
 }
 
 /// What the split of an edge has to gain, as a sum of squared distances.
-float FitSteps::least_gain(const Surface& surface) const {
+float Fitter::least_gain(const Surface& surface) const {
     const float small = kSmallNoise * mean_edge(surface);
     return noise_ * std::min(kMostSplitVariances,
                              kLeastSplitVariances * (1 + noise_ / std::max(small * small, 1e-20F)));
@@ -189,7 +189,7 @@ float FitSteps::least_gain(const Surface& surface) const {
 /// alone; if then the guard objects, it is undone and tried again without the vertices objected to. \return
 /// what it does
 template <class Change>
-auto FitSteps::guarded(const Surface& surface, const Change& change) {
+auto Fitter::guarded(const Surface& surface, const Change& change) {
     const Network before = network_;
     std::vector<char> barred(index(network_.slot_count()), 0);
     for (int tries = 0;; ++tries) {
@@ -205,28 +205,28 @@ auto FitSteps::guarded(const Surface& surface, const Change& change) {
 }
 
 /// What was near to a vertex that is gone is near to the one it went into.
-void FitSteps::move_on(const std::vector<Shifts::Merge>& merges) {
+void Fitter::move_on(const std::vector<VertexMoves::DoneCollapse>& merges) {
     std::vector<VertexId> heir(index(network_.slot_count()));
     std::iota(heir.begin(), heir.end(), 0);
-    for (const Shifts::Merge& merge : merges) heir[index(merge.gone)] = merge.into;
-    for (Followed* followed : {&points_.fitted, &points_.held})
-        for (Place& place : followed->near) place.vertex = heir[index(place.vertex)];
+    for (const VertexMoves::DoneCollapse& merge : merges) heir[index(merge.gone)] = merge.into;
+    for (TrackedPoints* followed : {&points_.fitted, &points_.held})
+        for (WalkStart& place : followed->near) place.vertex = heir[index(place.vertex)];
 }
 
-int FitSteps::shift_vertices(const Surface& surface, const FacePoints& ties) {
+int Fitter::shift_vertices(const Surface& surface, const PointsByFace& ties) {
     const int most =
         std::max(1, static_cast<int>(kShiftedShare * static_cast<double>(network_.vertex_count())));
     const Redistribution plan = plan_redistribution(network_, surface, ties, least_gain(surface), team_);
-    const Shifts done = guarded(
+    const VertexMoves done = guarded(
         surface, [&](const std::vector<char>& barred) { return redistribute(network_, plan, most, barred); });
     if (done.merges.empty()) return 0;
     move_on(done.merges);
-    for (const Shifts::Insertion& insertion : done.insertions)
+    for (const VertexMoves::Insertion& insertion : done.insertions)
         origin_[index(insertion.added)] = origin_[index(insertion.beside)];
     return static_cast<int>(done.merges.size());
 }
 
-bool FitSteps::reduce_to(int vertices, Progress& progress) {
+bool Fitter::reduce_to(int vertices, Progress& progress) {
     PartOf reducing(progress, 0, 0.9);
     PartOf untangling(progress, 0.9, 1);
     wait_for_reduction();
@@ -238,15 +238,15 @@ bool FitSteps::reduce_to(int vertices, Progress& progress) {
         if (!reducing(static_cast<double>(at_start - left) / (at_start - vertices), text.c_str()))
             return false;
         Surface surface(network_);
-        FacePoints ties = tie(surface, round == 0);
+        PointsByFace ties = tie(surface, round == 0);
         if (round == 0) find_held(surface);
         if (round > 0) {
-            const std::vector<Merger> mergers = plan_reduction(network_, surface, ties, team_);
+            const std::vector<Collapse> mergers = plan_reduction(network_, surface, ties, team_);
             const int most = std::min(network_.vertex_count() - vertices,
                                       1 + static_cast<int>(kReducedShare * network_.vertex_count()));
-            const std::vector<Shifts::Merge> merges = guarded(surface, [&](const std::vector<char>& barred) {
-                return reduce(network_, mergers, most, barred);
-            });
+            const std::vector<VertexMoves::DoneCollapse> merges = guarded(
+                surface,
+                [&](const std::vector<char>& barred) { return reduce(network_, mergers, most, barred); });
             if (merges.empty()) return false;
             move_on(merges);
             surface = Surface(network_);
@@ -262,8 +262,8 @@ bool FitSteps::reduce_to(int vertices, Progress& progress) {
 }
 
 /// A part of the points, which are in random order, is enough to reduce by.
-void FitSteps::wait_for_reduction() {
-    std::vector<Vec>& fitted = points_.fitted.points;
+void Fitter::wait_for_reduction() {
+    std::vector<Vector3>& fitted = points_.fitted.points;
     const auto enough =
         std::min(fitted.size(),
                  std::max(kLeastReducingPoints, kReducingPointsPerVertex * index(network_.vertex_count())));
@@ -272,17 +272,17 @@ void FitSteps::wait_for_reduction() {
     fitted.erase(rest, fitted.end());
 }
 
-void FitSteps::find_held(const Surface& surface) {
+void Fitter::find_held(const Surface& surface) {
     by_face(surface, points_.held, exact_hits(surface, points_.held, team_));
 }
 
-void FitSteps::find_again(Followed held, const Surface& surface) {
+void Fitter::find_again(TrackedPoints held, const Surface& surface) {
     points_.held = std::move(held);
     const std::vector<Hit> hits = exact_hits(surface, points_.held, team_);
-    for (std::size_t i = 0; i < hits.size(); ++i) points_.held.near[i] = place_of(surface, hits[i]);
+    for (std::size_t i = 0; i < hits.size(); ++i) points_.held.near[i] = walk_start_of(surface, hits[i]);
 }
 
-int FitSteps::flip(const Surface& surface, FacePoints& ties) {
+int Fitter::flip(const Surface& surface, PointsByFace& ties) {
     follow(surface, ties);
     const std::vector<EdgeFlip> found = find_flips(network_, surface, ties, kFlipVariances * noise_, team_);
     return guarded(surface,

@@ -15,10 +15,10 @@
 namespace neuralmesh {
 
 /// A network on its way to the points. fit_to_points() takes the steps in their order.
-class FitSteps {
+class Fitter {
 public:
     /// References to \p network and \p team are kept; there are fitted and held-back points.
-    FitSteps(Network& network, Split points, Team& team);
+    Fitter(Network& network, Split points, ThreadTeam& team);
 
     /// Smooths out where the surface cuts itself, and from then on guards what is left of that. False if \p
     /// progress asks to stop; then the network is as it was.
@@ -28,7 +28,7 @@ public:
     bool reduce_to(int vertices, Progress& progress);
 
     /// Ties every fitted point to its nearest face, by a tree (\p exact) or from where it was last.
-    FacePoints tie(const Surface& surface, bool exact);
+    PointsByFace tie(const Surface& surface, bool exact);
     /// Finds the points held back, exactly.
     void find_held(const Surface& surface);
     /// Measures from now on along the smoothed normals of \p surface.
@@ -40,16 +40,16 @@ public:
     /// Solves for several bending weights, takes what brings the points held back closest: moves the vertices
     /// of the network there, and \p surface, which is its surface, with them. \return the error of the points
     /// held back
-    double move(const FacePoints& ties, Surface& surface);
+    double move(const PointsByFace& ties, Surface& surface);
     /// Moves vertices to where the error is. \return how many
-    int shift_vertices(const Surface& surface, const FacePoints& ties);
+    int shift_vertices(const Surface& surface, const PointsByFace& ties);
     /// Flips edges where that brings the points closer; new feet for \p ties first. \return how many
-    int flip(const Surface& surface, FacePoints& ties);
+    int flip(const Surface& surface, PointsByFace& ties);
 
     /// The points held back with their directions: to judge two meshes by the same ones.
-    const Followed& held() const { return points_.held; }
+    const TrackedPoints& held() const { return points_.held; }
     /// Takes \p held for them and finds where they are on \p surface; their directions stay.
-    void find_again(Followed held, const Surface& surface);
+    void find_again(TrackedPoints held, const Surface& surface);
     /// For every slot the vertex beside which it was put in, or itself.
     const std::vector<VertexId>& origin() const { return origin_; }
     float variance() const { return noise_; }  ///< of the noise
@@ -59,13 +59,13 @@ private:
     template <class Change>
     auto guarded(const Surface& surface, const Change& change);
     float least_gain(const Surface& surface) const;
-    void move_on(const std::vector<Shifts::Merge>& merges);
-    void follow(const Surface& surface, FacePoints& ties) const;
+    void move_on(const std::vector<VertexMoves::DoneCollapse>& merges);
+    void follow(const Surface& surface, PointsByFace& ties) const;
 
     Network& network_;
     Split points_;
-    std::vector<Vec> waiting_;  ///< points for after the reduction
-    Team& team_;
+    std::vector<Vector3> waiting_;  ///< points for after the reduction
+    ThreadTeam& team_;
     float outlier_ = 0;  ///< for the judgement: fixed from the start
     float noise_ = 0;    ///< variance
     float weight_ = 0;

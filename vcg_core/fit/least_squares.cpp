@@ -33,11 +33,11 @@ constexpr double kTolerance = 1e-2;
 
 constexpr std::size_t kChunk = 256;
 
-Block outer(const Vec& n) {
+Symmetric3 outer(const Vector3& n) {
     return {n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2], n[2] * n[2]};
 }
 
-double dot(const std::vector<Vec>& a, const std::vector<Vec>& b) {
+double dot(const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += static_cast<double>(a[i].dot(b[i]));
     return sum;
@@ -45,21 +45,22 @@ double dot(const std::vector<Vec>& a, const std::vector<Vec>& b) {
 
 }  // namespace
 
-FitSystem::FaceSums FitSystem::sum_over(const Surface& surface, const FacePoints& points, int face) {
+PointToPlaneSystem::FaceSums PointToPlaneSystem::sum_over(const Surface& surface, const PointsByFace& points,
+                                                          int face) {
     FaceSums sums;
-    sums.force.fill(Vec::Zero());
-    const Vec& a = surface.corner(face, 0);
-    const Vec& b = surface.corner(face, 1);
-    const Vec& c = surface.corner(face, 2);
-    const Vec normal = area_vector(a, b, c).normalized();
+    sums.force.fill(Vector3::Zero());
+    const Vector3& a = surface.corner(face, 0);
+    const Vector3& b = surface.corner(face, 1);
+    const Vector3& c = surface.corner(face, 2);
+    const Vector3 normal = area_vector(a, b, c).normalized();
     for (int i = points.first[index(face)]; i < points.first[index(face) + 1]; ++i) {
-        const FacePoints::Tie& tie = points.ties[index(i)];
+        const PointsByFace::Tie& tie = points.ties[index(i)];
         const auto& w = tie.foot.weights;
-        const Vec e = tie.point - w[0] * a - w[1] * b - w[2] * c;
+        const Vector3 e = tie.point - w[0] * a - w[1] * b - w[2] * c;
         const bool inside = w[0] > 0 && w[1] > 0 && w[2] > 0;
         const float length = e.norm();
-        const Vec n = inside || length < 1e-9F ? normal : Vec(e / length);
-        Block direction;
+        const Vector3 n = inside || length < 1e-9F ? normal : Vector3(e / length);
+        Symmetric3 direction;
         direction.add(outer(n), 1 - kTangential);
         direction.add_identity(kTangential);
         for (std::size_t k = 0; k < 3; ++k) {
@@ -72,7 +73,8 @@ FitSystem::FaceSums FitSystem::sum_over(const Surface& surface, const FacePoints
     return sums;
 }
 
-FitSystem::FitSystem(const Network& network, const Surface& surface, const FacePoints& points, Team& team)
+PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& surface,
+                                       const PointsByFace& points, ThreadTeam& team)
     : network_(network) {
     const auto slots = index(network.slot_count());
     unit_ = static_cast<float>(points.ties.size()) / static_cast<float>(network.vertex_count());
@@ -81,7 +83,7 @@ FitSystem::FitSystem(const Network& network, const Surface& surface, const FaceP
         row_[v + 1] = row_[v] + network.ring(static_cast<VertexId>(v)).valence;
     block_.resize(row_.back());
     diagonal_.resize(slots);
-    force_.resize(slots, Vec::Zero());
+    force_.resize(slots, Vector3::Zero());
 
     measure_support(surface, points);
     std::vector<FaceSums> sums(surface.faces.size());
@@ -95,10 +97,10 @@ FitSystem::FitSystem(const Network& network, const Surface& surface, const FaceP
             regularise(surface, static_cast<VertexId>(v));
         }
     });
-    make_hinges(surface);
+    make_bending_terms(surface);
 }
 
-void FitSystem::gather(const std::vector<FaceSums>& sums, const Surface& surface, VertexId v) {
+void PointToPlaneSystem::gather(const std::vector<FaceSums>& sums, const Surface& surface, VertexId v) {
     const Ring& ring = network_.ring(v);
     for (int i = surface.first_face[index(v)]; i < surface.first_face[index(v) + 1]; ++i) {
         const auto f = index(surface.face_of[index(i)]);
@@ -115,7 +117,7 @@ void FitSystem::gather(const std::vector<FaceSums>& sums, const Surface& surface
 }
 
 /// A spike or a web is surface without points. The hat function squared looks at the tip.
-void FitSystem::measure_support(const Surface& surface, const FacePoints& points) {
+void PointToPlaneSystem::measure_support(const Surface& surface, const PointsByFace& points) {
     constexpr int kSpreads = 2;
     constexpr float kPseudoPoints = 1;
     const std::size_t slots = surface.at.size();
@@ -144,19 +146,19 @@ void FitSystem::measure_support(const Surface& surface, const FacePoints& points
     }
 }
 
-void FitSystem::regularise(const Surface& surface, VertexId v) {
+void PointToPlaneSystem::regularise(const Surface& surface, VertexId v) {
     const Ring& ring = network_.ring(v);
     diagonal_[index(v)].add_identity(kDamping * unit_);
     if (ring.open != 0) return;
-    Vec middle = Vec::Zero();
-    Vec normal = Vec::Zero();
+    Vector3 middle = Vector3::Zero();
+    Vector3 normal = Vector3::Zero();
     for (int i = 0; i < ring.valence; ++i) {
         middle += surface.at[index(ring[i])];
         normal += (surface.at[index(ring[i])] - surface.at[index(v)])
                       .cross(surface.at[index(ring.next(i))] - surface.at[index(v)]);
     }
     normal.normalize();
-    const Vec away = middle / static_cast<float>(ring.valence) - surface.at[index(v)];
+    const Vector3 away = middle / static_cast<float>(ring.valence) - surface.at[index(v)];
     const float retreat = kRetreat * missing_[index(v)];
     diagonal_[index(v)].add_identity(retreat);
     force_[index(v)] += retreat * away;
@@ -165,10 +167,10 @@ void FitSystem::regularise(const Surface& surface, VertexId v) {
     force_[index(v)] += kCentring * unit_ * (away - away.dot(normal) * normal);
 }
 
-void FitSystem::make_hinges(const Surface& surface) {
+void PointToPlaneSystem::make_bending_terms(const Surface& surface) {
     const auto& at = surface.at;
     std::vector<float> gaps;
-    std::vector<Vec> gap_of;
+    std::vector<Vector3> gap_of;
     for (VertexId a = 0; a < network_.slot_count(); ++a) {
         const Ring& ring = network_.ring(a);
         for (int i = 0; i < ring.valence; ++i) {
@@ -176,10 +178,10 @@ void FitSystem::make_hinges(const Surface& surface) {
             if (b < a || (ring.open != 0 && (i == 0 || i + 1 == ring.valence))) continue;
             const VertexId c = ring.next(i);
             const VertexId d = ring.previous(i);
-            const Vec edge = at[index(b)] - at[index(a)];
+            const Vector3 edge = at[index(b)] - at[index(a)];
             const float squared = edge.squaredNorm();
-            const Vec to_c = at[index(c)] - at[index(a)];
-            const Vec to_d = at[index(d)] - at[index(a)];
+            const Vector3 to_c = at[index(c)] - at[index(a)];
+            const Vector3 to_d = at[index(d)] - at[index(a)];
             const float height_c = edge.cross(to_c).norm();
             const float height_d = edge.cross(to_d).norm();
             if (!(height_c + height_d > 0) || !(squared > 0)) continue;
@@ -188,15 +190,15 @@ void FitSystem::make_hinges(const Surface& surface) {
             const float t = std::min(std::max(((1 - s) * to_c + s * to_d).dot(edge) / squared, -1.0F), 2.0F);
             gap_of.push_back((1 - s) * to_c + s * to_d - t * edge);
             gaps.push_back(gap_of.back().norm());
-            hinges_.push_back({{a, b, c, d}, {t - 1, -t, 1 - s, s}, 1});
+            bending_terms_.push_back({{a, b, c, d}, {t - 1, -t, 1 - s, s}, 1});
         }
     }
-    bending_force_.assign(at.size(), Vec::Zero());
+    bending_force_.assign(at.size(), Vector3::Zero());
     bending_diagonal_.assign(at.size(), 0);
     if (gaps.empty()) return;
     const float crease = std::max(kCrease * median(gaps), 1e-9F);
-    for (std::size_t h = 0; h < hinges_.size(); ++h) {
-        Hinge& hinge = hinges_[h];
+    for (std::size_t h = 0; h < bending_terms_.size(); ++h) {
+        BendingTerm& hinge = bending_terms_[h];
         hinge.weight = unit_ / (1 + (gaps[h] / crease) * (gaps[h] / crease));
         for (std::size_t k = 0; k < 4; ++k) {
             const float c = hinge.coefficient[k];
@@ -206,40 +208,41 @@ void FitSystem::make_hinges(const Surface& surface) {
     }
 }
 
-void FitSystem::multiply(float lambda, const std::vector<Vec>& u, std::vector<Vec>& result) const {
+void PointToPlaneSystem::multiply(float lambda, const std::vector<Vector3>& u,
+                                  std::vector<Vector3>& result) const {
     for (VertexId v = 0; v < network_.slot_count(); ++v) {
         const Ring& ring = network_.ring(v);
-        Vec sum = diagonal_[index(v)] * u[index(v)];
-        const Block* block = block_.data() + row_[index(v)];
+        Vector3 sum = diagonal_[index(v)] * u[index(v)];
+        const Symmetric3* block = block_.data() + row_[index(v)];
         for (int i = 0; i < ring.valence; ++i) sum += block[i] * u[index(ring[i])];
         result[index(v)] = sum;
     }
-    for (const Hinge& hinge : hinges_) {
+    for (const BendingTerm& hinge : bending_terms_) {
         const auto& c = hinge.coefficient;
-        Vec gap = c[0] * u[index(hinge.corner[0])] + c[1] * u[index(hinge.corner[1])] +
-                  c[2] * u[index(hinge.corner[2])] + c[3] * u[index(hinge.corner[3])];
+        Vector3 gap = c[0] * u[index(hinge.corner[0])] + c[1] * u[index(hinge.corner[1])] +
+                      c[2] * u[index(hinge.corner[2])] + c[3] * u[index(hinge.corner[3])];
         gap *= lambda * hinge.weight;
         for (std::size_t k = 0; k < 4; ++k) result[index(hinge.corner[k])] += c[k] * gap;
     }
 }
 
-std::vector<Vec> FitSystem::solve(float lambda) const {
+std::vector<Vector3> PointToPlaneSystem::solve(float lambda) const {
     const std::size_t n = diagonal_.size();
-    std::vector<Vec> u(n, Vec::Zero());
-    std::vector<Vec> rest(n);
-    std::vector<Block> inverse(n);
+    std::vector<Vector3> u(n, Vector3::Zero());
+    std::vector<Vector3> rest(n);
+    std::vector<Symmetric3> inverse(n);
     for (std::size_t v = 0; v < n; ++v) {
         rest[v] = force_[v] + lambda * bending_force_[v];
-        Block d = diagonal_[v];
+        Symmetric3 d = diagonal_[v];
         d.add_identity(lambda * bending_diagonal_[v]);
         Eigen::Matrix3f m;
         m << d.xx, d.xy, d.xz, d.xy, d.yy, d.yz, d.xz, d.yz, d.zz;
         if (network_.alive(static_cast<VertexId>(v))) m = m.inverse().eval();
         inverse[v] = {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)};
     }
-    std::vector<Vec> step(n);
-    std::vector<Vec> image(n);
-    std::vector<Vec> scaled(n);
+    std::vector<Vector3> step(n);
+    std::vector<Vector3> image(n);
+    std::vector<Vector3> scaled(n);
     for (std::size_t v = 0; v < n; ++v) step[v] = scaled[v] = inverse[v] * rest[v];
     double energy = dot(rest, scaled);
     const double enough = kTolerance * kTolerance * energy;

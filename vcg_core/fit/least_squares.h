@@ -13,9 +13,9 @@
 namespace neuralmesh {
 
 /// The points tied to each face.
-struct FacePoints {
+struct PointsByFace {
     struct Tie {
-        Vec point;
+        Vector3 point;
         float influence;  ///< 1, less for outliers
         Foot foot;
     };
@@ -24,10 +24,10 @@ struct FacePoints {
 };
 
 /// A symmetric 3x3 matrix.
-struct Block {
+struct Symmetric3 {
     float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
 
-    void add(const Block& b, float s) {
+    void add(const Symmetric3& b, float s) {
         xx += s * b.xx;
         xy += s * b.xy;
         xz += s * b.xz;
@@ -40,7 +40,7 @@ struct Block {
         yy += s;
         zz += s;
     }
-    Vec operator*(const Vec& v) const {
+    Vector3 operator*(const Vector3& v) const {
         return {xx * v[0] + xy * v[1] + xz * v[2], xy * v[0] + yy * v[1] + yz * v[2],
                 xz * v[0] + yz * v[1] + zz * v[2]};
     }
@@ -59,43 +59,44 @@ struct Block {
 /// quad cross when the quad is unfolded into the plane: zero exactly where the surface is flat, for any shape
 /// of the triangles. c_e falls off where the gap is large among the mesh's gaps, so that creases are not
 /// rounded.
-class FitSystem {
+class PointToPlaneSystem {
 public:
-    FitSystem(const Network& network, const Surface& surface, const FacePoints& points, Team& team);
+    PointToPlaneSystem(const Network& network, const Surface& surface, const PointsByFace& points,
+                       ThreadTeam& team);
 
     /// The displacement of every slot for bending weight \p lambda (relative to the points per vertex), by
     /// conjugate gradients preconditioned with the 3x3 diagonal blocks. O(vertices) per iteration.
-    std::vector<Vec> solve(float lambda) const;
+    std::vector<Vector3> solve(float lambda) const;
 
 private:
-    struct Hinge {
+    struct BendingTerm {
         std::array<VertexId, 4> corner;  ///< the edge's ends, then the two vertices opposite
         std::array<float, 4> coefficient;
         float weight;  ///< c_e
     };
     /// Blocks of a face's pairs of corners 00, 11, 22, 01, 12, 20 and right-hand sides of its corners.
     struct FaceSums {
-        std::array<Block, 6> pair;
-        std::array<Vec, 3> force;
+        std::array<Symmetric3, 6> pair;
+        std::array<Vector3, 3> force;
     };
 
-    static FaceSums sum_over(const Surface& surface, const FacePoints& points, int face);
+    static FaceSums sum_over(const Surface& surface, const PointsByFace& points, int face);
     void gather(const std::vector<FaceSums>& sums, const Surface& surface, VertexId v);
     void regularise(const Surface& surface, VertexId v);
-    void measure_support(const Surface& surface, const FacePoints& points);
-    void make_hinges(const Surface& surface);
-    void multiply(float lambda, const std::vector<Vec>& u, std::vector<Vec>& result) const;
+    void measure_support(const Surface& surface, const PointsByFace& points);
+    void make_bending_terms(const Surface& surface);
+    void multiply(float lambda, const std::vector<Vector3>& u, std::vector<Vector3>& result) const;
 
     const Network& network_;
     float unit_ = 1;  ///< points per vertex
     std::vector<float>
         missing_;  ///< of slot v: points that its faces should have more, as the density around goes
     std::vector<std::size_t> row_;  ///< of slot v: block_[row_[v]] + i belongs to ring position i
-    std::vector<Block> block_;
-    std::vector<Block> diagonal_;
-    std::vector<Vec> force_;
-    std::vector<Hinge> hinges_;
-    std::vector<Vec> bending_force_;
+    std::vector<Symmetric3> block_;
+    std::vector<Symmetric3> diagonal_;
+    std::vector<Vector3> force_;
+    std::vector<BendingTerm> bending_terms_;
+    std::vector<Vector3> bending_force_;
     std::vector<float> bending_diagonal_;
 };
 

@@ -14,8 +14,8 @@ constexpr float kSharpestFold = -0.6F;  ///< cosine between the normals of neigh
 constexpr float kSliver = 0.06F;        ///< triangle_quality() below which a face may not fall
 constexpr int kHalvings = 5;            ///< before the vertices of an offending face stay where they are
 
-std::vector<Vec> normals_of(const Surface& surface, const std::vector<Vec>& at) {
-    std::vector<Vec> result(surface.faces.size());
+std::vector<Vector3> normals_of(const Surface& surface, const std::vector<Vector3>& at) {
+    std::vector<Vector3> result(surface.faces.size());
     for (std::size_t i = 0; i < result.size(); ++i) {
         const Triangle& f = surface.faces[i];
         result[i] = area_vector(at[index(f[0])], at[index(f[1])], at[index(f[2])]).normalized();
@@ -50,7 +50,7 @@ MoveLimits::MoveLimits(const Network& network, const Surface& surface)
 /// One set of displacements, and what becomes of it within the limits.
 class MoveLimits::Mover {
 public:
-    Mover(const MoveLimits& limits, const std::vector<Vec>& u)
+    Mover(const MoveLimits& limits, const std::vector<Vector3>& u)
         : limits_(limits), surface_(limits.surface_), move_(u), moved_(surface_.at) {
         for (std::size_t v = 0; v < moved_.size(); ++v) {
             const float bound = limits.longest_[v];
@@ -63,12 +63,12 @@ public:
 
     // Every pass sets at least one more vertex to rest once the halvings are used up, and no move at all is
     // always allowed; so these loops end.
-    std::vector<Vec> run() {
+    std::vector<Vector3> run() {
         for (int pass = 0;; ++pass)
             if (!shorten(find_offending(), pass)) return std::move(moved_);
     }
 
-    std::vector<Vec> run(CrossingGuard& guard, Team& team) {
+    std::vector<Vector3> run(CrossingGuard& guard, ThreadTeam& team) {
         Surface now = surface_;
         const std::vector<Crossing> at_start = guard.standing();
         int crossed = 0;
@@ -87,7 +87,7 @@ private:
     bool shorten(const std::vector<char>& offending, int pass) {
         bool any = false;
         for (std::size_t v = 0; v < moved_.size(); ++v) {
-            if (offending[v] == 0 || move_[v] == Vec(0, 0, 0)) continue;
+            if (offending[v] == 0 || move_[v] == Vector3(0, 0, 0)) continue;
             any = true;
             if (pass < kHalvings) {
                 move_[v] *= 0.5F;
@@ -99,10 +99,10 @@ private:
         return any;
     }
 
-    bool spoiled(std::size_t i, const std::vector<Vec>& now) const {
+    bool spoiled(std::size_t i, const std::vector<Vector3>& now) const {
         if (limits_.normals_[i].dot(now[i]) < kLeastTurn && limits_.folded_[i] == 0) return true;
         const Triangle& f = surface_.faces[i];
-        const auto quality = [&](const std::vector<Vec>& at) {
+        const auto quality = [&](const std::vector<Vector3>& at) {
             return triangle_quality(at[index(f[0])], at[index(f[1])], at[index(f[2])]);
         };
         const float after = quality(moved_);
@@ -111,7 +111,7 @@ private:
 
     /// Vertices of faces that turn over, become slivers, or fold onto a neighbour.
     std::vector<char> find_offending() const {
-        const std::vector<Vec> now = normals_of(surface_, moved_);
+        const std::vector<Vector3> now = normals_of(surface_, moved_);
         std::vector<char> offending(moved_.size(), 0);
         const auto mark = [&](std::size_t face) {
             for (const VertexId v : surface_.faces[face]) offending[index(v)] = 1;
@@ -145,13 +145,16 @@ private:
 
     const MoveLimits& limits_;
     const Surface& surface_;
-    std::vector<Vec> move_;
-    std::vector<Vec> moved_;
+    std::vector<Vector3> move_;
+    std::vector<Vector3> moved_;
 };
 
-std::vector<Vec> MoveLimits::bounded(const std::vector<Vec>& u) const { return Mover(*this, u).run(); }
+std::vector<Vector3> MoveLimits::bounded(const std::vector<Vector3>& u) const {
+    return Mover(*this, u).run();
+}
 
-std::vector<Vec> MoveLimits::uncrossed(const std::vector<Vec>& u, CrossingGuard& guard, Team& team) const {
+std::vector<Vector3> MoveLimits::uncrossed(const std::vector<Vector3>& u, CrossingGuard& guard,
+                                           ThreadTeam& team) const {
     return Mover(*this, u).run(guard, team);
 }
 

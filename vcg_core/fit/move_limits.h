@@ -19,16 +19,17 @@ public:
     MoveLimits(const Network& network, const Surface& surface);
 
     /// The positions by slot after the displacements \p u, shortened where they break a limit.
-    std::vector<Vec> bounded(const std::vector<Vec>& u) const;
+    std::vector<Vector3> bounded(const std::vector<Vector3>& u) const;
     /// The same, shortened on until \p guard, which stands for the surface, has no objections.
-    std::vector<Vec> uncrossed(const std::vector<Vec>& u, CrossingGuard& guard, Team& team) const;
+    std::vector<Vector3> uncrossed(const std::vector<Vector3>& u, CrossingGuard& guard,
+                                   ThreadTeam& team) const;
 
 private:
     class Mover;
 
     const Network& network_;
     const Surface& surface_;
-    std::vector<Vec> normals_;
+    std::vector<Vector3> normals_;
     std::vector<char> folded_;  ///< faces that lie folded back, so have to turn to come right
     std::vector<float> longest_;
 };

@@ -29,8 +29,8 @@ Split choose_points(const TargetSpace& target, std::size_t wanted, Random& rando
     split.held.points.reserve(held);
     split.fitted.points.reserve(wanted - held);
     const auto take = [&](const vcg::Point3f& p) {
-        Followed& part = split.held.points.size() < held ? split.held : split.fitted;
-        part.points.push_back(vec(p));
+        TrackedPoints& part = split.held.points.size() < held ? split.held : split.fitted;
+        part.points.push_back(to_eigen(p));
     };
     if (target.has_faces()) {
         for (std::size_t i = 0; i < wanted; ++i) take(target.sample(random));
@@ -61,7 +61,7 @@ float mean_edge(const Surface& surface) {
     return static_cast<float>(sum / (3 * static_cast<double>(surface.faces.size())));
 }
 
-std::vector<Hit> exact_hits(const Surface& surface, const Followed& followed, Team& team) {
+std::vector<Hit> exact_hits(const Surface& surface, const TrackedPoints& followed, ThreadTeam& team) {
     const FaceTree tree(surface);
     std::vector<Hit> hits(followed.points.size());
     for_chunks(hits.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -70,7 +70,7 @@ std::vector<Hit> exact_hits(const Surface& surface, const Followed& followed, Te
     return hits;
 }
 
-std::vector<Hit> walked_hits(const Surface& surface, const Followed& followed, Team& team) {
+std::vector<Hit> walked_hits(const Surface& surface, const TrackedPoints& followed, ThreadTeam& team) {
     std::vector<Hit> hits(followed.points.size());
     for_chunks(hits.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
@@ -79,8 +79,8 @@ std::vector<Hit> walked_hits(const Surface& surface, const Followed& followed, T
     return hits;
 }
 
-FacePoints by_face(const Surface& surface, Followed& followed, const std::vector<Hit>& hits) {
-    FacePoints result;
+PointsByFace by_face(const Surface& surface, TrackedPoints& followed, const std::vector<Hit>& hits) {
+    PointsByFace result;
     result.first.assign(surface.faces.size() + 1, 0);
     for (const Hit& hit : hits) ++result.first[index(hit.face) + 1];
     std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
@@ -92,20 +92,20 @@ FacePoints by_face(const Surface& surface, Followed& followed, const std::vector
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
         for (auto i = index(result.first[f]); i < index(result.first[f + 1]); ++i) {
             followed.points[i] = result.ties[i].point;
-            followed.near[i] = place_of(surface, {static_cast<int>(f), result.ties[i].foot});
+            followed.near[i] = walk_start_of(surface, {static_cast<int>(f), result.ties[i].foot});
         }
     }
     return result;
 }
 
-float noise_variance(const Surface& surface, const FacePoints& points) {
+float noise_variance(const Surface& surface, const PointsByFace& points) {
     constexpr int kLeast = 4;
     std::vector<float> variances;
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
         const int count = points.first[f + 1] - points.first[f];
         if (count < kLeast) continue;
-        const Vec& a = surface.corner(static_cast<int>(f), 0);
-        const Vec normal = area_vector(surface, static_cast<int>(f)).normalized();
+        const Vector3& a = surface.corner(static_cast<int>(f), 0);
+        const Vector3 normal = area_vector(surface, static_cast<int>(f)).normalized();
         float sum = 0;
         float squares = 0;
         for (auto i = index(points.first[f]); i < index(points.first[f + 1]); ++i) {
@@ -119,7 +119,7 @@ float noise_variance(const Surface& surface, const FacePoints& points) {
     return variances.empty() ? 0.0F : median(std::move(variances));
 }
 
-Support::Support(const Network& network, const Surface& surface, const FacePoints& points) {
+Support::Support(const Network& network, const Surface& surface, const PointsByFace& points) {
     constexpr int kSpreads = 4;
     constexpr float kLikelyDistance = 0.25F;  // of such faces from the points, in mean edge lengths
     value_ = kLikelyDistance * mean_edge(surface);
@@ -146,15 +146,15 @@ Support::Support(const Network& network, const Surface& surface, const FacePoint
         density_[v] = sums[v].area > 0 ? sums[v].points / sums[v].area : 0.0F;
 }
 
-std::vector<Vec> smoothed_normals(const Network& network, const Surface& surface) {
+std::vector<Vector3> smoothed_normals(const Network& network, const Surface& surface) {
     constexpr int kSpreads = 2;
-    std::vector<Vec> normals(surface.at.size(), Vec::Zero());
+    std::vector<Vector3> normals(surface.at.size(), Vector3::Zero());
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
-        const Vec area = area_vector(surface, static_cast<int>(f));
+        const Vector3 area = area_vector(surface, static_cast<int>(f));
         for (const VertexId v : surface.faces[f]) normals[index(v)] += area;
     }
     spread_over_rings(network, normals, kSpreads);
-    for (Vec& n : normals) n.normalize();
+    for (Vector3& n : normals) n.normalize();
     return normals;
 }
 

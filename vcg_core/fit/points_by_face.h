@@ -14,15 +14,15 @@
 namespace neuralmesh {
 
 /// Points and for each where it was last found.
-struct Followed {
-    std::vector<Vec> points;
-    std::vector<Place> near;
-    std::vector<Vec> directions;  ///< along which to measure; only of the points held back
+struct TrackedPoints {
+    std::vector<Vector3> points;
+    std::vector<WalkStart> near;
+    std::vector<Vector3> directions;  ///< along which to measure; only of the points held back
 };
 
 struct Split {
-    Followed fitted;
-    Followed held;
+    TrackedPoints fitted;
+    TrackedPoints held;
 };
 
 /// The points to fit to and some held back to judge by: \p wanted points of \p target, all of a cloud or a
@@ -31,23 +31,23 @@ struct Split {
 Split choose_points(const TargetSpace& target, std::size_t wanted, Random& random);
 
 /// The nearest faces of the points, exactly. O(points log faces)
-std::vector<Hit> exact_hits(const Surface& surface, const Followed& followed, Team& team);
+std::vector<Hit> exact_hits(const Surface& surface, const TrackedPoints& followed, ThreadTeam& team);
 /// The nearest faces of the points by walks from where they were last found. O(points)
-std::vector<Hit> walked_hits(const Surface& surface, const Followed& followed, Team& team);
+std::vector<Hit> walked_hits(const Surface& surface, const TrackedPoints& followed, ThreadTeam& team);
 
 /// Ties the points to the faces hit. Sorts them by their faces, which also brings neighbours together in
 /// memory, and notes where they are. Directions are not carried along.
-FacePoints by_face(const Surface& surface, Followed& followed, const std::vector<Hit>& hits);
+PointsByFace by_face(const Surface& surface, TrackedPoints& followed, const std::vector<Hit>& hits);
 
 /// Variance of the noise: the median over the faces of that of their points about a plane parallel to the
 /// face. What neighbouring points share is misfit, what they do not share is noise.
-float noise_variance(const Surface& surface, const FacePoints& points);
+float noise_variance(const Surface& surface, const PointsByFace& points);
 
 /// How many points belong to the surface and how many are missing from it.
 class Support {
 public:
     /// Takes the density of the points around every vertex from some rings. O(vertices)
-    Support(const Network& network, const Surface& surface, const FacePoints& points);
+    Support(const Network& network, const Surface& surface, const PointsByFace& points);
 
     /// How many points a face should have more to be believed: webs and spikes are surface without points.
     /// \param twice_area of the face \param points those it has
@@ -67,7 +67,7 @@ private:
 };
 
 /// Normals of the vertices, averaged over their rings twice: what noise leaves of them.
-std::vector<Vec> smoothed_normals(const Network& network, const Surface& surface);
+std::vector<Vector3> smoothed_normals(const Network& network, const Surface& surface);
 
 float median(std::vector<float> values);
 float mean_edge(const Surface& surface);

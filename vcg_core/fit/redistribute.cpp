@@ -29,12 +29,12 @@ constexpr float kLongestOffset = 0.3F;  ///< of a new vertex from its edge, in e
 /// Finds the cheapest collapse of a vertex.
 class CollapseJudge {
 public:
-    CollapseJudge(const Network& network, const Surface& surface, const FacePoints& points,
+    CollapseJudge(const Network& network, const Surface& surface, const PointsByFace& points,
                   const Support& support)
         : network_(network), surface_(surface), points_(points), support_(support) {}
 
-    Merger cheapest(VertexId v) const {
-        Merger best{std::numeric_limits<float>::max(), v, -1};
+    Collapse cheapest(VertexId v) const {
+        Collapse best{std::numeric_limits<float>::max(), v, -1};
         const Ring& ring = network_.ring(v);
         std::array<std::pair<float, VertexId>, Ring::kMaxValence> order;
         int count = 0;
@@ -64,14 +64,14 @@ public:
     }
 
 private:
-    const Vec& at(VertexId v) const { return surface_.at[index(v)]; }
+    const Vector3& at(VertexId v) const { return surface_.at[index(v)]; }
 
     /// Squared distances of u from the planes of the faces around v, weighted with their areas.
     float quadric(VertexId v, VertexId u) const {
         float sum = 0;
         for (int i = surface_.first_face[index(v)]; i < surface_.first_face[index(v) + 1]; ++i) {
             const int f = surface_.face_of[index(i)];
-            const Vec n = area_vector(surface_, f);
+            const Vector3 n = area_vector(surface_, f);
             const float norm = n.norm();
             const float height = n.dot(at(u) - at(v));
             if (norm > 0) sum += height * height / norm;
@@ -85,9 +85,9 @@ private:
             const VertexId a = ring[i];
             const VertexId b = ring.next(i);
             if (a == u || b == u) continue;
-            const Vec before = area_vector(at(v), at(a), at(b)).normalized();
-            const Vec after = area_vector(at(u), at(a), at(b)).normalized();
-            const Vec outside = normal_beyond(surface_, a, b);
+            const Vector3 before = area_vector(at(v), at(a), at(b)).normalized();
+            const Vector3 after = area_vector(at(u), at(a), at(b)).normalized();
+            const Vector3 outside = normal_beyond(surface_, a, b);
             const float fold = before.dot(outside);
             if (!(before.dot(after) > kLeastTurn) && !(fold < kSharpestFold)) return false;
             if (after.dot(outside) < std::min(kSharpestFold, fold)) return false;
@@ -131,7 +131,7 @@ private:
             const int begin = points_.first[f];
             const int size = points_.first[f + 1] - begin;
             for (; next < size; next += step) {
-                const FacePoints::Tie& tie = points_.ties[index(begin + next)];
+                const PointsByFace::Tie& tie = points_.ties[index(begin + next)];
                 float least = std::numeric_limits<float>::max();
                 int nearest = 0;
                 for (int j = 0; j < ring.face_count(); ++j) {
@@ -175,7 +175,7 @@ private:
 
     const Network& network_;
     const Surface& surface_;
-    const FacePoints& points_;
+    const PointsByFace& points_;
     const Support& support_;
 };
 
@@ -186,14 +186,14 @@ struct HatSums {
 };
 
 /// For the edges 0-1, 1-2, 2-0 of a face.
-std::array<HatSums, 3> hat_sums(const Surface& surface, const FacePoints& points, int face) {
+std::array<HatSums, 3> hat_sums(const Surface& surface, const PointsByFace& points, int face) {
     std::array<HatSums, 3> sums;
-    const Vec& a = surface.corner(face, 0);
-    const Vec& b = surface.corner(face, 1);
-    const Vec& c = surface.corner(face, 2);
-    const Vec normal = area_vector(a, b, c).normalized();
+    const Vector3& a = surface.corner(face, 0);
+    const Vector3& b = surface.corner(face, 1);
+    const Vector3& c = surface.corner(face, 2);
+    const Vector3 normal = area_vector(a, b, c).normalized();
     for (int i = points.first[index(face)]; i < points.first[index(face) + 1]; ++i) {
-        const FacePoints::Tie& tie = points.ties[index(i)];
+        const PointsByFace::Tie& tie = points.ties[index(i)];
         const float residual = normal.dot(tie.point - a);
         for (std::size_t k = 0; k < 3; ++k) {
             const float phi = 2 * std::min(tie.foot.weights[k], tie.foot.weights[(k + 1) % 3]);
@@ -205,8 +205,8 @@ std::array<HatSums, 3> hat_sums(const Surface& surface, const FacePoints& points
 }
 
 /// The inner edges in whose middle a vertex gains at least \p least_gain.
-std::vector<EdgeSplit> edge_splits(const Network& network, const Surface& surface, const FacePoints& points,
-                                   float least_gain, Team& team) {
+std::vector<EdgeSplit> edge_splits(const Network& network, const Surface& surface, const PointsByFace& points,
+                                   float least_gain, ThreadTeam& team) {
     std::vector<std::array<HatSums, 3>> sums(surface.faces.size());
     for_chunks(sums.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) sums[f] = hat_sums(surface, points, static_cast<int>(f));
@@ -219,7 +219,7 @@ std::vector<EdgeSplit> edge_splits(const Network& network, const Surface& surfac
             const VertexId b = ring[i];
             if (b < a || (ring.open != 0 && (i == 0 || i + 1 == ring.valence))) continue;
             HatSums both;
-            Vec normal = Vec::Zero();
+            Vector3 normal = Vector3::Zero();
             for (int j = surface.first_face[index(a)]; j < surface.first_face[index(a) + 1]; ++j) {
                 const int f = surface.face_of[index(j)];
                 const Triangle& face = surface.faces[index(f)];
@@ -256,7 +256,7 @@ int split_position(const Network& network, VertexId a, VertexId b) {
 }
 
 /// Carries out the collapse if it touches nothing that is touched. \return whether it did
-bool collapse_untouched(Network& network, const Merger& merger, std::vector<char>& touched) {
+bool collapse_untouched(Network& network, const Collapse& merger, std::vector<char>& touched) {
     const Ring ring = network.ring(merger.gone);
     bool free = touched[index(merger.gone)] == 0;
     for (int i = 0; i < ring.valence; ++i) free = free && touched[index(ring[i])] == 0;
@@ -269,11 +269,11 @@ bool collapse_untouched(Network& network, const Merger& merger, std::vector<char
 
 }  // namespace
 
-std::vector<Merger> plan_reduction(const Network& network, const Surface& surface, const FacePoints& points,
-                                   Team& team) {
+std::vector<Collapse> plan_reduction(const Network& network, const Surface& surface,
+                                     const PointsByFace& points, ThreadTeam& team) {
     const Support support(network, surface, points);
     const CollapseJudge judge(network, surface, points, support);
-    std::vector<Merger> mergers(index(network.slot_count()));
+    std::vector<Collapse> mergers(index(network.slot_count()));
     std::vector<float> estimates(mergers.size());
     for_chunks(estimates.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v)
@@ -286,8 +286,9 @@ std::vector<Merger> plan_reduction(const Network& network, const Surface& surfac
     for_chunks(mergers.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
             const auto vertex = static_cast<VertexId>(v);
-            mergers[v] = estimates[v] <= sorted[last] ? judge.cheapest(vertex)
-                                                      : Merger{std::numeric_limits<float>::max(), vertex, -1};
+            mergers[v] = estimates[v] <= sorted[last]
+                             ? judge.cheapest(vertex)
+                             : Collapse{std::numeric_limits<float>::max(), vertex, -1};
         }
     });
     std::stable_sort(mergers.begin(), mergers.end(),
@@ -295,8 +296,8 @@ std::vector<Merger> plan_reduction(const Network& network, const Surface& surfac
     return mergers;
 }
 
-Redistribution plan_redistribution(const Network& network, const Surface& surface, const FacePoints& points,
-                                   float least_gain, Team& team) {
+Redistribution plan_redistribution(const Network& network, const Surface& surface, const PointsByFace& points,
+                                   float least_gain, ThreadTeam& team) {
     Redistribution plan;
     plan.mergers = plan_reduction(network, surface, points, team);
     plan.splits = edge_splits(network, surface, points, least_gain, team);
@@ -305,7 +306,8 @@ Redistribution plan_redistribution(const Network& network, const Surface& surfac
     return plan;
 }
 
-Shifts redistribute(Network& network, const Redistribution& plan, int most, const std::vector<char>& barred) {
+VertexMoves redistribute(Network& network, const Redistribution& plan, int most,
+                         const std::vector<char>& barred) {
     // The splits claim their surroundings first: they are what all this is for.
     std::vector<char> touched = barred;
     std::vector<EdgeSplit> chosen;
@@ -320,8 +322,8 @@ Shifts redistribute(Network& network, const Redistribution& plan, int most, cons
         for (const VertexId v : corners) touched[index(v)] = 1;
         chosen.push_back(split);
     }
-    Shifts result;
-    for (const Merger& merger : plan.mergers) {
+    VertexMoves result;
+    for (const Collapse& merger : plan.mergers) {
         if (result.merges.size() >= chosen.size() || merger.into < 0 ||
             merger.cost >= chosen[result.merges.size()].gain)
             break;
@@ -330,17 +332,17 @@ Shifts redistribute(Network& network, const Redistribution& plan, int most, cons
     for (std::size_t i = 0; i < result.merges.size(); ++i) {
         const EdgeSplit& split = chosen[i];
         const VertexId added =
-            network.split(split.a, split_position(network, split.a, split.b), 3, point(split.where));
+            network.split(split.a, split_position(network, split.a, split.b), 3, to_vcg(split.where));
         result.insertions.push_back({added, split.a});
     }
     return result;
 }
 
-std::vector<Shifts::Merge> reduce(Network& network, const std::vector<Merger>& mergers, int most,
-                                  const std::vector<char>& barred) {
+std::vector<VertexMoves::DoneCollapse> reduce(Network& network, const std::vector<Collapse>& mergers,
+                                              int most, const std::vector<char>& barred) {
     std::vector<char> touched = barred;
-    std::vector<Shifts::Merge> merges;
-    for (const Merger& merger : mergers) {
+    std::vector<VertexMoves::DoneCollapse> merges;
+    for (const Collapse& merger : mergers) {
         if (static_cast<int>(merges.size()) >= most || merger.into < 0) break;
         if (collapse_untouched(network, merger, touched)) merges.push_back({merger.gone, merger.into});
     }

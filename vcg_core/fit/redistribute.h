@@ -11,19 +11,19 @@
 namespace neuralmesh {
 
 /// What a redistribution did. The id of a removed vertex is usually used again by an inserted one.
-struct Shifts {
-    struct Merge {
+struct VertexMoves {
+    struct DoneCollapse {
         VertexId gone, into;
     };
     struct Insertion {
         VertexId added, beside;  ///< beside: an end of the edge that was split
     };
-    std::vector<Merge> merges;          ///< in order, all before the first insertion
+    std::vector<DoneCollapse> merges;   ///< in order, all before the first insertion
     std::vector<Insertion> insertions;  ///< as many
 };
 
 /// The cheapest half-edge collapse of a vertex.
-struct Merger {
+struct Collapse {
     float cost;  ///< rise of the sum of squared distances of the points
     VertexId gone, into;
 };
@@ -31,33 +31,34 @@ struct Merger {
 struct EdgeSplit {
     float gain;  ///< drop of the sum of squared distances
     VertexId a, b;
-    Vec where;
+    Vector3 where;
 };
 struct Redistribution {
-    std::vector<Merger> mergers;    ///< cheapest first
+    std::vector<Collapse> mergers;  ///< cheapest first
     std::vector<EdgeSplit> splits;  ///< most rewarding first
 };
 
 /// The cheapest collapse of every vertex, cheapest first, its cost by new feet on the faces that it leaves.
 /// \p surface and \p points are those of the network. O(points), by \p team, with the same result for any
 /// number of threads.
-std::vector<Merger> plan_reduction(const Network& network, const Surface& surface, const FacePoints& points,
-                                   Team& team);
+std::vector<Collapse> plan_reduction(const Network& network, const Surface& surface,
+                                     const PointsByFace& points, ThreadTeam& team);
 
 /// The same, and the gains of splits, of at least \p least_gain, by linear
 /// least squares over the offset of the new vertex from the middle of its edge. \p surface and \p points are
 /// those of the network. O(points), by \p team, with the same result for any number of them.
-Redistribution plan_redistribution(const Network& network, const Surface& surface, const FacePoints& points,
-                                   float least_gain, Team& team);
+Redistribution plan_redistribution(const Network& network, const Surface& surface, const PointsByFace& points,
+                                   float least_gain, ThreadTeam& team);
 
 /// Pairs collapses with splits, no two of which touch each other or a vertex that is \p barred (by slot),
 /// and carries them out as long as a split gains more than the collapse costs, at most \p most pairs.
 /// Topology and number of vertices stay.
-Shifts redistribute(Network& network, const Redistribution& plan, int most, const std::vector<char>& barred);
+VertexMoves redistribute(Network& network, const Redistribution& plan, int most,
+                         const std::vector<char>& barred);
 
 /// Carries out the cheapest collapses, no two of which touch each other or a vertex that is \p barred, at
 /// most \p most. Topology stays.
-std::vector<Shifts::Merge> reduce(Network& network, const std::vector<Merger>& mergers, int most,
-                                  const std::vector<char>& barred);
+std::vector<VertexMoves::DoneCollapse> reduce(Network& network, const std::vector<Collapse>& mergers,
+                                              int most, const std::vector<char>& barred);
 
 }  // namespace neuralmesh

@@ -35,20 +35,20 @@ std::vector<char> surroundings(const Network& network, const std::vector<Crossin
     return in;
 }
 
-void smooth(const Network& network, const std::vector<char>& where, std::vector<Vec>& at) {
-    const std::vector<Vec> before = at;
+void smooth(const Network& network, const std::vector<char>& where, std::vector<Vector3>& at) {
+    const std::vector<Vector3> before = at;
     for (VertexId v = 0; v < network.slot_count(); ++v) {
         const Ring& ring = network.ring(v);
         if (where[index(v)] == 0 || ring.open != 0 || ring.valence == 0) continue;
-        Vec middle = Vec::Zero();
+        Vector3 middle = Vector3::Zero();
         for (int i = 0; i < ring.valence; ++i) middle += before[index(ring[i])];
         at[index(v)] += kStep * (middle / static_cast<float>(ring.valence) - before[index(v)]);
     }
 }
 
 /// Back to \p start around the \p crossings.
-void take_back(const Network& network, const std::vector<Crossing>& crossings, const std::vector<Vec>& start,
-               std::vector<Vec>& at) {
+void take_back(const Network& network, const std::vector<Crossing>& crossings,
+               const std::vector<Vector3>& start, std::vector<Vector3>& at) {
     const std::vector<char> where = surroundings(network, crossings, 2 * kMostRings);
     for (std::size_t v = 0; v < at.size(); ++v)
         if (where[v] != 0) at[v] = start[v];
@@ -56,14 +56,14 @@ void take_back(const Network& network, const std::vector<Crossing>& crossings, c
 
 }  // namespace
 
-std::optional<std::vector<Crossing>> untangle(Network& network, Team& team, Progress& progress) {
+std::optional<std::vector<Crossing>> untangle(Network& network, ThreadTeam& team, Progress& progress) {
     const auto stopped = [&](int searches) {
         return !progress(static_cast<double>(searches) / (kRounds + 1),
                          "Fitting to the points: smoothing where the surface cuts itself");
     };
     if (stopped(0)) return std::nullopt;
     Surface surface(network);
-    const std::vector<Vec> start = surface.at;
+    const std::vector<Vector3> start = surface.at;
     std::int64_t pairs = 0;
     std::vector<Crossing> at_start = crossings_of(surface, team, &pairs);
     if (at_start.empty() || pairs > kMostPairs * static_cast<std::int64_t>(surface.faces.size()))
@@ -77,7 +77,7 @@ std::optional<std::vector<Crossing>> untangle(Network& network, Team& team, Prog
         const std::vector<char> where = surroundings(network, crossings, rings);
         for (int sweep = 0; sweep < kSweeps; ++sweep) smooth(network, where, surface.at);
         for (std::size_t v = 0; v < start.size(); ++v) {
-            const Vec move = surface.at[v] - start[v];
+            const Vector3 move = surface.at[v] - start[v];
             const float length = move.norm();
             if (length > furthest) surface.at[v] = start[v] + (furthest / length) * move;
         }
@@ -90,7 +90,7 @@ std::optional<std::vector<Crossing>> untangle(Network& network, Team& team, Prog
     }
     if (!CrossingGuard(at_start).objections(crossings).empty()) return at_start;
     for (VertexId v = 0; v < network.slot_count(); ++v)
-        if (network.alive(v)) network.set_position(v, point(surface.at[index(v)]));
+        if (network.alive(v)) network.set_position(v, to_vcg(surface.at[index(v)]));
     return crossings;
 }
 

@@ -19,6 +19,6 @@ namespace neuralmesh {
 /// that smoothing could not part them (by their boxes a hundred near each face), and if \p progress, which is
 /// asked before every round, wants it to stop. The same result for any \p team.
 /// \return the crossings left; nothing if it was stopped
-std::optional<std::vector<Crossing>> untangle(Network& network, Team& team, Progress& progress);
+std::optional<std::vector<Crossing>> untangle(Network& network, ThreadTeam& team, Progress& progress);
 
 }  // namespace neuralmesh

@@ -159,9 +159,9 @@ void UtilityCounters::remove(VertexId v) {
 }
 
 void UtilityCounters::renumber(const std::vector<VertexId>& order) {
-    keys_ = picked(keys_, order, kZero);
-    wins_ = picked(wins_, order, 0);
-    const std::vector<double> entries = picked(tournament_[0], order, kNone);
+    keys_ = permuted(keys_, order, kZero);
+    wins_ = permuted(wins_, order, 0);
+    const std::vector<double> entries = permuted(tournament_[0], order, kNone);
     tournament_.clear();
     resize(static_cast<int>(order.size()));
     for (std::size_t v = 0; v < entries.size(); ++v) enter(static_cast<VertexId>(v), entries[v]);

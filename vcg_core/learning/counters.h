@@ -14,7 +14,7 @@ namespace neuralmesh {
 
 /// The values at \p order's places, in its order; \p none where that is -1.
 template <class T>
-std::vector<T> picked(const std::vector<T>& values, const std::vector<VertexId>& order, T none) {
+std::vector<T> permuted(const std::vector<T>& values, const std::vector<VertexId>& order, T none) {
     std::vector<T> result;
     result.reserve(std::max(values.capacity(), order.size()));
     for (const VertexId v : order) result.push_back(v < 0 ? none : values[static_cast<std::size_t>(v)]);
@@ -72,7 +72,7 @@ public:
     /// v is gone.
     void remove(VertexId v);
     /// v has been tried in vain: it counts as immature until its next win. O(log n).
-    void pass_over(VertexId v) { enter(v, kNone); }
+    void defer(VertexId v) { enter(v, kNone); }
     /// Vertex order[i] is vertex i from now on, those not named are gone; where order[i] is -1 there is none
     /// yet. O(n).
     void renumber(const std::vector<VertexId>& order);
@@ -115,7 +115,7 @@ public:
     void prefetch(VertexId v) const { __builtin_prefetch(&values_[static_cast<std::size_t>(v)], 1); }
     float value(VertexId v) const { return values_[static_cast<std::size_t>(v)]; }
     /// As UtilityCounters::renumber().
-    void renumber(const std::vector<VertexId>& order) { values_ = picked(values_, order, 0.0F); }
+    void renumber(const std::vector<VertexId>& order) { values_ = permuted(values_, order, 0.0F); }
     /// A new vertex starts from its parent's knowledge of the place.
     void inherit(VertexId from, VertexId to) { values_[static_cast<std::size_t>(to)] = value(from); }
 

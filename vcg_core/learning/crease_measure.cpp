@@ -259,8 +259,9 @@ VertexId own_or(const std::vector<VertexId>& origin, VertexId v) {
 
 /// f of every vertex of \p shown from the planes of \p positions, those of the network \p base, which has the
 /// vertex origin[v] close to v. \p spreads are those of the vertices of \p shown.
-std::vector<float> fadings(const Network& base, const std::vector<Point3f>& positions, const Network& shown,
-                           const std::vector<VertexId>& origin, const std::vector<float>& spreads) {
+std::vector<float> crease_strengths(const Network& base, const std::vector<Point3f>& positions,
+                                    const Network& shown, const std::vector<VertexId>& origin,
+                                    const std::vector<float>& spreads) {
     const MeanFaces faces(base, positions);
     TwoPlanes planes(faces);
     std::vector<float> result(at(shown.slot_count()), 0.0F);
@@ -277,7 +278,7 @@ std::vector<float> fadings(const Network& base, const std::vector<Point3f>& posi
 
 }  // namespace
 
-void FeatureStatistic::observe(const Network& network) {
+void CreaseMeasure::observe(const Network& network) {
     position_sums_.resize(at(network.slot_count()), Point3f(0, 0, 0));
     spread_sums_.resize(at(network.slot_count()), 0.0F);
     for (VertexId v = 0; v < network.slot_count(); ++v) {
@@ -288,14 +289,14 @@ void FeatureStatistic::observe(const Network& network) {
     ++moments_;
 }
 
-std::vector<float> FeatureStatistic::values(const Network& learned) const {
+std::vector<float> CreaseMeasure::values(const Network& learned) const {
     return values(learned, learned, {});
 }
 
-std::vector<float> FeatureStatistic::values(const Network& learned, const Network& shown,
-                                            const std::vector<VertexId>& origin) const {
+std::vector<float> CreaseMeasure::values(const Network& learned, const Network& shown,
+                                         const std::vector<VertexId>& origin) const {
     if (moments_ == 0) {
-        FeatureStatistic now;
+        CreaseMeasure now;
         now.observe(learned);
         return now.values(learned, shown, origin);
     }
@@ -306,9 +307,9 @@ std::vector<float> FeatureStatistic::values(const Network& learned, const Networ
     for (VertexId v = 0; v < shown.slot_count(); ++v)
         if (shown.alive(v)) spreads[at(v)] = spread_sums_[at(own_or(origin, v))] / moments;
 
-    std::vector<float> result = fadings(learned, means, shown, origin, spreads);
+    std::vector<float> result = crease_strengths(learned, means, shown, origin, spreads);
     if (!origin.empty()) {
-        const std::vector<float> of_shown = fadings(shown, positions_of(shown), shown, {}, spreads);
+        const std::vector<float> of_shown = crease_strengths(shown, positions_of(shown), shown, {}, spreads);
         for (std::size_t v = 0; v < result.size(); ++v)
             result[v] = std::sqrt(result[v] * std::sqrt(result[v] * of_shown[v]));
     }

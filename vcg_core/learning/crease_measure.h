@@ -29,12 +29,12 @@ namespace neuralmesh {
 ///
 /// Values are without dimension, from 0 to 3.5, and comparable between models as they are: dividing by their
 /// mean, as eq 7 does, makes them less so, because the mean depends on how much of the model is crease. 1 is
-/// a single threshold for all models and noise levels of tests/experiments/paper/features.py: "above 1" reads as "a
-/// crease passes within half an edge". A right-angled edge has about 2 on it, a plane or a smooth surface
-/// that the mesh resolves stays well below 1.
+/// a single threshold for all models and noise levels of tests/experiments/paper/features.py: "above 1" reads
+/// as "a crease passes within half an edge". A right-angled edge has about 2 on it, a plane or a smooth
+/// surface that the mesh resolves stays well below 1.
 ///
 /// Memory: 16 bytes per vertex; values() needs about 400 more per vertex while it runs.
-class FeatureStatistic {
+class CreaseMeasure {
 public:
     /// Adds the present positions as one moment. All moments must have the same connectivity; to start on
     /// another one, start a new object. O(vertices x valence); called once for as many signals as there are

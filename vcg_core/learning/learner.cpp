@@ -15,7 +15,7 @@ namespace neuralmesh {
 namespace {
 
 /// F_v = (l_v)^2 with l_v the mean length of the edges at v (eq 5).
-double voronoi_area(const Network& network, VertexId v) {
+double squared_mean_edge(const Network& network, VertexId v) {
     const Ring& ring = network.ring(v);
     const vcg::Point3f p = network.position(v);
     double l = 0;
@@ -43,7 +43,7 @@ std::vector<vcg::Point3f> typical_signals(const TargetSpace& target, int threads
 }
 
 /// \p ids with \p gaps times -1 spread evenly between them.
-std::vector<VertexId> with_gaps(const std::vector<VertexId>& ids, int gaps) {
+std::vector<VertexId> interleave_free(const std::vector<VertexId>& ids, int gaps) {
     std::vector<VertexId> result;
     result.reserve(ids.size() + static_cast<std::size_t>(gaps));
     const auto size = static_cast<std::int64_t>(ids.size());
@@ -64,7 +64,7 @@ Learner::Learner(const TargetSpace& target, const Settings& settings, Network st
       feature_counters_(settings.feature_decay),
       mean_delta_(settings.normalization_window),
       steps_(settings.threads, typical_signals(target, settings.threads)),
-      drawn_(target, settings.random_seed, BasicSteps::kMostSignals),
+      drawn_(target, settings.random_seed, BasicStepBatch::kMostSignals),
       last_active_(static_cast<std::size_t>(network_.slot_count()), 0),
       vertices_at_collapse_(network_.vertex_count()) {
     if (network_.vertex_count() > settings.target_vertices)
@@ -101,13 +101,13 @@ StopReason Learner::grow(Progress& progress) {
         const int count = batch_size();
         basic_steps(drawn_.take(count), count);
         const auto draw = [&] { drawn_.draw_ahead(count); };
-        const auto drawing = steps_.beside(draw);
+        const auto drawing = steps_.run_in_background(draw);
         for (int i = 0; i < count; ++i) {
             learn_counters(i);
             if (signals_ % settings_.signals_per_split == 0) vertex_split();
         }
         if (due_for_collapse()) half_edge_collapse();
-        keep_neighbours_near();
+        reorder_if_grown();
 
         if (!forced_ && signals_ >= budget) force_growth();
         if (signals_ >= bound) return StopReason::cut_short;
@@ -141,21 +141,21 @@ int Learner::batch_size() const {
 
 /// A network that outgrows a core's first cache, and may then be shared by threads, is put in order from time
 /// to time, so that what a step visits shares cache lines and pages, and what the threads visit does not.
-void Learner::keep_neighbours_near() {
+void Learner::reorder_if_grown() {
     const int n = network_.vertex_count();
     if (n >= kLeastInOrder && n >= vertices_in_order_ + vertices_in_order_ / 4)
-        put_in_order(std::min(n / 4, settings_.target_vertices - n));
+        reorder(std::min(n / 4, settings_.target_vertices - n));
 }
 
 /// With free ids between for \p more vertices.
-void Learner::put_in_order(int more) {
+void Learner::reorder(int more) {
     vertices_in_order_ = network_.vertex_count();
     changes_in_order_ = splits_ + collapses_;
-    const std::vector<VertexId> order = with_gaps(network_.along_curve(), more);
+    const std::vector<VertexId> order = interleave_free(network_.morton_order(), more);
     network_.renumber(order);
     utility_counters_.renumber(order);
     feature_counters_.renumber(order);
-    last_active_ = picked(last_active_, order, std::int64_t{0});
+    last_active_ = permuted(last_active_, order, std::int64_t{0});
     search_.lay_out();
     steps_.reconsider();
 }
@@ -195,7 +195,7 @@ bool Learner::vertex_split() {
         const VertexId v = utility_counters_.highest();
         if (v < 0) return false;
         if (try_split(v)) return true;
-        utility_counters_.pass_over(v);
+        utility_counters_.defer(v);
     }
     return false;
 }
@@ -218,7 +218,7 @@ bool Learner::try_split(VertexId v) {
     const VertexId e1 = ring[(half.first + half.count - 1) % ring.valence];
     const vcg::Point3f midpoint = (p + network_.position(ring[longest])) / 2;
     const VertexId u = network_.split(v, half.first, half.count, midpoint);
-    adopt(u, v);
+    register_new(u, v);
     search_.keep_up();
     if (!to_the_letter())
         for (const VertexId w : {v, u, e1, e2}) regularise(w);
@@ -227,12 +227,12 @@ bool Learner::try_split(VertexId v) {
 }
 
 /// Enters the new vertex u, split off v, everywhere a vertex is known.
-void Learner::adopt(VertexId u, VertexId v) {
+void Learner::register_new(VertexId u, VertexId v) {
     search_.add(u);
     utility_counters_.resize(network_.slot_count());
     feature_counters_.resize(network_.slot_count());
     last_active_.resize(static_cast<std::size_t>(network_.slot_count()));
-    utility_counters_.share(v, u, voronoi_area(network_, v), voronoi_area(network_, u));
+    utility_counters_.share(v, u, squared_mean_edge(network_, v), squared_mean_edge(network_, u));
     feature_counters_.inherit(v, u);
     // A vertex that was not there at the last call of Half-Edge Collapse has not been inactive since.
     last_active_[static_cast<std::size_t>(u)] = to_the_letter() ? 0 : signals_;
@@ -352,23 +352,22 @@ std::int64_t Learner::settling_signals(int per_vertex, int vertices) {
 
 bool Learner::settle(int per_vertex, Progress& progress, bool to_be_observed) {
     // For long, as the connectivity stays as it is.
-    if (network_.vertex_count() >= kLeastInOrder && changes_in_order_ != splits_ + collapses_)
-        put_in_order(0);
+    if (network_.vertex_count() >= kLeastInOrder && changes_in_order_ != splits_ + collapses_) reorder(0);
     const bool observing = to_be_observed && settings_.feature_measure == kCreaseMeasure;
     const std::int64_t begin = signals_;
     const std::int64_t end = begin + settling_signals(per_vertex, network_.vertex_count());
     std::int64_t next_moment = begin + (end - begin) / 5;  // until then it is still on its way from growth
-    feature_statistic_ = FeatureStatistic();
+    crease_measure_ = CreaseMeasure();
     while (signals_ < end) {
         const int count = static_cast<int>(std::min<std::int64_t>(batch_size(), end - signals_));
         basic_steps(drawn_.take(count), count);
         {
             const auto draw = [&] { drawn_.draw_ahead(count); };
-            const auto drawing = steps_.beside(draw);
+            const auto drawing = steps_.run_in_background(draw);
             for (int i = 0; i < count; ++i) learn_counters(i);
         }
         if (observing && signals_ >= next_moment) {
-            feature_statistic_.observe(network_);
+            crease_measure_.observe(network_);
             next_moment += network_.vertex_count();
         }
         if (!due_for_report()) continue;

@@ -37,8 +37,8 @@ public:
     /// progress asks to stop, or signal_bound() is reached.
     StopReason run(int per_vertex, Progress& progress);
 
-    /// The winners of \p count signals (1 to BasicSteps::kMostSignals) move towards them and their rings are
-    /// smoothed (eq 1), all from the network as it is; learn_counters() is to follow for each. O(count)
+    /// The winners of \p count signals (1 to BasicStepBatch::kMostSignals) move towards them and their rings
+    /// are smoothed (eq 1), all from the network as it is; learn_counters() is to follow for each. O(count)
     /// expected.
     void basic_steps(const vcg::Point3f* signals, int count);
     /// What signal \p i of these steps does to the counters (eq 2 to 4, 6). Amortised O(1).
@@ -76,7 +76,7 @@ public:
 
     const Network& network() const { return network_; }
     const FeatureCounters& feature_counters() const { return feature_counters_; }
-    const FeatureStatistic& feature_statistic() const { return feature_statistic_; }
+    const CreaseMeasure& crease_measure() const { return crease_measure_; }
     const UtilityCounters& utility_counters() const { return utility_counters_; }
     std::int64_t signals() const { return signals_; }
     std::int64_t splits() const { return splits_; }
@@ -91,8 +91,8 @@ private:
     };
 
     bool to_the_letter() const { return settings_.min_wins_per_split == 0; }
-    void keep_neighbours_near();
-    void put_in_order(int more);
+    void reorder_if_grown();
+    void reorder(int more);
     bool due_for_report();
     bool report(const char* doing, double fraction, Progress& progress) const;
     static std::int64_t settling_signals(int per_vertex, int vertices);
@@ -104,19 +104,19 @@ private:
     VertexId best_collapse(VertexId gone) const;
     void regularise(VertexId v);
     bool flip_regularises(VertexId a, VertexId b) const;
-    void adopt(VertexId u, VertexId v);
+    void register_new(VertexId u, VertexId v);
 
     const Settings& settings_;
     Network network_;
     WinnerSearch search_;
     UtilityCounters utility_counters_;
     FeatureCounters feature_counters_;
-    FeatureStatistic feature_statistic_;
+    CreaseMeasure crease_measure_;
     WindowMean mean_delta_;
-    TurnMean turn_mean_;
-    BasicSteps steps_;
-    Signals drawn_;
-    Crowding crowding_;
+    NormalTurn turn_mean_;
+    BasicStepBatch steps_;
+    SignalStream drawn_;
+    BatchLimit crowding_;
     /// Per vertex the signal of its last win, or of its birth.
     std::vector<std::int64_t> last_active_;
     std::int64_t signals_ = 0;

@@ -17,7 +17,7 @@ namespace neuralmesh {
 /// the C_delta = 1000 signals of eq 3 falls below a bound by chance long before the mesh does; and a memory
 /// of many more signals than these lags behind the growth, which doubles the vertices in 100 signals per
 /// vertex.
-class TurnMean {
+class NormalTurn {
 public:
     static constexpr int kSignalsPerVertex = 10;
 

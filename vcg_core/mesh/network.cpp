@@ -19,7 +19,7 @@ void insert(Ring& ring, int i, VertexId v) {
     std::copy_backward(at(ring, i), at(ring, ring.valence), at(ring, ring.valence + 1));
     *at(ring, i) = v;
     ++ring.valence;
-    ring.repeat();
+    ring.pad_cyclically();
 }
 
 void insert_before(Ring& ring, VertexId where, VertexId v) { insert(ring, ring.find(where), v); }
@@ -29,12 +29,12 @@ void erase(Ring& ring, VertexId v) {
     const int i = ring.find(v);
     std::copy(at(ring, i + 1), at(ring, ring.valence), at(ring, i));
     --ring.valence;
-    ring.repeat();
+    ring.pad_cyclically();
 }
 
 void replace(Ring& ring, VertexId old, VertexId now) {
     *at(ring, ring.find(old)) = now;
-    ring.repeat();
+    ring.pad_cyclically();
 }
 
 void replace(Ring& ring, VertexId old, const VertexId* now, int count) {
@@ -44,13 +44,13 @@ void replace(Ring& ring, VertexId old, const VertexId* now, int count) {
     const auto end = std::copy(at(ring, i + 1), at(ring, ring.valence), tail.begin());
     std::copy(tail.begin(), end, std::copy(now, now + count, at(ring, i)));
     ring.valence = static_cast<std::uint8_t>(grown);
-    ring.repeat();
+    ring.pad_cyclically();
 }
 
 /// Starts the cycle of a closed ring at position i.
 void rotate(Ring& ring, int i) {
     std::rotate(at(ring, 0), at(ring, i), at(ring, ring.valence));
-    ring.repeat();
+    ring.pad_cyclically();
 }
 
 int least_valence(const Ring& ring) { return ring.open != 0 ? 2 : 3; }
@@ -72,7 +72,7 @@ void Network::reserve(int vertices) {
 }
 
 void Network::set_position(VertexId v, const vcg::Point3f& p) {
-    Slot& slot = slots()[v];
+    VertexRecord& slot = slots()[v];
     slot.x = p[0];
     slot.y = p[1];
     slot.z = p[2];
@@ -87,7 +87,7 @@ VertexId Network::new_vertex(VertexId parent, const vcg::Point3f& where) {
         free_.pop_back();
     } else {
         // A slot that is there already is left from a time when there was no room for the ring.
-        slots_.resize(rings_.size() + 2, Slot{0, 0, 0, -1});
+        slots_.resize(rings_.size() + 2, VertexRecord{0, 0, 0, -1});
         rings_.push_back(Ring{});
     }
     set_position(v, where);
@@ -129,7 +129,7 @@ VertexId Network::split(VertexId v, int first, int count, const vcg::Point3f& wh
     std::copy(at(rv, first), at(rv, first + count), at(ru, 0));
     ru.valence = static_cast<std::uint8_t>(count);
     ru.open = (takes_start || takes_end) ? 1 : 0;
-    ru.region = rv.region;
+    ru.tag = rv.tag;
     const VertexId e2 = ru[0];
     const VertexId e1 = ru[count - 1];
     insert(ru, takes_end ? 0 : count, v);
@@ -247,16 +247,16 @@ std::vector<VertexId> Network::renumber(const std::vector<VertexId>& order) {
         }
     }
     HugeVector<Ring> rings;
-    HugeVector<Slot> slots_in_order;
+    HugeVector<VertexRecord> slots_in_order;
     rings.reserve(std::max(rings_.capacity(), order.size()));
     slots_in_order.reserve(std::max(slots_.capacity(), order.size() + 1));
-    slots_in_order.push_back(kNobody);
+    slots_in_order.push_back(kSentinel);
     for (const VertexId old : order) {
         rings.push_back(old < 0 ? Ring{} : ring(old));
-        slots_in_order.push_back(old < 0 ? Slot{0, 0, 0, -1} : slots()[old]);
+        slots_in_order.push_back(old < 0 ? VertexRecord{0, 0, 0, -1} : slots()[old]);
         Ring& r = rings.back();
         for (int i = 0; i < r.valence; ++i) *at(r, i) = moved[static_cast<std::size_t>(r[i])];
-        r.repeat();
+        r.pad_cyclically();
     }
     rings_.swap(rings);
     slots_.swap(slots_in_order);
@@ -265,7 +265,7 @@ std::vector<VertexId> Network::renumber(const std::vector<VertexId>& order) {
     return moved;
 }
 
-std::vector<VertexId> Network::along_curve() const {
+std::vector<VertexId> Network::morton_order() const {
     // 21 bits for each coordinate of the core's frame and what lies around it.
     const auto spread = [](float coordinate) {
         const float scaled = (std::clamp(coordinate, -1.0F, 0.999F) + 1) * 0x1p20F;

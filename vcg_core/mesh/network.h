@@ -10,62 +10,21 @@
 
 #include <vcg/space/point3.h>
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/huge_pages.h"
-#include "vcg_core/base/simd.h"
 #include "vcg_core/mesh/free_ids.h"
+#include "vcg_core/mesh/ring.h"
 
 namespace neuralmesh {
 
-using VertexId = std::int32_t;
-using Triangle = std::array<VertexId, 3>;
-
-/// The neighbours of a vertex, counter-clockwise seen from outside. Closed: a cycle, which may start
-/// anywhere. Open (the vertex lies on a boundary): from the first boundary edge to the last.
-struct alignas(64) Ring {
-    static constexpr int kMaxValence = 15;
-
-    /// From the valence on they repeat from the start, so that who walks around need not look for the end.
-    std::array<VertexId, kMaxValence> neighbours;
-    std::uint8_t valence;  ///< 0: the slot is free
-    std::uint8_t open;     ///< 1: boundary vertex
-    std::uint16_t region;  ///< whose thread moves the vertex (see BasicSteps); no part of the mesh
-
-    int find(VertexId v) const {
-        for (int i = 0; i < valence; ++i)
-            if (neighbours[static_cast<std::size_t>(i)] == v) return i;
-        return -1;
-    }
-    /// find() of a neighbour that is there, without a branch that cannot be predicted.
-    int position_of(VertexId v) const {
-        // Entries beyond the valence repeat the ring, so the first hit counts.
-        unsigned hits = equal_mask(neighbours.data(), v) | equal_mask(neighbours.data() + 4, v) << 4;
-        if (hits == 0)
-            hits = equal_mask(neighbours.data() + 8, v) << 8 | equal_mask(neighbours.data() + 11, v) << 11;
-        return __builtin_ctz(hits);
-    }
-    VertexId operator[](int i) const { return neighbours[static_cast<std::size_t>(i)]; }
-    /// The neighbour after / before position i, cyclically.
-    VertexId next(int i) const { return (*this)[i + 1 == valence ? 0 : i + 1]; }
-    VertexId previous(int i) const { return (*this)[i == 0 ? valence - 1 : i - 1]; }
-    int face_count() const { return valence - open; }
-    /// Fills the entries beyond the valence; to be called after every change.
-    void repeat() {
-        for (std::size_t i = valence; i < neighbours.size() && valence > 0; ++i)
-            neighbours[i] = neighbours[i - valence];
-    }
-};
-static_assert(sizeof(Ring) == 64);
-
 /// 16 bytes, so that a position is one aligned load; the spare word belongs to the winner search.
-struct alignas(16) Slot {
+struct alignas(16) VertexRecord {
     float x, y, z;
-    VertexId next_in_cell;
+    VertexId link;
 
     vcg::Point3f point() const { return {x, y, z}; }
 };
@@ -86,19 +45,23 @@ public:
     /// Ids run from 0 to slot_count() - 1; alive() tells the used ones.
     int slot_count() const { return static_cast<int>(rings_.size()); }
     bool alive(VertexId v) const { return ring(v).valence != 0; }
+    /// The used ids in rising order: for (VertexId v : network.vertices()). Skips what is removed while it
+    /// runs; the network must not grow meanwhile.
+    class Vertices;
+    Vertices vertices() const;
     const Ring& ring(VertexId v) const { return rings_[static_cast<std::size_t>(v)]; }
     vcg::Point3f position(VertexId v) const { return slots()[v].point(); }
     void set_position(VertexId v, const vcg::Point3f& p);
     /// Regions are for threads to share the work; a new vertex has that of the vertex it was split from.
-    void set_region(VertexId v, int region) { ring_of(v).region = static_cast<std::uint16_t>(region); }
+    void set_tag(VertexId v, int tag) { ring_of(v).tag = static_cast<std::uint16_t>(tag); }
     /// Raw slots for the hot loops. slots()[-1] is nobody's: far from everything, and last in any cell.
-    Slot* slots() { return slots_.data() + 1; }
-    const Slot* slots() const { return slots_.data() + 1; }
+    VertexRecord* slots() { return slots_.data() + 1; }
+    const VertexRecord* slots() const { return slots_.data() + 1; }
     void reserve(int vertices);
     /// Memory in use, without what is reserved for growth.
     std::size_t bytes() const {
-        return rings_.size() * sizeof(Ring) + slots_.size() * sizeof(Slot) + free_.size() * sizeof(VertexId) +
-               gaps_.bytes();
+        return rings_.size() * sizeof(Ring) + slots_.size() * sizeof(VertexRecord) +
+               free_.size() * sizeof(VertexId) + gaps_.bytes();
     }
 
     bool adjacent(VertexId a, VertexId b) const { return ring(a).find(b) >= 0; }
@@ -135,7 +98,7 @@ public:
     std::vector<VertexId> renumber(const std::vector<VertexId>& order);
     /// The used ids along a curve that visits near places soon after each other (Morton 1966), so that
     /// vertices near in space come to lie near in memory. O(vertices log vertices).
-    std::vector<VertexId> along_curve() const;
+    std::vector<VertexId> morton_order() const;
 
     int face_count() const;
     int edge_count() const;
@@ -161,12 +124,43 @@ private:
     VertexId new_vertex(VertexId parent, const vcg::Point3f& where);
 
     HugeVector<Ring> rings_;
-    static constexpr Slot kNobody{1e18F, 1e18F, 1e18F, -1};
+    static constexpr VertexRecord kSentinel{1e18F, 1e18F, 1e18F, -1};
 
-    HugeVector<Slot> slots_{kNobody};  ///< of vertex v at v + 1
+    HugeVector<VertexRecord> slots_{kSentinel};  ///< of vertex v at v + 1
     std::vector<VertexId> free_;
     FreeIds gaps_;  ///< those that are free in a network whose ids follow places
     int vertex_count_ = 0;
 };
+
+class Network::Vertices {
+public:
+    class Iterator {
+    public:
+        Iterator(const Network& network, VertexId v) : network_(&network), v_(v) { skip_free(); }
+        VertexId operator*() const { return v_; }
+        Iterator& operator++() {
+            ++v_;
+            skip_free();
+            return *this;
+        }
+        bool operator!=(const Iterator& other) const { return v_ != other.v_; }
+
+    private:
+        void skip_free() {
+            while (v_ < network_->slot_count() && !network_->alive(v_)) ++v_;
+        }
+        const Network* network_;
+        VertexId v_;
+    };
+
+    explicit Vertices(const Network& network) : network_(&network) {}
+    Iterator begin() const { return {*network_, 0}; }
+    Iterator end() const { return {*network_, network_->slot_count()}; }
+
+private:
+    const Network* network_;
+};
+
+inline Network::Vertices Network::vertices() const { return Vertices(*this); }
 
 }  // namespace neuralmesh

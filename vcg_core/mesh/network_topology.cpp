@@ -40,7 +40,7 @@ bool chain(const Links& links, Ring& ring) {
         v = link->second;
     }
     ring.open = open ? 1 : 0;
-    ring.repeat();
+    ring.pad_cyclically();
     return ring.valence == valence && (open || v == ring[0]);
 }
 
@@ -62,7 +62,7 @@ Network::Network(const std::vector<vcg::Point3f>& positions, const std::vector<T
         }
     }
     rings_.resize(positions.size());
-    slots_.resize(positions.size() + 1, Slot{0, 0, 0, -1});
+    slots_.resize(positions.size() + 1, VertexRecord{0, 0, 0, -1});
     vertex_count_ = static_cast<int>(positions.size());
     for (std::size_t v = 0; v < positions.size(); ++v) {
         set_position(static_cast<VertexId>(v), positions[v]);
@@ -140,7 +140,7 @@ void Network::orient_outward() {
         const auto c = static_cast<std::size_t>(component[v]);
         if (volume[c] >= 0 || open[c] != 0) continue;
         std::reverse(r.neighbours.begin(), r.neighbours.begin() + r.valence);
-        r.repeat();
+        r.pad_cyclically();
     }
 }
 

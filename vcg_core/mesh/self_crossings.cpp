@@ -21,13 +21,13 @@ namespace {
 constexpr std::size_t kChunk = 128;
 
 /// Six times the signed volume of the tetrahedron a b c d.
-float volume(const Vec& a, const Vec& b, const Vec& c, const Vec& d) {
+float volume(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
     return area_vector(a, b, c).dot(d - a);
 }
 
 /// Whether the segment p-q goes through the triangle a b c, not merely along its plane. Without tolerances,
 /// so the answer does not depend on the scale.
-bool goes_through(const Vec& p, const Vec& q, const Vec& a, const Vec& b, const Vec& c) {
+bool goes_through(const Vector3& p, const Vector3& q, const Vector3& a, const Vector3& b, const Vector3& c) {
     const float at_p = volume(a, b, c, p);
     const float at_q = volume(a, b, c, q);
     // Not by the sign of their product, which may be too small for float.
@@ -43,29 +43,29 @@ bool goes_through(const Vec& p, const Vec& q, const Vec& a, const Vec& b, const 
 /// where they are.
 constexpr float kSmall = 0x1p-10F;
 
-float extent(const Vec& a, const Vec& b, const Vec& c) {
+float extent(const Vector3& a, const Vector3& b, const Vector3& c) {
     return (b - a).cwiseAbs().cwiseMax((c - a).cwiseAbs()).maxCoeff();
 }
 
 /// Both faces have an area, so the unit is a number that float has the inverse of.
 bool have_common_point(const Surface& surface, int f, int g) {
-    std::array<Vec, 6> corners;
+    std::array<Vector3, 6> corners;
     for (std::size_t k = 0; k < 3; ++k) {
         corners[k] = surface.corner(f, k);
         corners[k + 3] = surface.corner(g, k);
     }
     if (std::min(extent(corners[0], corners[1], corners[2]), extent(corners[3], corners[4], corners[5])) <
         kSmall) {
-        const Vec origin = corners[0];
+        const Vector3 origin = corners[0];
         float reach = 0;
-        for (Vec& c : corners) {
+        for (Vector3& c : corners) {
             c -= origin;
             reach = std::max(reach, c.cwiseAbs().maxCoeff());
         }
         // A power of two, which changes no digits.
-        for (Vec& c : corners) c *= std::ldexp(1.0F, -std::ilogb(reach));
+        for (Vector3& c : corners) c *= std::ldexp(1.0F, -std::ilogb(reach));
     }
-    const auto corner = [&](std::size_t k) { return point(corners[k]); };
+    const auto corner = [&](std::size_t k) { return to_vcg(corners[k]); };
     return vcg::NoDivTriTriIsect(corner(0), corner(1), corner(2), corner(3), corner(4), corner(5));
 }
 
@@ -83,7 +83,9 @@ bool cut_each_other(const Surface& surface, int f, int g) {
                 in_t = j;
             }
     if (common > 1) return false;
-    const auto corner = [&](int face, std::size_t k) -> const Vec& { return surface.corner(face, k % 3); };
+    const auto corner = [&](int face, std::size_t k) -> const Vector3& {
+        return surface.corner(face, k % 3);
+    };
     if (common == 1)
         return goes_through(corner(f, in_s + 1), corner(f, in_s + 2), corner(g, 0), corner(g, 1),
                             corner(g, 2)) ||
@@ -93,7 +95,7 @@ bool cut_each_other(const Surface& surface, int f, int g) {
 }
 
 /// In float; what has none can cut nothing, and where vertices share their places there are many.
-bool has_area(const Surface& surface, int f) { return area_vector(surface, f) != Vec(0, 0, 0); }
+bool has_area(const Surface& surface, int f) { return area_vector(surface, f) != Vector3(0, 0, 0); }
 
 std::size_t faces_of(const std::vector<Crossing>& crossings) {
     std::vector<Triangle> faces;
@@ -118,7 +120,7 @@ void note(const Surface& surface, int f, int g, std::vector<Crossing>& crossings
 
 /// All that \p find(face, crossings) notes for the faces, sorted.
 template <class Find>
-std::vector<Crossing> sorted_crossings(std::size_t faces, Team& team, const Find& find) {
+std::vector<Crossing> sorted_crossings(std::size_t faces, ThreadTeam& team, const Find& find) {
     std::vector<std::vector<Crossing>> found((faces + kChunk - 1) / kChunk);
     for_chunks(faces, kChunk, team, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) find(i, found[chunk]);
@@ -150,7 +152,7 @@ bool have_same_face(const Surface& a, const Surface& b, const Triangle& face) {
 
 }  // namespace
 
-std::vector<Crossing> crossings_of(const Surface& surface, Team& team, std::int64_t* pairs_looked_at) {
+std::vector<Crossing> crossings_of(const Surface& surface, ThreadTeam& team, std::int64_t* pairs_looked_at) {
     std::vector<int> faces;
     for (int f = 0; f < static_cast<int>(surface.faces.size()); ++f)
         if (has_area(surface, f)) faces.push_back(f);
@@ -171,7 +173,7 @@ std::vector<Crossing> crossings_of(const Surface& surface, Team& team, std::int6
 }
 
 std::vector<Crossing> crossings_after(const Surface& surface, const Surface& before,
-                                      const std::vector<Crossing>& known, Team& team) {
+                                      const std::vector<Crossing>& known, ThreadTeam& team) {
     std::vector<int> changed;
     std::vector<char> is_changed(surface.faces.size(), 0);
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {

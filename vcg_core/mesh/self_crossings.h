@@ -23,13 +23,13 @@ using Crossing = std::array<VertexId, 6>;
 /// never count, nor do those without area. By \p team, with the same result for any number. O(faces log faces
 /// + pairs of faces whose boxes meet, of which a smooth surface has about six for each face).
 /// \param pairs_looked_at if not null, gets the number of these pairs
-std::vector<Crossing> crossings_of(const Surface& surface, Team& team,
+std::vector<Crossing> crossings_of(const Surface& surface, ThreadTeam& team,
                                    std::int64_t* pairs_looked_at = nullptr);
 
 /// The same, from \p known, the crossings of the surface \p before: only faces that are not in \p before, at
 /// the same place, are looked at. Expected O(faces + changed faces log changed faces).
 std::vector<Crossing> crossings_after(const Surface& surface, const Surface& before,
-                                      const std::vector<Crossing>& known, Team& team);
+                                      const std::vector<Crossing>& known, ThreadTeam& team);
 
 /// The promise that a surface does not come to cut itself more than it did.
 class CrossingGuard {

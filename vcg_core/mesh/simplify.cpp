@@ -55,12 +55,12 @@ void push_edges_of(const Network& net, VertexId v, Queue& queue) {
     }
 }
 
-bool keeps_valences(const Network& net, VertexId gone, VertexId kept) {
+bool result_valence_fits(const Network& net, VertexId gone, VertexId kept) {
     return net.ring(gone).valence + net.ring(kept).valence - 4 <= kHighestValence - 2;
 }
 
 bool may_collapse(const Network& net, VertexId gone, VertexId kept, bool careful) {
-    return keeps_valences(net, gone, kept) && net.can_collapse(gone, kept) &&
+    return result_valence_fits(net, gone, kept) && net.can_collapse(gone, kept) &&
            !(careful && folds(net, gone, net.position(kept), kept));
 }
 

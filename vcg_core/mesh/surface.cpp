@@ -10,7 +10,7 @@
 
 namespace neuralmesh {
 
-float triangle_quality(const Vec& a, const Vec& b, const Vec& c) {
+float triangle_quality(const Vector3& a, const Vector3& b, const Vector3& c) {
     constexpr float kTwoSqrtThree = 3.4641016F;
     const float edges = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
     return edges > 0 ? kTwoSqrtThree * area_vector(a, b, c).norm() / edges : 0.0F;
@@ -18,8 +18,8 @@ float triangle_quality(const Vec& a, const Vec& b, const Vec& c) {
 
 Surface::Surface(const Network& network) : faces(network.faces()) {
     const auto slots = index(network.slot_count());
-    at.resize(slots, Vec(0, 0, 0));
-    for (VertexId v = 0; v < network.slot_count(); ++v) at[index(v)] = vec(network.position(v));
+    at.resize(slots, Vector3(0, 0, 0));
+    for (VertexId v = 0; v < network.slot_count(); ++v) at[index(v)] = to_eigen(network.position(v));
     first_face.assign(slots + 1, 0);
     for (const Triangle& f : faces)
         for (const VertexId v : f) ++first_face[index(v) + 1];
@@ -30,16 +30,16 @@ Surface::Surface(const Network& network) : faces(network.faces()) {
         for (const VertexId v : faces[f]) face_of[index(next[index(v)]++)] = static_cast<int>(f);
 }
 
-Vec normal_beyond(const Surface& surface, VertexId a, VertexId b) {
+Vector3 normal_beyond(const Surface& surface, VertexId a, VertexId b) {
     for (int i = surface.first_face[index(b)]; i < surface.first_face[index(b) + 1]; ++i) {
         const Triangle& f = surface.faces[index(surface.face_of[index(i)])];
         for (std::size_t k = 0; k < 3; ++k) {
             if (f[k] != b || f[(k + 1) % 3] != a) continue;
-            const Vec& c = surface.at[index(f[(k + 2) % 3])];
+            const Vector3& c = surface.at[index(f[(k + 2) % 3])];
             return (surface.at[index(a)] - surface.at[index(b)]).cross(c - surface.at[index(b)]).normalized();
         }
     }
-    return Vec::Zero();
+    return Vector3::Zero();
 }
 
 namespace {
@@ -47,7 +47,7 @@ namespace {
 /// Whether the foot lies so deep in its face that no face around can be nearer: what is nearer to the point
 /// than its foot is lies within twice their distance of the foot, and the way to another face leads over an
 /// edge.
-bool settled(const Foot& foot, const Vec& ab, const Vec& ac) {
+bool settled(const Foot& foot, const Vector3& ab, const Vector3& ac) {
     const float least = std::min({foot.weights[0], foot.weights[1], foot.weights[2]});
     const float longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
     // The least height is 2 area / longest edge, and the foot has least x height to every edge or more.
@@ -68,19 +68,19 @@ std::vector<int> all_faces(const Surface& surface) {
 
 }  // namespace
 
-Place place_of(const Surface& surface, const Hit& hit) {
+WalkStart walk_start_of(const Surface& surface, const Hit& hit) {
     const VertexId v = nearest_corner(surface, hit);
     const auto around = surface.face_of.begin() + surface.first_face[index(v)];
     return {v, static_cast<int>(std::find(around, surface.face_of.end(), hit.face) - around)};
 }
 
-Hit walk_to_nearest(const Surface& surface, const Vec& p, Place start) {
+Hit walk_to_nearest(const Surface& surface, const Vector3& p, WalkStart start) {
     Hit best{-1, {std::numeric_limits<float>::max(), {1, 0, 0}}};
     /// Whether the search is over.
     const auto look_at = [&](int face) {
-        const Vec& a = surface.corner(face, 0);
-        const Vec ab = surface.corner(face, 1) - a;
-        const Vec ac = surface.corner(face, 2) - a;
+        const Vector3& a = surface.corner(face, 0);
+        const Vector3 ab = surface.corner(face, 1) - a;
+        const Vector3 ac = surface.corner(face, 2) - a;
         const Foot foot = foot_on_triangle(ab, ac, p - a);
         if (!(foot.squared_distance < best.foot.squared_distance)) return false;
         best = {face, foot};
@@ -103,7 +103,7 @@ FaceTree::FaceTree(const Surface& surface) : FaceTree(surface, all_faces(surface
 
 FaceTree::FaceTree(const Surface& surface, std::vector<int> faces)
     : order_(std::move(faces)), corners_(order_.size()), boxes_(order_.size()) {
-    std::vector<Vec> centres(surface.faces.size());
+    std::vector<Vector3> centres(surface.faces.size());
     for (const int f : order_)
         centres[index(f)] = surface.corner(f, 0) + surface.corner(f, 1) + surface.corner(f, 2);
     nodes_.reserve(order_.size());
@@ -112,18 +112,18 @@ FaceTree::FaceTree(const Surface& surface, std::vector<int> faces)
 }
 
 FaceTree::Box FaceTree::box_of(const Surface& surface, int face) {
-    const Vec& a = surface.corner(face, 0);
-    const Vec& b = surface.corner(face, 1);
-    const Vec& c = surface.corner(face, 2);
+    const Vector3& a = surface.corner(face, 0);
+    const Vector3& b = surface.corner(face, 1);
+    const Vector3& c = surface.corner(face, 2);
     return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
 }
 
-int FaceTree::build(const std::vector<Vec>& centres, int begin, int end) {
+int FaceTree::build(const std::vector<Vector3>& centres, int begin, int end) {
     const int node = static_cast<int>(nodes_.size());
-    nodes_.push_back({Vec::Zero(), Vec::Zero(), begin, end, -1});
+    nodes_.push_back({Vector3::Zero(), Vector3::Zero(), begin, end, -1});
     if (end - begin <= kLeaf) return node;
-    Vec low = centres[index(order_[index(begin)])];
-    Vec high = low;
+    Vector3 low = centres[index(order_[index(begin)])];
+    Vector3 high = low;
     for (int i = begin; i < end; ++i) {
         low = low.cwiseMin(centres[index(order_[index(i)])]);
         high = high.cwiseMax(centres[index(order_[index(i)])]);
@@ -145,7 +145,7 @@ int FaceTree::build(const std::vector<Vec>& centres, int begin, int end) {
 
 void FaceTree::set_boxes(const Surface& surface) {
     for (std::size_t i = 0; i < order_.size(); ++i) {
-        const Vec& a = surface.corner(order_[i], 0);
+        const Vector3& a = surface.corner(order_[i], 0);
         corners_[i] = {a, surface.corner(order_[i], 1) - a, surface.corner(order_[i], 2) - a};
         boxes_[i] = box_of(surface, order_[i]);
     }
@@ -165,7 +165,7 @@ void FaceTree::set_boxes(const Surface& surface) {
     }
 }
 
-Hit FaceTree::nearest(const Vec& p) const {
+Hit FaceTree::nearest(const Vector3& p) const {
     struct Entry {
         float squared_distance;
         int node;

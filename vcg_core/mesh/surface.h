@@ -16,10 +16,10 @@
 
 namespace neuralmesh {
 
-using Vec = Eigen::Vector3f;
+using Vector3 = Eigen::Vector3f;
 
-inline Vec vec(const vcg::Point3f& p) { return {p[0], p[1], p[2]}; }
-inline vcg::Point3f point(const Vec& p) { return {p[0], p[1], p[2]}; }
+inline Vector3 to_eigen(const vcg::Point3f& p) { return {p[0], p[1], p[2]}; }
+inline vcg::Point3f to_vcg(const Vector3& p) { return {p[0], p[1], p[2]}; }
 inline std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// The point of a triangle that is nearest to some other point.
@@ -32,8 +32,8 @@ namespace detail {
 
 inline float share_of(float part, float rest) { return part + rest > 0 ? part / (part + rest) : 0.0F; }
 
-inline Foot foot_with(const Vec& ab, const Vec& ac, const Vec& ap, float b, float c) {
-    const Vec d = ap - b * ab - c * ac;
+inline Foot foot_with(const Vector3& ab, const Vector3& ac, const Vector3& ap, float b, float c) {
+    const Vector3 d = ap - b * ab - c * ac;
     return {d.squaredNorm(), {1 - b - c, b, c}};
 }
 
@@ -41,7 +41,7 @@ inline Foot foot_with(const Vec& ab, const Vec& ac, const Vec& ap, float b, floa
 
 /// \p ab and \p ac are the triangle's edges from its corner a, \p ap leads from a to the point. Degenerate
 /// triangles are allowed. Source: Ericson, "Real-Time Collision Detection" (2005), 5.1.5.
-inline Foot foot_on_triangle(const Vec& ab, const Vec& ac, const Vec& ap) {
+inline Foot foot_on_triangle(const Vector3& ab, const Vector3& ac, const Vector3& ap) {
     const float d1 = ab.dot(ap);
     const float d2 = ac.dot(ap);
     if (d1 <= 0 && d2 <= 0) return {ap.squaredNorm(), {1, 0, 0}};
@@ -70,33 +70,35 @@ inline Foot foot_on_triangle(const Vec& ab, const Vec& ac, const Vec& ap) {
     const float sum = va + vb + vc;
     return detail::foot_with(ab, ac, ap, vb / sum, vc / sum);
 }
-inline Foot foot_on_triangle(const Vec& p, const Vec& a, const Vec& b, const Vec& c) {
+inline Foot foot_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
     return foot_on_triangle(b - a, c - a, p - a);
 }
 
 /// Along the normal of a triangle, which is counter-clockwise seen from where it points; twice its area long.
-inline Vec area_vector(const Vec& a, const Vec& b, const Vec& c) { return (b - a).cross(c - a); }
+inline Vector3 area_vector(const Vector3& a, const Vector3& b, const Vector3& c) {
+    return (b - a).cross(c - a);
+}
 
 /// 4 sqrt(3) area / (sum of the squared edges): 1 for an equilateral triangle, 0 for a degenerate one.
-float triangle_quality(const Vec& a, const Vec& b, const Vec& c);
+float triangle_quality(const Vector3& a, const Vector3& b, const Vector3& c);
 
 /// A copy of the network's geometry in arrays: positions by slot, faces, and the faces around each slot.
 struct Surface {
-    std::vector<Vec> at;
+    std::vector<Vector3> at;
     std::vector<Triangle> faces;
     std::vector<int> first_face;  ///< of slot v: face_of[first_face[v]] up to face_of[first_face[v + 1] - 1]
     std::vector<int> face_of;
 
     explicit Surface(const Network& network);
-    const Vec& corner(int face, std::size_t k) const { return at[index(faces[index(face)][k])]; }
+    const Vector3& corner(int face, std::size_t k) const { return at[index(faces[index(face)][k])]; }
 };
 
-inline Vec area_vector(const Surface& surface, int face) {
+inline Vector3 area_vector(const Surface& surface, int face) {
     return area_vector(surface.corner(face, 0), surface.corner(face, 1), surface.corner(face, 2));
 }
 
 /// Unit normal of the face that has the edge a-b the other way round, b to a; 0 on a boundary.
-Vec normal_beyond(const Surface& surface, VertexId a, VertexId b);
+Vector3 normal_beyond(const Surface& surface, VertexId a, VertexId b);
 
 /// Adds to every vertex's value those of its ring, \p times over: sums over ever wider surroundings, in which
 /// near vertices count more often. O(times x vertices).
@@ -118,18 +120,18 @@ struct Hit {
 };
 
 /// Where a walk to a nearest face begins: a vertex, and which of the faces around it comes first.
-struct Place {
+struct WalkStart {
     VertexId vertex = 0;
     int turn = 0;
 };
 
 /// The corner of the hit face that is nearest to the foot, and that face: where to start the walk next time.
-Place place_of(const Surface& surface, const Hit& hit);
+WalkStart walk_start_of(const Surface& surface, const Hit& hit);
 
 /// The nearest face of \p p that a walk finds: from the faces around the vertex \p start on to those around
 /// the corner nearest to the foot, as long as that brings it closer. Not exact across thin gaps; many times
 /// as fast as a tree if the start is near. Any turn is allowed.
-Hit walk_to_nearest(const Surface& surface, const Vec& p, Place start);
+Hit walk_to_nearest(const Surface& surface, const Vector3& p, WalkStart start);
 
 /// Nearest face by a tree of bounding boxes. vcglib's grids lose against it where the faces' sizes vary by
 /// hundreds, as here.
@@ -141,7 +143,7 @@ public:
     FaceTree(const Surface& surface, std::vector<int> faces);
     /// The nearest face of \p p, the one of smallest index among equals. Exact in float.
     /// O(log faces) expected near the surface.
-    Hit nearest(const Vec& p) const;
+    Hit nearest(const Vector3& p) const;
     /// Calls \p visit(f, g) for every face g whose bounding box has a point in common with that of f, the
     /// \p i-th face in the order of the tree, and that comes after it there: for all i each pair once.
     template <class Visit>
@@ -160,22 +162,22 @@ private:
     static constexpr std::size_t kStack = 64;
 
     struct Node {
-        Vec low, high;
+        Vector3 low, high;
         int begin, end;  ///< into order_
         int right;       ///< the left child follows its parent; -1: a leaf
     };
     struct Corners {
-        Vec a, ab, ac;
+        Vector3 a, ab, ac;
     };
     struct Box {
-        Vec low, high;
-        bool apart(const Vec& l, const Vec& h) const {
+        Vector3 low, high;
+        bool apart(const Vector3& l, const Vector3& h) const {
             return (l.array() > high.array()).any() || (h.array() < low.array()).any();
         }
     };
 
     static Box box_of(const Surface& surface, int face);
-    int build(const std::vector<Vec>& centres, int begin, int end);
+    int build(const std::vector<Vector3>& centres, int begin, int end);
     void set_boxes(const Surface& surface);
     template <class Visit>
     void for_overlapping(const Box& box, int first, const Visit& visit) const;

@@ -27,9 +27,9 @@ std::array<int, 3> offset(int neighbour) {
 
 /// The neighbours of a node are the corners of a triangulated sphere: for every set of them, as a bit mask,
 /// whether it is one connected piece.
-class OnePiece {
+class LinkConnected {
 public:
-    OnePiece() : one_(std::size_t{1} << kNeighbours) {
+    LinkConnected() : one_(std::size_t{1} << kNeighbours) {
         for (int i = 0; i < kNeighbours; ++i)
             for (int j = 0; j < kNeighbours; ++j)
                 if (adjacent(i, j)) beside_[static_cast<std::size_t>(i)] |= 1U << j;
@@ -79,7 +79,7 @@ std::uint32_t solid_around(const Lattice& lattice, std::size_t i, const std::vec
 
 /// Adds the groups of left-out nodes that nothing connects to the outside.
 void fill_cavities(const Lattice& lattice, const std::vector<std::uint32_t>& candidates,
-                   const std::vector<Level>& clearance, int level, std::vector<std::uint8_t>& solid) {
+                   const std::vector<SquaredRadius>& clearance, int level, std::vector<std::uint8_t>& solid) {
     constexpr std::uint8_t kSeen = 2;  // left out and looked at
     std::vector<std::uint32_t> group;
     for (const std::uint32_t seed : candidates) {
@@ -106,9 +106,9 @@ void fill_cavities(const Lattice& lattice, const std::vector<std::uint32_t>& can
 
 }  // namespace
 
-void grow_without_bridges(const Lattice& lattice, const std::vector<Level>& clearance, int level,
+void grow_without_bridges(const Lattice& lattice, const std::vector<SquaredRadius>& clearance, int level,
                           std::vector<std::uint8_t>& solid) {
-    static const OnePiece one_piece;
+    static const LinkConnected one_piece;
     std::vector<std::vector<std::uint32_t>> waiting(static_cast<std::size_t>(level) + 1);
     std::vector<std::uint32_t> candidates;
     for (std::size_t i = 0; i < solid.size(); ++i)
@@ -149,11 +149,11 @@ std::vector<std::uint8_t> grown_solid(const Region& region, int level) {
     return solid;
 }
 
-std::vector<TopologyAt> grown_topologies(const Region& region, Team& team) {
+std::vector<TopologyAt> grown_topologies(const Region& region, ThreadTeam& team) {
     std::vector<TopologyAt> result;
     for (const int level : kStarts) {
         const LevelTopology& plain = region.topologies[static_cast<std::size_t>(level)];
-        if (in_pieces(region, level) || (level == 0 && plain.specks > 0)) continue;
+        if (is_fragmented(region, level) || (level == 0 && plain.specks > 0)) continue;
         result.push_back({level, plain.components, 0});
     }
     for_chunks(result.size(), 1, team, [&](std::size_t i, std::size_t, std::size_t) {

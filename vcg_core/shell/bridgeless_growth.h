@@ -21,7 +21,7 @@ namespace neuralmesh {
 /// components of \p solid, and those of its handles that persist to \p level. (Chazal and Oudot 2008: the
 /// topology of a surface is what of that of an offset survives in a larger one.) Parts that come close are
 /// left with a gap one node wide; cavities are filled. O(nodes + 14 x those added).
-void grow_without_bridges(const Lattice& lattice, const std::vector<Level>& clearance, int level,
+void grow_without_bridges(const Lattice& lattice, const std::vector<SquaredRadius>& clearance, int level,
                           std::vector<std::uint8_t>& solid);
 
 /// The squared radius to which the solid at \p level is grown: twice as far; level 0 counts as 0.6.
@@ -32,6 +32,6 @@ std::vector<std::uint8_t> grown_solid(const Region& region, int level);
 
 /// The topologies of the grown solids at a few levels from 0 to a third of the region's reach. Level 0 is
 /// passed over if isolated groups of points would be lost there. About 0.1 microseconds per node.
-std::vector<TopologyAt> grown_topologies(const Region& region, Team& team);
+std::vector<TopologyAt> grown_topologies(const Region& region, ThreadTeam& team);
 
 }  // namespace neuralmesh

@@ -18,41 +18,41 @@ int nodes_along(float extent, float step, int margin) {
 
 /// Squared distances along x: two sweeps per row.
 void distances_along_rows(const Lattice& lattice, const std::vector<std::uint32_t>& occupied, int reach,
-                          std::vector<Level>& out) {
+                          std::vector<SquaredRadius>& out) {
     const int far = reach + 1;
     const std::size_t nx = static_cast<std::size_t>(lattice.nx);
-    const Level far_level = static_cast<Level>(reach * reach + 1);
+    const SquaredRadius far_level = static_cast<SquaredRadius>(reach * reach + 1);
     for (std::size_t row = 0; row < lattice.size(); row += nx) {
         int d = far;
         for (std::size_t i = row; i < row + nx; ++i) {
             d = occupied[i] != 0 ? 0 : std::min(d + 1, far);
-            out[i] = static_cast<Level>(d);
+            out[i] = static_cast<SquaredRadius>(d);
         }
         d = far;
         for (std::size_t i = row + nx; i-- > row;) {
             d = occupied[i] != 0 ? 0 : std::min(d + 1, far);
             const int best = std::min<int>(d, out[i]);
-            out[i] = best > reach ? far_level : static_cast<Level>(best * best);
+            out[i] = best > reach ? far_level : static_cast<SquaredRadius>(best * best);
         }
     }
 }
 
 /// out[row][x] = min over |k| <= reach of in[row + k * stride][x] + k^2, for \p count rows \p stride apart.
 /// \p scratch holds the column of rows.
-void lower_envelope(Level* first, int count, std::size_t stride, int width, int reach,
-                    std::vector<Level>& scratch) {
+void lower_envelope(SquaredRadius* first, int count, std::size_t stride, int width, int reach,
+                    std::vector<SquaredRadius>& scratch) {
     const std::size_t w = static_cast<std::size_t>(width);
     scratch.resize(static_cast<std::size_t>(count) * w);
     for (int i = 0; i < count; ++i)
         std::copy_n(first + static_cast<std::size_t>(i) * stride, w,
                     scratch.data() + static_cast<std::size_t>(i) * w);
     for (int i = 0; i < count; ++i) {
-        Level* out = first + static_cast<std::size_t>(i) * stride;
+        SquaredRadius* out = first + static_cast<std::size_t>(i) * stride;
         for (int j = std::max(0, i - reach); j <= std::min(count - 1, i + reach); ++j) {
-            const Level* in = scratch.data() + static_cast<std::size_t>(j) * w;
-            const Level add = static_cast<Level>((i - j) * (i - j));
+            const SquaredRadius* in = scratch.data() + static_cast<std::size_t>(j) * w;
+            const SquaredRadius add = static_cast<SquaredRadius>((i - j) * (i - j));
             for (std::size_t x = 0; x < w; ++x) {
-                const Level candidate = static_cast<Level>(in[x] + add);
+                const SquaredRadius candidate = static_cast<SquaredRadius>(in[x] + add);
                 out[x] = candidate < out[x] ? candidate : out[x];
             }
         }
@@ -86,19 +86,19 @@ private:
 };
 
 /// Adds to changes[l] by how much the Euler characteristic grows when the solid grows to level l.
-void add_euler_changes(const Lattice& lattice, const std::vector<Level>& clearance,
+void add_euler_changes(const Lattice& lattice, const std::vector<SquaredRadius>& clearance,
                        std::vector<int>& changes) {
-    const Level far = static_cast<Level>(changes.size() - 1);
+    const SquaredRadius far = static_cast<SquaredRadius>(changes.size() - 1);
     for (int z = 0; z < lattice.nz; ++z)
         for (int y = 0; y < lattice.ny; ++y)
             for (int x = 0; x < lattice.nx; ++x) {
-                std::array<Level, 8> c;  // corner bits: 1 = x, 2 = y, 4 = z
-                Level low = far, high = 0;
+                std::array<SquaredRadius, 8> c;  // corner bits: 1 = x, 2 = y, 4 = z
+                SquaredRadius low = far, high = 0;
                 for (int k = 0; k < 8; ++k) {
                     const int dx = k & 1, dy = (k >> 1) & 1, dz = k >> 2;
-                    const Level value = in_box(lattice, x, y, z, dx, dy, dz)
-                                            ? clearance[lattice.index(x + dx, y + dy, z + dz)]
-                                            : far;
+                    const SquaredRadius value = in_box(lattice, x, y, z, dx, dy, dz)
+                                                    ? clearance[lattice.index(x + dx, y + dy, z + dz)]
+                                                    : far;
                     c[static_cast<std::size_t>(k)] = value;
                     low = std::min(low, value);
                     high = std::max(high, value);
@@ -107,11 +107,11 @@ void add_euler_changes(const Lattice& lattice, const std::vector<Level>& clearan
                 // All chains 0 < a < b < 7 of corner bits: the simplices whose lowest corner is this node.
                 ++changes[static_cast<std::size_t>(c[0])];
                 for (int a = 1; a < 8; ++a) {
-                    const Level ca = std::max(c[0], c[static_cast<std::size_t>(a)]);
+                    const SquaredRadius ca = std::max(c[0], c[static_cast<std::size_t>(a)]);
                     --changes[static_cast<std::size_t>(ca)];
                     for (int b = a + 1; b < 8; ++b) {
                         if ((a & b) != a) continue;
-                        const Level cb = std::max(ca, c[static_cast<std::size_t>(b)]);
+                        const SquaredRadius cb = std::max(ca, c[static_cast<std::size_t>(b)]);
                         ++changes[static_cast<std::size_t>(cb)];
                         if (b != 7) --changes[static_cast<std::size_t>(std::max(cb, c[7]))];
                     }
@@ -138,9 +138,9 @@ std::size_t Lattice::node_of(const vcg::Point3f& p) const {
     return index(static_cast<int>(q[0]), static_cast<int>(q[1]), static_cast<int>(q[2]));
 }
 
-std::vector<Level> squared_distances(const Lattice& lattice, const std::vector<std::uint32_t>& occupied,
-                                     int reach) {
-    std::vector<Level> out(lattice.size()), scratch;
+std::vector<SquaredRadius> squared_distances(const Lattice& lattice,
+                                             const std::vector<std::uint32_t>& occupied, int reach) {
+    std::vector<SquaredRadius> out(lattice.size()), scratch;
     distances_along_rows(lattice, occupied, reach, out);
     const std::size_t slice = static_cast<std::size_t>(lattice.nx) * static_cast<std::size_t>(lattice.ny);
     for (int z = 0; z < lattice.nz; ++z)
@@ -149,21 +149,21 @@ std::vector<Level> squared_distances(const Lattice& lattice, const std::vector<s
     for (int y = 0; y < lattice.ny; ++y)
         lower_envelope(out.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(lattice.nx),
                        lattice.nz, slice, lattice.nx, reach, scratch);
-    const Level far = static_cast<Level>(reach * reach + 1);
-    for (Level& d : out) d = std::min(d, far);
+    const SquaredRadius far = static_cast<SquaredRadius>(reach * reach + 1);
+    for (SquaredRadius& d : out) d = std::min(d, far);
     return out;
 }
 
-std::vector<Level> clearances(const Lattice& lattice, const std::vector<Level>& distances, int reach,
-                              const std::vector<std::uint8_t>& inside) {
+std::vector<SquaredRadius> clearances(const Lattice& lattice, const std::vector<SquaredRadius>& distances,
+                                      int reach, const std::vector<std::uint8_t>& inside) {
     const int far = reach * reach + 1;
-    constexpr Level kUnknown = -1, kInside = 0;
-    std::vector<Level> out(lattice.size(), kUnknown);
+    constexpr SquaredRadius kUnknown = -1, kInside = 0;
+    std::vector<SquaredRadius> out(lattice.size(), kUnknown);
     // First in, first out on every level, so that inside and outside meet halfway.
     std::vector<std::vector<std::uint32_t>> waiting(static_cast<std::size_t>(far) + 1);
     const auto wait = [&](std::size_t i, int level, bool in) {
         const int l = std::min<int>(level, distances[i]);
-        out[i] = in ? kInside : static_cast<Level>(l);
+        out[i] = in ? kInside : static_cast<SquaredRadius>(l);
         waiting[static_cast<std::size_t>(l)].push_back(static_cast<std::uint32_t>(i));
     };
     if (!inside.empty())
@@ -185,13 +185,14 @@ std::vector<Level> clearances(const Lattice& lattice, const std::vector<Level>& 
         }
         std::vector<std::uint32_t>().swap(front);
     }
-    for (Level& c : out) c = std::max(c, kInside);  // walled in by occupied nodes all around
+    for (SquaredRadius& c : out) c = std::max(c, kInside);  // walled in by occupied nodes all around
     return out;
 }
 
-Sealing enclosed_spaces(const Lattice& lattice, const std::vector<Level>& distances,
-                        const std::vector<Level>& clearance, double width_ratio, int least_depth) {
-    Sealing result;
+SealedSpaces enclosed_spaces(const Lattice& lattice, const std::vector<SquaredRadius>& distances,
+                             const std::vector<SquaredRadius>& clearance, double width_ratio,
+                             int least_depth) {
+    SealedSpaces result;
     result.inside.assign(lattice.size(), 0);
     std::vector<std::uint8_t> seen(lattice.size(), 0);
     std::vector<std::uint32_t> space;
@@ -217,7 +218,8 @@ Sealing enclosed_spaces(const Lattice& lattice, const std::vector<Level>& distan
     return result;
 }
 
-std::vector<LevelTopology> topology_of_levels(const Lattice& lattice, const std::vector<Level>& clearance,
+std::vector<LevelTopology> topology_of_levels(const Lattice& lattice,
+                                              const std::vector<SquaredRadius>& clearance,
                                               const std::vector<std::uint32_t>& counts, int reach,
                                               long long enough) {
     const std::size_t levels =
@@ -226,7 +228,7 @@ std::vector<LevelTopology> topology_of_levels(const Lattice& lattice, const std:
     add_euler_changes(lattice, clearance, euler);
 
     std::vector<std::uint32_t> first(levels + 2, 0), order;
-    for (const Level c : clearance) ++first[static_cast<std::size_t>(c) + 1];
+    for (const SquaredRadius c : clearance) ++first[static_cast<std::size_t>(c) + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
     order.resize(first[levels]);
     std::vector<std::uint32_t> place(first.begin(), first.end());
@@ -266,7 +268,7 @@ std::vector<LevelTopology> topology_of_levels(const Lattice& lattice, const std:
 }
 
 int euler_characteristic(const Lattice& lattice, const std::vector<std::uint8_t>& solid) {
-    std::vector<Level> level(solid.size());
+    std::vector<SquaredRadius> level(solid.size());
     for (std::size_t i = 0; i < solid.size(); ++i) level[i] = solid[i] != 0 ? 0 : 1;
     std::vector<int> changes(2, 0);
     add_euler_changes(lattice, level, changes);

@@ -18,7 +18,7 @@
 namespace neuralmesh {
 
 /// Squared distance in lattice steps.
-using Level = std::int16_t;
+using SquaredRadius = std::int16_t;
 
 /// A box of nodes, \p step apart; node (x, y, z) has the index (z * ny + y) * nx + x.
 /// Two nodes are adjacent if they share an edge of the Freudenthal subdivision (Kuhn's six tetrahedra per
@@ -73,19 +73,19 @@ void for_each_neighbour(const Lattice& l, std::size_t i, const Visit& visit) {
 
 /// Squared distance of every node to the nearest node with occupied != 0; beyond \p reach steps it is
 /// reach^2 + 1 ("far"). Exact. O(nodes x reach), in SIMD.
-std::vector<Level> squared_distances(const Lattice& lattice, const std::vector<std::uint32_t>& occupied,
-                                     int reach);
+std::vector<SquaredRadius> squared_distances(const Lattice& lattice,
+                                             const std::vector<std::uint32_t>& occupied, int reach);
 
 /// For every node the level up to which balls get there: the largest over all paths from outside the box
 /// of the smallest squared distance on the path. A ball of squared radius l, from outside, reaches the nodes
 /// with clearance > l; the others, clearance <= l, are the solid at level l. It has no cavities.
 /// Nodes with \p inside != 0 (empty: none) are solid at every level, and grow against the outside as in a
 /// watershed transform (Vincent and Soille 1991): what they get to first is solid, too. O(nodes).
-std::vector<Level> clearances(const Lattice& lattice, const std::vector<Level>& distances, int reach,
-                              const std::vector<std::uint8_t>& inside);
+std::vector<SquaredRadius> clearances(const Lattice& lattice, const std::vector<SquaredRadius>& distances,
+                                      int reach, const std::vector<std::uint8_t>& inside);
 
 /// What sealing found.
-struct Sealing {
+struct SealedSpaces {
     std::vector<std::uint8_t> inside;  ///< 1: inside of a sealed space
     long long nodes = 0;               ///< their number
     int widest_opening = 0;            ///< largest squared radius of a hole that had to be closed
@@ -95,8 +95,9 @@ struct Sealing {
 /// gets there from outside, where the largest inscribed radius is at least \p width_ratio times the radius of
 /// the way in, and its square at least \p least_depth. Such a space is the inside of a solid whose surface
 /// has gaps between its points, or of a scan with holes. O(nodes).
-Sealing enclosed_spaces(const Lattice& lattice, const std::vector<Level>& distances,
-                        const std::vector<Level>& clearance, double width_ratio, int least_depth);
+SealedSpaces enclosed_spaces(const Lattice& lattice, const std::vector<SquaredRadius>& distances,
+                             const std::vector<SquaredRadius>& clearance, double width_ratio,
+                             int least_depth);
 
 /// Topology of the solid at one level.
 struct LevelTopology {
@@ -108,7 +109,8 @@ struct LevelTopology {
 
 /// The solid's topology at every level from 0 to reach^2. A component counts if it holds at least
 /// \p enough points, where counts[i] points lie at node i. O(nodes).
-std::vector<LevelTopology> topology_of_levels(const Lattice& lattice, const std::vector<Level>& clearance,
+std::vector<LevelTopology> topology_of_levels(const Lattice& lattice,
+                                              const std::vector<SquaredRadius>& clearance,
                                               const std::vector<std::uint32_t>& counts, int reach,
                                               long long enough);
 

@@ -25,7 +25,7 @@ void gather(const Lattice& lattice, std::size_t seed, std::vector<std::uint8_t>&
 
 }  // namespace
 
-std::vector<std::uint8_t> solid_of(const Lattice& lattice, const std::vector<Level>& clearance,
+std::vector<std::uint8_t> solid_of(const Lattice& lattice, const std::vector<SquaredRadius>& clearance,
                                    const std::vector<std::uint32_t>& counts, int level, long long enough) {
     std::vector<std::uint8_t> seen(lattice.size(), 0), result(lattice.size(), 0);
     std::vector<std::uint32_t> nodes;

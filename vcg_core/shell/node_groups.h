@@ -14,7 +14,7 @@
 namespace neuralmesh {
 
 /// The nodes of the solid at \p level, without the components of fewer than \p enough points.
-std::vector<std::uint8_t> solid_of(const Lattice& lattice, const std::vector<Level>& clearance,
+std::vector<std::uint8_t> solid_of(const Lattice& lattice, const std::vector<SquaredRadius>& clearance,
                                    const std::vector<std::uint32_t>& counts, int level, long long enough);
 
 /// The box of all groups of adjacent occupied nodes that hold at least \p share of the points each; null if

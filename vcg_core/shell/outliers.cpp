@@ -39,7 +39,7 @@ std::vector<std::uint8_t> outlying_nodes(const Region& region, const std::vector
     const int inside = depth_of_inside(region, level);
     std::vector<std::uint32_t> outside(solid.size());
     for (std::size_t i = 0; i < solid.size(); ++i) outside[i] = solid[i] == 0 ? 1 : 0;
-    const std::vector<Level> depths = squared_distances(region.lattice, outside, Region::kReach);
+    const std::vector<SquaredRadius> depths = squared_distances(region.lattice, outside, Region::kReach);
     for (std::size_t i = 0; i < outlying.size(); ++i)
         if (solid[i] != 0 && depths[i] <= inside) outlying[i] = 0;
     return outlying;

@@ -77,10 +77,10 @@ void seal_wide_openings(const std::vector<vcg::Point3f>& points, const vcg::Box3
     const float step = longest_side(box) / static_cast<float>(kCoarseSteps);
     if (!(step > region.lattice.step)) return;
     const Lattice coarse(box, step, Region::kMargin);
-    const std::vector<Level> distances =
+    const std::vector<SquaredRadius> distances =
         squared_distances(coarse, count_points(coarse, points), kCoarseReach);
-    const std::vector<Level> clearance = clearances(coarse, distances, kCoarseReach, {});
-    Sealing sealing = enclosed_spaces(coarse, distances, clearance, kWidthRatio, kWeakDepth);
+    const std::vector<SquaredRadius> clearance = clearances(coarse, distances, kCoarseReach, {});
+    SealedSpaces sealing = enclosed_spaces(coarse, distances, clearance, kWidthRatio, kWeakDepth);
     if (sealing.nodes == 0 && !region.encloses_space)
         sealing = enclosed_spaces(coarse, distances, clearance, kWeakWidthRatio, kWeakDepth);
     if (sealing.nodes == 0) return;
@@ -95,7 +95,7 @@ void seal_wide_openings(const std::vector<vcg::Point3f>& points, const vcg::Box3
 
 float longest_side(const vcg::Box3f& box) { return std::max({box.DimX(), box.DimY(), box.DimZ()}); }
 
-bool in_pieces(const Region& region, int level) {
+bool is_fragmented(const Region& region, int level) {
     constexpr int kTogether = 4 * 4;
     const auto at = [&](int l) { return region.topologies[static_cast<std::size_t>(l)]; };
     const LevelTopology here = at(level);
@@ -130,7 +130,8 @@ Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, f
     for (std::size_t i = 0; i < counts.size(); ++i) region.fringe_points += counts[i] - region.counts[i];
     region.distances = squared_distances(region.lattice, region.counts, Region::kReach);
     region.clearance = clearances(region.lattice, region.distances, Region::kReach, {});
-    Sealing sealing = enclosed_spaces(region.lattice, region.distances, region.clearance, kWidthRatio, 0);
+    SealedSpaces sealing =
+        enclosed_spaces(region.lattice, region.distances, region.clearance, kWidthRatio, 0);
     region.encloses_space = sealing.nodes > 0;
     region.widest_opening =
         static_cast<double>(step) * std::sqrt(static_cast<double>(sealing.widest_opening));

@@ -22,8 +22,8 @@ struct Region {
     Lattice lattice;
     std::vector<std::uint32_t> counts;  ///< points per node, without the fringe of a noisy cloud
     long long fringe_points = 0;        ///< points left out as that
-    std::vector<Level> distances;
-    std::vector<Level> clearance;  ///< with enclosed spaces sealed
+    std::vector<SquaredRadius> distances;
+    std::vector<SquaredRadius> clearance;  ///< with enclosed spaces sealed
     bool encloses_space = false;
     double widest_opening = 0;  ///< radius of the widest hole that was sealed, same unit as the points
     long long total_points = 0;
@@ -46,7 +46,7 @@ Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, f
 /// Is the solid at \p level still in pieces, as at radii below the distances of the points? That is: nothing
 /// is large enough to count, or a twentieth of the points and more lies in pieces too small to count that
 /// come together within four lattice steps. O(1).
-bool in_pieces(const Region& region, int level);
+bool is_fragmented(const Region& region, int level);
 
 float longest_side(const vcg::Box3f& box);
 

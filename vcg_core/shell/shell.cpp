@@ -110,7 +110,7 @@ Network surface_of(const Region& region, const Solid& solid, int stride) {
 /// A mesh of the verdict's topology at one of the radii of its run, the smallest if possible, because the
 /// mesh lies that far outside the cloud; without growth if that has the topology, too; on every third or
 /// second node if those keep it, because it is faster, else on every node, where it is kept by count.
-Closed close(const Region& region, const Verdict& verdict) {
+Closed close(const Region& region, const TopologyVote& verdict) {
     const std::vector<int>& levels = verdict.levels;
     const auto right = [&](int components, int genus) {
         return components == verdict.components && genus == verdict.genus;
@@ -134,10 +134,10 @@ Closed close(const Region& region, const Verdict& verdict) {
 }
 
 /// The lattices looked at, finest first, and what they say.
-struct Inquiry {
+struct LatticeSurvey {
     std::vector<Region> regions;
     std::vector<std::vector<TopologyAt>> topologies;
-    Verdict verdict;
+    TopologyVote verdict;
     float step = 0;  ///< of the lattice it began with
 
     void vote(bool grown) {
@@ -156,7 +156,7 @@ struct Inquiry {
 std::vector<TopologyAt> plain_topologies(const Region& region) {
     std::vector<TopologyAt> result;
     for (std::size_t l = 1; l < region.topologies.size(); ++l)
-        if (!in_pieces(region, static_cast<int>(l)))
+        if (!is_fragmented(region, static_cast<int>(l)))
             result.push_back(
                 {static_cast<int>(l), region.topologies[l].components, region.topologies[l].genus});
     return result;
@@ -165,9 +165,9 @@ std::vector<TopologyAt> plain_topologies(const Region& region) {
 /// Asks ever closer, because most clouds are plain: the solids of two lattices; what persists of them as they
 /// grow; the same on coarser lattices, for clouds with noise and gaps; on a finer one, for parts that are
 /// close.
-Inquiry inquire(const std::vector<Point3f>& points, const Box3f& box, const ShellOptions& options) {
-    Inquiry inquiry;
-    Team team(thread_count(options.threads));
+LatticeSurvey inquire(const std::vector<Point3f>& points, const Box3f& box, const ShellOptions& options) {
+    LatticeSurvey inquiry;
+    ThreadTeam team(thread_count(options.threads));
     const float step = inquiry.step =
         step_for(points, box, options, options.max_nodes, options.points_per_node);
     const auto look = [&](float at) {
@@ -206,7 +206,7 @@ std::string percent(double value) {
     return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " %";
 }
 
-void add_warnings(const Verdict& verdict, bool coarser, long long total, StartMesh& result) {
+void add_warnings(const TopologyVote& verdict, bool coarser, long long total, StartMesh& result) {
     if (coarser)
         result.warnings.push_back(
             "The cloud is too sparse or too noisy for its finest shell: a coarser one was taken, which may "
@@ -265,9 +265,9 @@ StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Rando
     const Box3f box = main_box(points);
 
     progress(0.2, "Start mesh: counting components and handles");
-    Inquiry inquiry = inquire(points, box, options);
+    LatticeSurvey inquiry = inquire(points, box, options);
     std::vector<Region>& regions = inquiry.regions;
-    Verdict& verdict = inquiry.verdict;
+    TopologyVote& verdict = inquiry.verdict;
     if (!verdict.found) {  // whatever the largest ball closes
         verdict.lattice = static_cast<int>(regions.size()) - 1;
         verdict.levels = {Region::kReach * Region::kReach};

@@ -73,8 +73,8 @@ struct Votes {
 
 }  // namespace
 
-Verdict persistent_topology(const std::vector<const std::vector<TopologyAt>*>& topologies,
-                            const std::vector<double>& steps) {
+TopologyVote persistent_topology(const std::vector<const std::vector<TopologyAt>*>& topologies,
+                                 const std::vector<double>& steps) {
     std::map<std::pair<int, int>, Votes> votes;  // by components and genus
     const std::vector<std::pair<double, double>> covered = covered_radii(topologies, steps);
     double all = 0;
@@ -94,7 +94,7 @@ Verdict persistent_topology(const std::vector<const std::vector<TopologyAt>*>& t
             }
         }
     }
-    Verdict verdict;
+    TopologyVote verdict;
     double most = 0;
     for (const auto& [topology, v] : votes) {
         if (v.sum <= most) continue;

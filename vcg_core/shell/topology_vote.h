@@ -16,7 +16,7 @@ struct TopologyAt {
 };
 
 /// The chosen topology and where it was found.
-struct Verdict {
+struct TopologyVote {
     bool found = false;  ///< false: there is no solid anywhere
     int components = 0;
     int genus = 0;
@@ -31,7 +31,7 @@ struct Verdict {
 /// shared with the other lattices that vote on the same radii. So persistence counts, and the finer of two
 /// equally persistent (in proportion) topologies wins: large radii only close handles and gaps. \p
 /// topologies: rising levels each. O(levels).
-Verdict persistent_topology(const std::vector<const std::vector<TopologyAt>*>& topologies,
-                            const std::vector<double>& steps);
+TopologyVote persistent_topology(const std::vector<const std::vector<TopologyAt>*>& topologies,
+                                 const std::vector<double>& steps);
 
 }  // namespace neuralmesh

@@ -8,14 +8,14 @@
 
 namespace neuralmesh {
 
-const vcg::Point3f* Signals::take(int count) {
+const vcg::Point3f* SignalStream::take(int count) {
     draw_ahead(count);
     const vcg::Point3f* taken = &drawn_[begin_];
     begin_ += static_cast<std::size_t>(count);
     return taken;
 }
 
-void Signals::draw_ahead(int count) noexcept {
+void SignalStream::draw_ahead(int count) noexcept {
     const std::size_t wanted = begin_ + static_cast<std::size_t>(count);
     if (wanted <= end_) return;
     std::size_t more = wanted - end_;

@@ -15,10 +15,10 @@
 namespace neuralmesh {
 
 /// A stream of signals. How far it is drawn ahead does not change what comes out of it.
-class Signals {
+class SignalStream {
 public:
     /// At most \p most signals are taken, or drawn ahead, at a time. A reference to \p target is kept.
-    Signals(const TargetSpace& target, int random_seed, int most)
+    SignalStream(const TargetSpace& target, int random_seed, int most)
         : target_(target),
           random_(static_cast<std::uint64_t>(random_seed)),
           drawn_(2 * static_cast<std::size_t>(most)) {}

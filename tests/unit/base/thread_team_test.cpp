@@ -13,16 +13,16 @@
 namespace neuralmesh {
 namespace {
 
-TEST(Team, DoesEveryChunkOnce) {
+TEST(ThreadTeam, DoesEveryChunkOnce) {
     for (const int members : {1, 2, 5}) {
-        Team team(members);
+        ThreadTeam team(members);
         ASSERT_EQ(team.members(), members);
         for (int round = 0; round < 3000; ++round) {
             const int chunks = round % 40;
             std::vector<int> done(40, 0);
             std::vector<int> inside(static_cast<std::size_t>(members), 0);
             bool alone = true;
-            team.run(chunks, [&](int member, int chunk) {
+            team.parallel(chunks, [&](int member, int chunk) {
                 int& here = inside[static_cast<std::size_t>(member)];
                 if (++here != 1) alone = false;
                 ++done[static_cast<std::size_t>(chunk)];
@@ -34,21 +34,21 @@ TEST(Team, DoesEveryChunkOnce) {
     }
 }
 
-TEST(Team, WakesWhoHasGoneToSleep) {
-    Team team(3);
+TEST(ThreadTeam, WakesWhoHasGoneToSleep) {
+    ThreadTeam team(3);
     for (int round = 0; round < 20; ++round) {
-        std::vector<int> done(Team::kMost, 0);
+        std::vector<int> done(ThreadTeam::kMost, 0);
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
-        team.run(Team::kMost, [&](int, int chunk) { ++done[static_cast<std::size_t>(chunk)]; });
+        team.parallel(ThreadTeam::kMost, [&](int, int chunk) { ++done[static_cast<std::size_t>(chunk)]; });
         for (const int count : done) ASSERT_EQ(count, 1);
     }
 }
 
-TEST(Team, HelpersTakePart) {
-    Team team(2);
+TEST(ThreadTeam, HelpersTakePart) {
+    ThreadTeam team(2);
     // The caller's chunk ends when the helper's has begun.
     std::atomic<bool> helped{false};
-    team.run(2, [&](int member, int) {
+    team.parallel(2, [&](int member, int) {
         if (member == 1) {
             helped = true;
         } else {
@@ -58,23 +58,23 @@ TEST(Team, HelpersTakePart) {
     EXPECT_TRUE(helped);
 }
 
-TEST(Team, DoesOneThingBesideTheCaller) {
+TEST(ThreadTeam, DoesOneThingBesideTheCaller) {
     for (const int members : {1, 2, 5}) {
-        Team team(members);
+        ThreadTeam team(members);
         int done = 0;
         for (int round = 0; round < 3000; ++round) {
             const auto body = [&] { ++done; };
-            { const Team::Beside beside = team.beside(body); }
+            { const ThreadTeam::BackgroundTask task = team.run_in_background(body); }
             ASSERT_EQ(done, round + 1);
         }
     }
 }
 
-TEST(Team, AHelperDoesItWhileTheCallerGoesOn) {
-    Team team(2);
+TEST(ThreadTeam, AHelperDoesItWhileTheCallerGoesOn) {
+    ThreadTeam team(2);
     std::atomic<bool> helped{false};
     const auto body = [&] { helped = true; };
-    const Team::Beside beside = team.beside(body);
+    const ThreadTeam::BackgroundTask task = team.run_in_background(body);
     while (!helped) std::this_thread::yield();
 }
 

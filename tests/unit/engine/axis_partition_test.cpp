@@ -24,24 +24,24 @@ std::vector<vcg::Point3f> random_points(int count) {
     return points;
 }
 
-TEST(Slabs, ShareASampleEvenly) {
+TEST(AxisPartition, ShareASampleEvenly) {
     const auto points = random_points(12000);
-    Slabs slabs(points);
+    AxisPartition slabs(points);
     for (const int count : {1, 2, 3, 8}) {
-        slabs.cut(count);
+        slabs.split(count);
         ASSERT_EQ(slabs.count(), count);
         std::vector<int> held(static_cast<std::size_t>(count), 0);
         for (const vcg::Point3f& p : points) ++held[static_cast<std::size_t>(slabs.of(p))];
         for (const int h : held) EXPECT_NEAR(h, 12000 / count, 1);
     }
-    slabs.cut(4);
+    slabs.split(4);
     EXPECT_EQ(slabs.of({0.9F, 0.1F, -5}), 0);
     EXPECT_EQ(slabs.of({0.1F, 0.9F, 5}), 3);
 }
 
-TEST(Slabs, HoldEveryPointOnce) {
-    Slabs slabs(random_points(100));
-    slabs.cut(5);
+TEST(AxisPartition, HoldEveryPointOnce) {
+    AxisPartition slabs(random_points(100));
+    slabs.split(5);
     for (const vcg::Point3f& p : random_points(1000)) {
         int holders = 0;
         for (int i = 0; i < slabs.count(); ++i) holders += slabs.range(i).holds(p) ? 1 : 0;
@@ -49,10 +49,10 @@ TEST(Slabs, HoldEveryPointOnce) {
     }
 }
 
-TEST(Slabs, HoldEveryPointOfASampleWithoutExtent) {
+TEST(AxisPartition, HoldEveryPointOfASampleWithoutExtent) {
     for (const auto& sample : {std::vector<vcg::Point3f>{}, std::vector<vcg::Point3f>(50, {1, 2, 3})}) {
-        Slabs slabs(sample);
-        slabs.cut(3);
+        AxisPartition slabs(sample);
+        slabs.split(3);
         for (const vcg::Point3f& p : {vcg::Point3f(1, 2, 3), vcg::Point3f(0, 0, 0), vcg::Point3f(9, 9, 9)}) {
             EXPECT_GE(slabs.of(p), 0);
             EXPECT_LT(slabs.of(p), 3);

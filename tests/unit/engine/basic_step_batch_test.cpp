@@ -32,7 +32,7 @@ struct Course {
 
     Network network;
     WinnerSearch search;
-    BasicSteps steps;
+    BasicStepBatch steps;
 };
 
 void expect_same(const Course& a, const Course& b, int count) {
@@ -46,7 +46,7 @@ void expect_same(const Course& a, const Course& b, int count) {
     }
 }
 
-TEST(BasicSteps, AreTheSameBytesForAnyNumberOfThreads) {
+TEST(BasicStepBatch, AreTheSameBytesForAnyNumberOfThreads) {
     const shapes::Cloud cloud = shapes::torus_cloud(5000, 0.01);
     const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
     Course alone(target, 1);

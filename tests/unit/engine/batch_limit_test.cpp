@@ -26,7 +26,7 @@ Cloud crowded_sphere(double radius) {
     return cloud;
 }
 
-TEST(Crowding, ManySignalsAtOnePlaceDoNotThrowVerticesOut) {
+TEST(BatchLimit, ManySignalsAtOnePlaceDoNotThrowVerticesOut) {
     for (const auto& [radius, counter] : {std::pair(0.0, kNormalCounter), std::pair(0.01, kSignalCounter)}) {
         SCOPED_TRACE(testing::Message() << "radius " << radius << ", counter " << counter);
         Settings settings;
@@ -40,14 +40,14 @@ TEST(Crowding, ManySignalsAtOnePlaceDoNotThrowVerticesOut) {
     }
 }
 
-void take_batch(Crowding& crowding, int count, int vertices, int wins) {
+void take_batch(BatchLimit& crowding, int count, int vertices, int wins) {
     for (VertexId v = 0; v < vertices; ++v)
         for (int i = 1; i < wins; ++i) crowding.repeated(v);
     crowding.end_batch(count);
 }
 
-TEST(Crowding, HalvesUntilHardlyAnyVertexWinsOften) {
-    Crowding crowding;
+TEST(BatchLimit, HalvesUntilHardlyAnyVertexWinsOften) {
+    BatchLimit crowding;
     const int unlimited = crowding.limit();
     take_batch(crowding, 400, 100, 2);
     EXPECT_EQ(crowding.limit(), unlimited);
@@ -63,8 +63,8 @@ TEST(Crowding, HalvesUntilHardlyAnyVertexWinsOften) {
     EXPECT_EQ(crowding.limit(), 5);
 }
 
-TEST(Crowding, GrowsAgainWhenTheWinsHaveSpread) {
-    Crowding crowding;
+TEST(BatchLimit, GrowsAgainWhenTheWinsHaveSpread) {
+    BatchLimit crowding;
     const int unlimited = crowding.limit();
     take_batch(crowding, 400, 1, 100);
     for (int batch = 0; batch < 63; ++batch) take_batch(crowding, 200, 5, 2);
@@ -76,7 +76,7 @@ TEST(Crowding, GrowsAgainWhenTheWinsHaveSpread) {
 }
 
 /// What happens in the learner: most signals at one vertex make its batches short.
-TEST(Crowding, ShortensTheLearnersBatches) {
+TEST(BatchLimit, ShortensTheLearnersBatches) {
     for (const bool crowded : {false, true}) {
         Settings settings;
         settings.target_vertices = 700;

@@ -51,21 +51,21 @@ bool has_star_of_three(const Network& network, VertexId w) {
 struct Steps {
     EightVectors normal;
     EightVectors normal_after;
-    Four moved[Patches::kLanes][16];
+    Four moved[EightSteps::kLanes][16];
 };
 
 void take(const Network& network, const std::vector<VertexId>& winners,
           const std::vector<vcg::Point3f>& signals, float alpha_w, int sweeps, float alpha_l,
-          Patches& patches, Steps& steps) {
-    vcg::Point3f towards[Patches::kLanes];
+          EightSteps& patches, Steps& steps) {
+    vcg::Point3f towards[EightSteps::kLanes];
     std::copy(signals.begin(), signals.end(), towards);
     patches.gather(network, winners.data(), static_cast<int>(winners.size()));
     patches.take_normals(steps.normal);
     patches.move_winners(towards, alpha_w);
     patches.smooth(sweeps, alpha_l);
     patches.take_normals(steps.normal_after);
-    Four* to[Patches::kLanes];
-    for (int lane = 0; lane < Patches::kLanes; ++lane) to[lane] = steps.moved[lane];
+    Four* to[EightSteps::kLanes];
+    for (int lane = 0; lane < EightSteps::kLanes; ++lane) to[lane] = steps.moved[lane];
     patches.displacements(to);
 }
 
@@ -85,9 +85,9 @@ std::vector<VertexId> winners_like(const Network& network, VertexId first, std::
     return result;
 }
 
-TEST(Patches, AreTheStepsWalkedOverTheMesh) {
+TEST(EightSteps, AreTheStepsWalkedOverTheMesh) {
     Random random(2);
-    Patches patches;  // reused, as the learner does
+    EightSteps patches;  // reused, as the learner does
     Steps steps;
     for (const Case& c : cases()) {
         const Network network = referee::network_of(c.shape);
@@ -97,7 +97,7 @@ TEST(Patches, AreTheStepsWalkedOverTheMesh) {
                 Settings settings;
                 settings.smoothing_steps = sweeps;
                 settings.smoothing_rate = 0.2;
-                const auto winners = winners_like(network, first, 1 + random.below(Patches::kLanes));
+                const auto winners = winners_like(network, first, 1 + random.below(EightSteps::kLanes));
                 std::vector<vcg::Point3f> signals;
                 for (const VertexId w : winners)
                     signals.push_back(network.position(w) +
@@ -129,14 +129,14 @@ TEST(Patches, AreTheStepsWalkedOverTheMesh) {
     }
 }
 
-TEST(Patches, LanesDoNotKnowOfEachOther) {
+TEST(EightSteps, LanesDoNotKnowOfEachOther) {
     const Network network = referee::network_of(cases()[1].shape);
-    const auto winners = winners_like(network, 5, Patches::kLanes);
+    const auto winners = winners_like(network, 5, EightSteps::kLanes);
     std::vector<vcg::Point3f> signals;
     Random random(8);
     for (const VertexId w : winners)
         signals.push_back(network.position(w) + vcg::Point3f::Construct(shapes::in_ball(random) * 0.05));
-    Patches patches;
+    EightSteps patches;
     Steps together;
     Steps alone;
     take(network, winners, signals, 0.06F, 5, 0.05F, patches, together);
@@ -147,7 +147,7 @@ TEST(Patches, LanesDoNotKnowOfEachOther) {
     }
 }
 
-TEST(Patches, SmoothStarsOfThree) {
+TEST(EightSteps, SmoothStarsOfThree) {
     shapes::Shape shape = shapes::tetrahedron();
     for (vcg::Point3d& p : shape.positions) p *= 0.1;
     const Network network = referee::network_of(shape);
@@ -155,7 +155,7 @@ TEST(Patches, SmoothStarsOfThree) {
     const reference::Positions before = reference::positions_of(network);
     reference::Positions after = before;
     reference::basic_step(network, after, 0, {0.3, 0.1, 0.2}, Settings());
-    Patches patches;
+    EightSteps patches;
     Steps steps;
     take(network, {0}, {{0.3F, 0.1F, 0.2F}}, 0.06F, 5, 0.05F, patches, steps);
     for (int i = 0; i < 3; ++i) {
@@ -166,9 +166,9 @@ TEST(Patches, SmoothStarsOfThree) {
     }
 }
 
-TEST(Patches, LeaveBoundaryVerticesWhereTheyAre) {
+TEST(EightSteps, LeaveBoundaryVerticesWhereTheyAre) {
     const Network network = referee::network_of(cases()[2].shape);
-    Patches patches;
+    EightSteps patches;
     Steps steps;
     for (VertexId w = 0; w < network.slot_count(); ++w) {
         take(network, {w}, {{0.1F, 0.1F, 0.1F}}, 0.5F, 10, 0.5F, patches, steps);
@@ -179,9 +179,9 @@ TEST(Patches, LeaveBoundaryVerticesWhereTheyAre) {
     }
 }
 
-TEST(Patches, DoNotLeaveAPlane) {
+TEST(EightSteps, DoNotLeaveAPlane) {
     const Network network = referee::network_of(shapes::grid(8, 8));
-    Patches patches;
+    EightSteps patches;
     Steps steps;
     for (VertexId w = 0; w < network.slot_count(); ++w) {
         take(network, {w}, {{0.03F, -0.1F, 0}}, 0.3F, 20, 0.3F, patches, steps);
@@ -189,13 +189,13 @@ TEST(Patches, DoNotLeaveAPlane) {
     }
 }
 
-TEST(Patches, StayFiniteWhereTheMeshHasNoArea) {
+TEST(EightSteps, StayFiniteWhereTheMeshHasNoArea) {
     for (shapes::Shape shape :
          {shapes::tetrahedron(), shapes::icosphere(1), shapes::grid(4, 4), shapes::bipyramid(15)}) {
         for (const double scale : {0.0, 1e-30, 1e-20, 1e-12, 1e-6}) {
             for (vcg::Point3d& p : shape.positions) p = vcg::Point3d(p[0], p[1] * scale, p[2] * scale) * 0.3;
             Network network = referee::network_of(shape);
-            Patches patches;
+            EightSteps patches;
             Steps steps;
             for (VertexId w = 0; w < network.slot_count(); ++w) {
                 take(network, {w}, {{0.1F, 0, 0}}, 0.06F, 5, 0.05F, patches, steps);

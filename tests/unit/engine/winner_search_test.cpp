@@ -256,7 +256,7 @@ TEST(WinnerSearch, IsLinearSearchOnBothSidesOfADivision) {
             Network network = in_frame(shapes::torus_grid(24, 16));
             WinnerSearch search(network);
             Random random(6);
-            search.divide(axis, place);
+            search.split_table(axis, place);
             expect_exact(network, search, random, 200);
             for (int i = 0; i < 800; ++i) {
                 split_somewhere(network, search, random);
@@ -273,15 +273,15 @@ TEST(WinnerSearch, FollowsMovesThatItIsToldOfLater) {
     Random random(5);
     for (int round = 0; round < 30; ++round) {
         // Two lists, as of two threads; a vertex always in the same.
-        std::vector<WinnerSearch::Crossing> crossings[2];
+        std::vector<WinnerSearch::CellChange> cell_changes[2];
         for (int i = 0; i < 300; ++i) {
             const VertexId v = random_vertex(network, random);
             const vcg::Point3f p = network.position(v) + random_point(random, 0.05F);
-            search.move(v, Four{p[0], p[1], p[2], 0}, crossings[v % 2]);
+            search.move(v, Four{p[0], p[1], p[2], 0}, cell_changes[v % 2]);
         }
-        EXPECT_GT(crossings[0].size(), 20U);
-        search.follow(crossings[1]);
-        search.follow(crossings[0]);
+        EXPECT_GT(cell_changes[0].size(), 20U);
+        search.follow(cell_changes[1]);
+        search.follow(cell_changes[0]);
         expect_exact(network, search, random, 60);
     }
 }

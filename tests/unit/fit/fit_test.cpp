@@ -279,11 +279,12 @@ TEST(Fit, WalksToTheFaceThatTheTreeFinds) {
     const FaceTree tree(surface);
     int differ = 0;
     for (const vcg::Point3f& p : target.positions()) {
-        const Hit exact = tree.nearest(vec(p));
-        const Place there = place_of(surface, exact);
+        const Hit exact = tree.nearest(to_eigen(p));
+        const WalkStart there = walk_start_of(surface, exact);
         EXPECT_EQ(surface.face_of[index(surface.first_face[index(there.vertex)] + there.turn)], exact.face);
-        for (const Place start : {there, Place{there.vertex, 99}, Place{network.ring(there.vertex)[0], 1}}) {
-            const Hit found = walk_to_nearest(surface, vec(p), start);
+        for (const WalkStart start :
+             {there, WalkStart{there.vertex, 99}, WalkStart{network.ring(there.vertex)[0], 1}}) {
+            const Hit found = walk_to_nearest(surface, to_eigen(p), start);
             EXPECT_GE(found.foot.squared_distance, exact.foot.squared_distance);
             differ += found.foot.squared_distance > exact.foot.squared_distance ? 1 : 0;
         }
@@ -305,7 +306,7 @@ TEST(Fit, StopsWhenAskedTo) {
 TEST(Fit, StoppedAtOnceItLeavesATangledMeshAsItWas) {
     const TargetSpace target = target_of(shapes::sphere_cloud(5000));
     Network network = network_of(shapes::icosphere(3), target, 1.1, 0.05);
-    Team team(1);
+    ThreadTeam team(1);
     ASSERT_FALSE(crossings_of(Surface(network), team).empty());
     const Network before = network;
     FitOptions options;

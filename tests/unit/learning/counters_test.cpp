@@ -182,7 +182,7 @@ TEST(UtilityCounters, PassOverLastsUntilTheNextWin) {
     counters.resize(10);
     counters.win(3, 5);
     counters.win(6, 4);
-    counters.pass_over(3);
+    counters.defer(3);
     EXPECT_EQ(counters.highest(), 6);
     counters.win(6, 0.5);
     EXPECT_EQ(counters.highest(), 6);

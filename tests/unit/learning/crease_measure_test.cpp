@@ -28,7 +28,7 @@ struct Learned {
         Learner learner(target, settings, referee::network_of(start));
         NoProgress progress;
         learner.run(100, progress);
-        FeatureStatistic statistic;
+        CreaseMeasure statistic;
         Random random(7);
         for (int sweep = 0; sweep < 30; ++sweep) {
             for (int i = 0; i < vertices; ++i) learner.basic_step(target.sample(random));
@@ -89,7 +89,7 @@ Hits hits_on_cube(const Learned& run, double half) {
     return hits;
 }
 
-TEST(FeatureStatistic, FindsTheEdgesOfACube) {
+TEST(CreaseMeasure, FindsTheEdgesOfACube) {
     const Learned run(shapes::box_cloud(40000), 1500);
     const Hits hits = hits_on_cube(run, 0.5 / std::sqrt(3.0));
     ASSERT_GT(hits.edges, 80);
@@ -99,7 +99,7 @@ TEST(FeatureStatistic, FindsTheEdgesOfACube) {
 }
 
 /// Noise with a standard deviation of a third of the edges of the mesh, where their normals alone say little.
-TEST(FeatureStatistic, FindsTheEdgesOfANoisyCube) {
+TEST(CreaseMeasure, FindsTheEdgesOfANoisyCube) {
     const Learned run(shapes::box_cloud(40000, {1, 1, 1}, 0.055), 1500);
     const Hits hits = hits_on_cube(run, 0.5 / run.target.frame().diagonal);
     ASSERT_GT(hits.edges, 80);
@@ -108,27 +108,27 @@ TEST(FeatureStatistic, FindsTheEdgesOfANoisyCube) {
     EXPECT_LT(hits.wrong, 0.02 * hits.faces);
 }
 
-TEST(FeatureStatistic, FindsNothingOnASphere) {
+TEST(CreaseMeasure, FindsNothingOnASphere) {
     for (const double noise : {0.0, 0.02}) {
         const Learned run(shapes::sphere_cloud(40000, noise), 1500);
         EXPECT_LT(*std::max_element(run.values.begin(), run.values.end()), 0.9F) << noise;
     }
 }
 
-TEST(FeatureStatistic, FindsNothingOnAPlane) {
+TEST(CreaseMeasure, FindsNothingOnAPlane) {
     const Network network = referee::network_of(shapes::grid(12, 9));
-    FeatureStatistic statistic;
+    CreaseMeasure statistic;
     statistic.observe(network);
     for (const float value : statistic.values(network)) EXPECT_LT(value, 1e-3F);
 }
 
-TEST(FeatureStatistic, IsIndifferentToScale) {
+TEST(CreaseMeasure, IsIndifferentToScale) {
     const Learned run(shapes::box_cloud(20000), 500);
     Network large = run.network;
     for (VertexId v = 0; v < large.slot_count(); ++v)
         if (large.alive(v)) large.set_position(v, run.network.position(v) * 8);
-    FeatureStatistic of_small;
-    FeatureStatistic of_large;
+    CreaseMeasure of_small;
+    CreaseMeasure of_large;
     of_small.observe(run.network);
     of_large.observe(large);
     EXPECT_EQ(of_small.moments(), 1);
@@ -140,10 +140,10 @@ TEST(FeatureStatistic, IsIndifferentToScale) {
 
 /// Without a moment the present one counts; a shown vertex takes its planes from its origin, its place from
 /// itself.
-TEST(FeatureStatistic, JudgesAShownVertexWhereItLies) {
+TEST(CreaseMeasure, JudgesAShownVertexWhereItLies) {
     const Learned run(shapes::box_cloud(40000), 1500);
-    const FeatureStatistic none;
-    FeatureStatistic one;
+    const CreaseMeasure none;
+    CreaseMeasure one;
     one.observe(run.network);
     EXPECT_EQ(none.values(run.network), one.values(run.network));
 

@@ -240,11 +240,11 @@ TEST(Learner, ObservesNothingOfAStartThatIsToGrow) {
     Learner learner(target, settings, start_of(shapes::icosphere(3), 0.25));
     NoProgress progress;
     ASSERT_TRUE(learner.settle(1, progress, false));
-    EXPECT_EQ(learner.feature_statistic().moments(), 0);
+    EXPECT_EQ(learner.crease_measure().moments(), 0);
     ASSERT_TRUE(learner.settle(1, progress));
-    EXPECT_GT(learner.feature_statistic().moments(), 0);
+    EXPECT_GT(learner.crease_measure().moments(), 0);
     EXPECT_EQ(learner.run(1, progress), StopReason::target_reached);
-    EXPECT_EQ(learner.feature_statistic().moments(), 0);
+    EXPECT_EQ(learner.crease_measure().moments(), 0);
 }
 
 }  // namespace

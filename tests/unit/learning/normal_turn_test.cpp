@@ -16,25 +16,25 @@ namespace {
 
 constexpr double kOneDegree = 1.523048e-4;  // 1 - cos(1 degree)
 
-TEST(TurnMean, IsTheAngleOfEqualTurns) {
-    TurnMean turn;
+TEST(NormalTurn, IsTheAngleOfEqualTurns) {
+    NormalTurn turn;
     EXPECT_EQ(turn.degrees(), 0);
     for (int i = 0; i < 100; ++i) turn.add(kOneDegree, 4);
     EXPECT_NEAR(turn.degrees(), 1, 1e-4);
 }
 
-TEST(TurnMean, ForgetsInTenSignalsPerVertex) {
-    TurnMean turn;
+TEST(NormalTurn, ForgetsInTenSignalsPerVertex) {
+    NormalTurn turn;
     constexpr int kVertices = 3000;
     for (int i = 0; i < 40 * kVertices; ++i) turn.add(kOneDegree, kVertices);
     for (int i = 0; i < 10 * kVertices; ++i) turn.add(0, kVertices);
     EXPECT_NEAR(turn.degrees(), std::sqrt(1 / std::exp(1.0)), 0.01);
 }
 
-/// One signal in two hundred has nearly all of the sum, as at the tip of an ear. Over 1000 signals the root of
-/// the mean square would at some time be less than half of what it is over all of them.
-TEST(TurnMean, HasNoDips) {
-    TurnMean turn;
+/// One signal in two hundred has nearly all of the sum, as at the tip of an ear. Over 1000 signals the root
+/// of the mean square would at some time be less than half of what it is over all of them.
+TEST(NormalTurn, HasNoDips) {
+    NormalTurn turn;
     Random random(5);
     constexpr int kVertices = 4000;
     double least = 1e9;

@@ -74,9 +74,9 @@ TEST(Network, OpenRingsRunFromBoundaryToBoundary) {
 
 TEST(Network, ANewVertexIsOfItsParentsRegion) {
     Network network = referee::network_of(shapes::torus_grid(6, 5));
-    network.set_region(7, 3);
-    EXPECT_EQ(network.ring(network.split(7, 0, 4, network.position(7))).region, 3);
-    EXPECT_EQ(network.ring(network.split(8, 0, 4, network.position(8))).region, 0);
+    network.set_tag(7, 3);
+    EXPECT_EQ(network.ring(network.split(7, 0, 4, network.position(7))).tag, 3);
+    EXPECT_EQ(network.ring(network.split(8, 0, 4, network.position(8))).tag, 0);
 }
 
 TEST(Network, UsesTheIdsOfRemovedVerticesAgain) {
@@ -94,7 +94,7 @@ TEST(Network, UsesTheIdsOfRemovedVerticesAgain) {
 TEST(Network, RenumberedAlongACurveIsTheSameMesh) {
     Network network = referee::network_of(shapes::torus_grid(30, 20));
     Random random(5);
-    std::vector<VertexId> shuffled = network.along_curve();
+    std::vector<VertexId> shuffled = network.morton_order();
     for (std::size_t i = shuffled.size(); i > 1; --i)
         std::swap(shuffled[i - 1], shuffled[random.below(static_cast<std::uint32_t>(i))]);
     network.renumber(shuffled);
@@ -102,7 +102,7 @@ TEST(Network, RenumberedAlongACurveIsTheSameMesh) {
         if (network.alive(i) && network.can_collapse(i, network.ring(i)[0]))
             network.collapse(i, network.ring(i)[0]);
     const Network before = network;
-    const std::vector<VertexId> order = network.along_curve();
+    const std::vector<VertexId> order = network.morton_order();
     ASSERT_EQ(static_cast<int>(order.size()), network.vertex_count());
     const std::vector<VertexId> moved = network.renumber(order);
     EXPECT_EQ(network.validate(), "");
@@ -129,7 +129,7 @@ TEST(Network, RenumberedAlongACurveIsTheSameMesh) {
 TEST(Network, NewVerticesTakeTheFreeIdsNearTheirParents) {
     Network network = referee::network_of(shapes::torus_grid(30, 20));
     std::vector<VertexId> order;
-    for (const VertexId v : network.along_curve()) {
+    for (const VertexId v : network.morton_order()) {
         order.push_back(v);
         if (order.size() % 5 == 4) order.push_back(-1);
     }

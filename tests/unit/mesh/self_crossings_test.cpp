@@ -31,18 +31,18 @@ class CutFace : public vcg::Face<CutTypes, vcg::face::VertexRef, vcg::face::Norm
 class CutMesh : public vcg::tri::TriMesh<std::vector<CutVertex>, std::vector<CutFace>> {};
 
 std::vector<Crossing> crossings(const Surface& surface, int threads) {
-    Team team(threads);
+    ThreadTeam team(threads);
     return crossings_of(surface, team);
 }
 
 std::vector<Crossing> after(const Surface& surface, const Surface& before, const std::vector<Crossing>& known,
                             int threads) {
-    Team team(threads);
+    ThreadTeam team(threads);
     return crossings_after(surface, before, known, team);
 }
 
 std::vector<Crossing> smoothed_out(Network& network, int threads) {
-    Team team(threads);
+    ThreadTeam team(threads);
     NoProgress progress;
     return *untangle(network, team, progress);
 }
@@ -125,14 +125,14 @@ TEST(Crossings, FacesWithoutAreaHaveNoneAndCostNothing) {
     Network network = crumpled_sphere(0.1);
     for (VertexId v = 0; v < network.slot_count(); ++v)
         if (network.position(v)[2] > 0) network.set_position(v, {0, 0, 5});
-    Team team(1);
+    ThreadTeam team(1);
     std::int64_t pairs = 0;
     const Surface surface(network);
     for (const Crossing& c : crossings_of(surface, team, &pairs))
         for (const std::size_t face : {0U, 3U}) {
-            const Vec& a = surface.at[index(c[face])];
-            const Vec& b = surface.at[index(c[face + 1])];
-            EXPECT_NE((b - a).cross(surface.at[index(c[face + 2])] - a), Vec(0, 0, 0));
+            const Vector3& a = surface.at[index(c[face])];
+            const Vector3& b = surface.at[index(c[face + 1])];
+            EXPECT_NE((b - a).cross(surface.at[index(c[face + 2])] - a), Vector3(0, 0, 0));
         }
     EXPECT_LT(pairs, 10 * network.face_count());
 }
@@ -236,7 +236,7 @@ bool same_positions(const Network& a, const Network& b) {
 
 TEST(Untangle, StopsBeforeAnySearchWithTheMeshAsItWas) {
     const Network before = crumpled_sphere(0.6);
-    Team team(1);
+    ThreadTeam team(1);
     int last = 1;
     for (;; ++last) {
         Network network = before;
@@ -255,7 +255,7 @@ TEST(Untangle, DoesNotTryWhereAllFacesLieInEachOther) {
     for (VertexId v = 0; v < network.slot_count(); ++v)
         network.set_position(v, vcg::Point3f::Construct(shapes::in_ball(random)));
     const Network before = network;
-    Team team(1);
+    ThreadTeam team(1);
     Patience progress(99);
     EXPECT_EQ(*untangle(network, team, progress), crossings(Surface(before), 1));
     EXPECT_EQ(progress.calls, 1);

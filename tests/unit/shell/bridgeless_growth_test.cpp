@@ -50,7 +50,7 @@ private:
     }
     Lattice lattice_;
     std::vector<std::uint8_t> solid_;
-    std::vector<Level> distances_;
+    std::vector<SquaredRadius> distances_;
     int before_ = 0;
 };
 

@@ -57,14 +57,14 @@ TEST(ShellField, ClearancesAreTheFixedPointOfRelaxation) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
         const Lattice lattice = small_lattice();
         const auto distances = squared_distances(lattice, random_counts(lattice, seed, 12), kReach);
-        std::vector<Level> expected(lattice.size(), 0);
+        std::vector<SquaredRadius> expected(lattice.size(), 0);
         for (bool changed = true; changed;) {
             changed = false;
             for_each_node(lattice, [&](int x, int y, int z) {
                 const bool wall = x == 0 || y == 0 || z == 0 || x == lattice.nx - 1 || y == lattice.ny - 1 ||
                                   z == lattice.nz - 1;
                 const std::size_t i = lattice.index(x, y, z);
-                Level best = wall ? distances[i] : Level{0};
+                SquaredRadius best = wall ? distances[i] : SquaredRadius{0};
                 for_each_neighbour(lattice, i, [&](std::size_t j) {
                     best = std::max(best, std::min(expected[j], distances[i]));
                 });
@@ -138,7 +138,7 @@ TEST(ShellField, SpaceBehindANarrowOpeningIsSealed) {
     const auto open = clearances(lattice, distances, kFar, {});
     const std::size_t middle = lattice.index(10, 10, 10);
     EXPECT_GT(open[middle], 1);  // a ball of radius 1 reaches the middle
-    const Sealing sealing = enclosed_spaces(lattice, distances, open, 1.7, 0);
+    const SealedSpaces sealing = enclosed_spaces(lattice, distances, open, 1.7, 0);
     EXPECT_EQ(sealing.inside[middle], 1);
     EXPECT_EQ(sealing.widest_opening, open[middle]);
     const auto sealed = clearances(lattice, distances, kFar, sealing.inside);

@@ -11,11 +11,11 @@
 namespace neuralmesh {
 namespace {
 
-TEST(Signals, ComeInTheOrderOfTheRandomNumbers) {
+TEST(SignalStream, ComeInTheOrderOfTheRandomNumbers) {
     const shapes::Cloud cloud = shapes::sphere_cloud(500);
     const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
     constexpr int kMost = 64;
-    Signals signals(target, 7, kMost);
+    SignalStream signals(target, 7, kMost);
     Random same(7);
     Random sizes(1);
     for (int round = 0; round < 2000; ++round) {

@@ -67,21 +67,21 @@ TEST(TargetSpace, RefusesFewerThanFourDistinctPoints) {
 }
 
 /// Where and how large a cloud may be, exact in double at least to the precision of the core.
-struct Place {
+struct WalkStart {
     Point3d offset;
     double scale;
 };
-const Place kPlaces[] = {{{0, 0, 0}, 1},         {{1e7, -1e7, 1e7}, 1},   {{0, 0, 0}, 1e-9},
-                         {{0, 0, 0}, 1e9},       {{1e9, 1e9, -1e9}, 1e9}, {{1, 1, 1}, 1e-6},
-                         {{5e6, 4e5, 100}, 200}, {{0, 0, 0}, 1e100},      {{0, 0, 0}, 1e-100}};
+const WalkStart kPlaces[] = {{{0, 0, 0}, 1},         {{1e7, -1e7, 1e7}, 1},   {{0, 0, 0}, 1e-9},
+                             {{0, 0, 0}, 1e9},       {{1e9, 1e9, -1e9}, 1e9}, {{1, 1, 1}, 1e-6},
+                             {{5e6, 4e5, 100}, 200}, {{0, 0, 0}, 1e100},      {{0, 0, 0}, 1e-100}};
 
-Cloud placed(Cloud cloud, const Place& place) {
+Cloud placed(Cloud cloud, const WalkStart& place) {
     for (Point3d& p : cloud) p = p * place.scale + place.offset;
     return cloud;
 }
 
 TEST(TargetSpace, RefusesPointsOnALineWhereverItIs) {
-    for (const Place& place : kPlaces) {
+    for (const WalkStart& place : kPlaces) {
         SCOPED_TRACE(testing::Message() << place.offset[0] << " scale " << place.scale);
         for (const Point3d& direction :
              {Point3d(1, 0, 0), Point3d(0, 0, 1), Point3d(1, 2, 3), Point3d(-3, 1e-3, 2)}) {
@@ -94,7 +94,7 @@ TEST(TargetSpace, RefusesPointsOnALineWhereverItIs) {
 }
 
 TEST(TargetSpace, TakesAnythingThatIsNoLine) {
-    for (const Place& place : kPlaces) {
+    for (const WalkStart& place : kPlaces) {
         SCOPED_TRACE(testing::Message() << place.offset[0] << " scale " << place.scale);
         EXPECT_EQ(complaint(placed(shapes::sphere_cloud(100), place)), "");
         EXPECT_EQ(complaint(placed(shapes::plane_cloud(100), place)), "");
@@ -119,7 +119,7 @@ TEST(TargetSpace, TakesAPlaneNearTheEndOfDouble) {
 }
 
 TEST(TargetSpace, FrameIsCentredWithDiagonalOne) {
-    for (const Place& place : kPlaces) {
+    for (const WalkStart& place : kPlaces) {
         const Cloud cloud = placed(shapes::box_cloud(2000, {1, 2, 3}), place);
         const TargetSpace target = cloud_target(cloud);
         vcg::Box3d box;

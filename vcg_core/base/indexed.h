@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// An array whose indices are signed ids, as those of vertices and faces are.
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <initializer_list>
+#include <utility>
+#include <vector>
+
+namespace neuralmesh {
+
+/// std::vector with int indices: values[v] instead of values[static_cast<std::size_t>(v)]. An index out of
+/// range is undefined behaviour; it is asserted where assertions are on.
+template <class T, class Allocator = std::allocator<T>>
+class Indexed {
+public:
+    using Vector = std::vector<T, Allocator>;
+    using value_type = T;
+    using iterator = typename Vector::iterator;
+    using const_iterator = typename Vector::const_iterator;
+
+    Indexed() = default;
+    explicit Indexed(int size, const T& value = T()) : values_(static_cast<std::size_t>(size), value) {}
+    Indexed(std::initializer_list<T> values) : values_(values) {}
+    explicit Indexed(Vector values) : values_(std::move(values)) {}
+
+    T& operator[](int i) {
+        assert(i >= 0 && i < size());
+        return values_[static_cast<std::size_t>(i)];
+    }
+    const T& operator[](int i) const {
+        assert(i >= 0 && i < size());
+        return values_[static_cast<std::size_t>(i)];
+    }
+
+    int size() const { return static_cast<int>(values_.size()); }
+    bool empty() const { return values_.empty(); }
+    void resize(int size, const T& value = T()) { values_.resize(static_cast<std::size_t>(size), value); }
+    void assign(int size, const T& value) { values_.assign(static_cast<std::size_t>(size), value); }
+    void reserve(int size) { values_.reserve(static_cast<std::size_t>(size)); }
+    void push_back(T value) { values_.push_back(std::move(value)); }
+    void clear() { values_.clear(); }
+
+    T* data() { return values_.data(); }
+    const T* data() const { return values_.data(); }
+    T& back() { return values_.back(); }
+    const T& back() const { return values_.back(); }
+    iterator begin() { return values_.begin(); }
+    iterator end() { return values_.end(); }
+    const_iterator begin() const { return values_.begin(); }
+    const_iterator end() const { return values_.end(); }
+
+    /// The same values, for what takes a std::vector.
+    Vector& vector() { return values_; }
+    const Vector& vector() const { return values_; }
+
+    bool operator==(const Indexed& other) const { return values_ == other.values_; }
+    bool operator!=(const Indexed& other) const { return values_ != other.values_; }
+
+private:
+    Vector values_;
+};
+
+}  // namespace neuralmesh
