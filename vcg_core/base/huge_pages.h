@@ -10,9 +10,7 @@
 #include <new>
 #include <vector>
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
+#include "vcg_core/base/platform.h"
 
 namespace neuralmesh {
 
@@ -30,17 +28,15 @@ public:
         const std::size_t bytes = count * sizeof(T);
         if (bytes < kLeast) return std::allocator<T>().allocate(count);
         if (count > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_alloc();
-        void* const memory = ::operator new (bytes, std::align_val_t{kPage});
-#ifdef __linux__
-        madvise(memory, bytes / kPage * kPage, MADV_HUGEPAGE);  // a wish: refused, all is as it was
-#endif
+        void* const memory = ::operator new (bytes, std::align_val_t{kHugePageBytes});
+        advise_huge_pages(memory, bytes);
         return static_cast<T*>(memory);
     }
     void deallocate(T* memory, std::size_t count) noexcept {
         if (count * sizeof(T) < kLeast) {
             std::allocator<T>().deallocate(memory, count);
         } else {
-            ::operator delete (memory, std::align_val_t{kPage});
+            ::operator delete (memory, std::align_val_t{kHugePageBytes});
         }
     }
 
@@ -54,8 +50,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t kPage = std::size_t{1} << 21;
-    static constexpr std::size_t kLeast = 2 * kPage;
+    static constexpr std::size_t kLeast = 2 * kHugePageBytes;
 };
 
 template <class T>

@@ -9,6 +9,9 @@
 #include <cstdint>
 #include <cstring>
 
+#include "vcg_core/base/bits.h"
+#include "vcg_core/base/platform.h"
+
 #ifdef __SSE2__
 #include <emmintrin.h>
 #endif
@@ -24,14 +27,14 @@ using EightWords = std::uint32_t __attribute__((vector_size(32), aligned(32)));
 /// 16 aligned bytes as they are.
 inline Four load_raw(const void* from) {
     Four v;
-    std::memcpy(&v, __builtin_assume_aligned(from, 16), sizeof v);
+    std::memcpy(&v, assume_aligned<16>(from), sizeof v);
     return v;
 }
 
 /// x, y and z of 16 aligned bytes whose last word is no float; 0 in its place.
 inline Four load_xyz(const void* from) {
     FourInts bits;
-    std::memcpy(&bits, __builtin_assume_aligned(from, 16), sizeof bits);
+    std::memcpy(&bits, assume_aligned<16>(from), sizeof bits);
     bits &= FourInts{-1, -1, -1, 0};
     Four v;
     std::memcpy(&v, &bits, sizeof v);
@@ -43,9 +46,9 @@ inline void store_xyz(void* to, Four v) {
     FourInts bits;
     FourInts old;
     std::memcpy(&bits, &v, sizeof bits);
-    std::memcpy(&old, __builtin_assume_aligned(to, 16), sizeof old);
+    std::memcpy(&old, assume_aligned<16>(to), sizeof old);
     bits = (bits & FourInts{-1, -1, -1, 0}) | (old & FourInts{0, 0, 0, -1});
-    std::memcpy(__builtin_assume_aligned(to, 16), &bits, sizeof bits);
+    std::memcpy(assume_aligned<16>(to), &bits, sizeof bits);
 }
 
 /// Bit i is set where word i of four equals v.
@@ -68,50 +71,49 @@ struct alignas(32) EightVectors {
 // What follows is inlined into functions compiled for several instruction sets, so that no vector of eight
 // is ever handed over in registers that one of them does not have.
 
-[[gnu::always_inline]] inline void add(EightVectors& a, const EightVectors& b) {
+NEURALMESH_ALWAYS_INLINE void add(EightVectors& a, const EightVectors& b) {
     a.x += b.x;
     a.y += b.y;
     a.z += b.z;
 }
 
-[[gnu::always_inline]] inline void subtract(EightVectors& a, const EightVectors& b) {
+NEURALMESH_ALWAYS_INLINE void subtract(EightVectors& a, const EightVectors& b) {
     a.x -= b.x;
     a.y -= b.y;
     a.z -= b.z;
 }
 
 /// sum += a x b.
-[[gnu::always_inline]] inline void add_cross(EightVectors& sum, const EightVectors& a,
-                                             const EightVectors& b) {
+NEURALMESH_ALWAYS_INLINE void add_cross(EightVectors& sum, const EightVectors& a, const EightVectors& b) {
     sum.x += a.y * b.z - a.z * b.y;
     sum.y += a.z * b.x - a.x * b.z;
     sum.z += a.x * b.y - a.y * b.x;
 }
 
 /// v where mask is -1, 0 where it is 0.
-[[gnu::always_inline]] inline void keep_where(const EightInts& mask, Eight& v) {
+NEURALMESH_ALWAYS_INLINE void keep_where(const EightInts& mask, Eight& v) {
     EightInts bits;
     std::memcpy(&bits, &v, sizeof bits);
     bits &= mask;
     std::memcpy(&v, &bits, sizeof v);
 }
 
-[[gnu::always_inline]] inline void keep_where(const EightInts& mask, EightVectors& v) {
+NEURALMESH_ALWAYS_INLINE void keep_where(const EightInts& mask, EightVectors& v) {
     keep_where(mask, v.x);
     keep_where(mask, v.y);
     keep_where(mask, v.z);
 }
 
 /// v = a where mask is -1, b where it is 0.
-[[gnu::always_inline]] inline void choose(const EightInts& mask, const EightVectors& a, const EightVectors& b,
-                                          EightVectors& v) {
+NEURALMESH_ALWAYS_INLINE void choose(const EightInts& mask, const EightVectors& a, const EightVectors& b,
+                                     EightVectors& v) {
     v.x = mask ? a.x : b.x;
     v.y = mask ? a.y : b.y;
     v.z = mask ? a.z : b.z;
 }
 
 /// The square root of every lane: a loop that compiles to one instruction.
-[[gnu::always_inline]] inline void square_root(Eight& v) {
+NEURALMESH_ALWAYS_INLINE void square_root(Eight& v) {
     float lanes[8];
     std::memcpy(lanes, &v, sizeof lanes);
     for (float& lane : lanes) lane = std::sqrt(lane);
@@ -119,7 +121,7 @@ struct alignas(32) EightVectors {
 }
 
 /// x, y, z of eight points of one word each, side by side; the points' last words are dropped.
-[[gnu::always_inline]] inline void transpose(const Four* p, EightVectors& v) {
+NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v) {
     const auto pair = [](const Four& low, const Four& high, Eight& both) {
         both = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
     };
@@ -138,7 +140,7 @@ struct alignas(32) EightVectors {
 }
 
 /// The same with the points' last words.
-[[gnu::always_inline]] inline void transpose(const Four* p, EightVectors& v, EightInts& last_words) {
+NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v, EightInts& last_words) {
     transpose(p, v);
     const auto last_of_pair = [](const Four& low, const Four& high, Eight& both) {
         both = __builtin_shufflevector(low, high, 2, 3, 2, 3, 6, 7, 6, 7);
@@ -155,7 +157,7 @@ struct alignas(32) EightVectors {
 }
 
 /// The way back: to[i] gets x, y, z of lane i, and 0.
-[[gnu::always_inline]] inline void transpose(const EightVectors& v, Four* to) {
+NEURALMESH_ALWAYS_INLINE void transpose(const EightVectors& v, Four* to) {
     const Eight zero = {0, 0, 0, 0, 0, 0, 0, 0};
     const Eight xy_low = __builtin_shufflevector(v.x, v.y, 0, 8, 1, 9, 4, 12, 5, 13);
     const Eight xy_high = __builtin_shufflevector(v.x, v.y, 2, 10, 3, 11, 6, 14, 7, 15);

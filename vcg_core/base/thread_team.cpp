@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <exception>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
+#include "vcg_core/base/platform.h"
 
 namespace neuralmesh {
 
@@ -18,12 +16,6 @@ namespace {
 /// Turns of the waiting loop before a helper goes to sleep: some 200 microseconds, longer than what the
 /// caller does between two loops.
 constexpr int kSpins = 16000;
-
-void relax() {
-#ifdef __SSE2__
-    _mm_pause();
-#endif
-}
 
 }  // namespace
 
@@ -59,7 +51,7 @@ void ThreadTeam::start(Call call, const void* body, int chunks) {
 void ThreadTeam::offer(Call call, const void* body, std::uint64_t chunks) {
     call_ = call;
     body_ = body;
-    open_.store(__builtin_popcountll(chunks), std::memory_order_relaxed);
+    open_.store(bit_count(chunks), std::memory_order_relaxed);
     unclaimed_.store(chunks);
     if (asleep_.load() > 0) {
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -72,7 +64,7 @@ void ThreadTeam::finish() {
     work(0);
     for (int turn = 0; open_.load(std::memory_order_acquire) > 0; ++turn) {
         if (turn < kSpins) {
-            relax();
+            spin_pause();
         } else {
             std::this_thread::yield();
         }
@@ -88,7 +80,7 @@ bool ThreadTeam::work(int member) {
         const std::uint64_t wanted = (seen & bit(member)) != 0 ? bit(member) : seen & -seen;
         // Whoever comes late may claim of the next round: what is called is read after the claim.
         if ((unclaimed_.fetch_and(~wanted, std::memory_order_acq_rel) & wanted) == 0) continue;
-        call_(body_, member, __builtin_ctzll(wanted));
+        call_(body_, member, lowest_bit(wanted));
         open_.fetch_sub(1, std::memory_order_release);
         worked = true;
     }
@@ -102,7 +94,7 @@ void ThreadTeam::help(int member) {
             continue;
         }
         if (++turns < kSpins) {
-            relax();
+            spin_pause();
             continue;
         }
         std::unique_lock<std::mutex> lock(mutex_);

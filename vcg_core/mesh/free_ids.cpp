@@ -6,20 +6,19 @@
 
 #include <algorithm>
 
+#include "vcg_core/base/platform.h"
+
 namespace neuralmesh {
 
 namespace {
-
-int lowest(std::uint64_t word) { return __builtin_ctzll(word); }
-int highest(std::uint64_t word) { return 63 - __builtin_clzll(word); }
 
 /// The bit of \p word, which has one, that is nearest to \p bit; the higher of two.
 int nearest(std::uint64_t word, int bit) {
     const std::uint64_t above = word >> bit << bit;
     const std::uint64_t below = word ^ above;
-    if (above == 0) return highest(below);
-    if (below == 0) return lowest(above);
-    return lowest(above) - bit <= bit - highest(below) ? lowest(above) : highest(below);
+    if (above == 0) return highest_bit(below);
+    if (below == 0) return lowest_bit(above);
+    return lowest_bit(above) - bit <= bit - highest_bit(below) ? lowest_bit(above) : highest_bit(below);
 }
 
 }  // namespace
@@ -36,11 +35,11 @@ std::int32_t FreeIds::take(std::int32_t id) {
     const auto word = static_cast<std::size_t>(id) / 64;
     if (holds_any(word)) return take_bit(word, nearest(words_[word], id % 64));
     for (std::size_t d = 1; d <= kWordsAround; ++d) {
-        if (holds_any(word + d)) return take_bit(word + d, lowest(words_[word + d]));
-        if (word >= d && holds_any(word - d)) return take_bit(word - d, highest(words_[word - d]));
+        if (holds_any(word + d)) return take_bit(word + d, lowest_bit(words_[word + d]));
+        if (word >= d && holds_any(word - d)) return take_bit(word - d, highest_bit(words_[word - d]));
     }
     while (words_[first_] == 0) ++first_;
-    return take_bit(first_, lowest(words_[first_]));
+    return take_bit(first_, lowest_bit(words_[first_]));
 }
 
 std::int32_t FreeIds::take_bit(std::size_t word, int bit) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "vcg_core/base/indexed.h"
+#include "vcg_core/base/platform.h"
 #include "vcg_core/base/simd.h"
 
 namespace neuralmesh {
@@ -46,7 +47,7 @@ struct alignas(64) Ring {
         unsigned hits = equal_mask(neighbours.data(), v) | equal_mask(neighbours.data() + 4, v) << 4;
         if (hits == 0)
             hits = equal_mask(neighbours.data() + 8, v) << 8 | equal_mask(neighbours.data() + 11, v) << 11;
-        return __builtin_ctz(hits);
+        return lowest_bit(hits);
     }
     VertexId operator[](int i) const { return neighbours[static_cast<std::size_t>(i)]; }
     const VertexId* begin() const { return neighbours.data(); }

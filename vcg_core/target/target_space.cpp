@@ -5,10 +5,11 @@
 #include "vcg_core/target/target_space.h"
 
 #include <algorithm>
-#include <cstring>
 #include <string>
 #include <tuple>
 #include <utility>
+
+#include "vcg_core/base/bits.h"
 
 namespace neuralmesh {
 
@@ -33,10 +34,7 @@ bool by_coordinates(const vcg::Point3f& p, const vcg::Point3f& q) {
 std::uint32_t hash_of(const vcg::Point3f& p) {
     std::uint64_t hash = 0;
     for (int k = 0; k < 3; ++k) {
-        const float x = p[k] + 0.0F;
-        std::uint32_t bits = 0;
-        std::memcpy(&bits, &x, sizeof bits);
-        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+        hash = (hash ^ bit_cast<std::uint32_t>(p[k] + 0.0F)) * 0x9e3779b97f4a7c15u;
         hash ^= hash >> 29;
     }
     return static_cast<std::uint32_t>(hash >> 32);

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// What depends on the compiler, the processor or the operating system, each with a portable branch. Vector
+// arithmetic is in simd.h; no other file of the core names a compiler builtin.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+/// Inlines a function even where the compiler would not.
+#if defined(__GNUC__)
+#define NEURALMESH_ALWAYS_INLINE [[gnu::always_inline]] inline
+#elif defined(_MSC_VER)
+#define NEURALMESH_ALWAYS_INLINE __forceinline
+#else
+#define NEURALMESH_ALWAYS_INLINE inline
+#endif
+
+namespace neuralmesh {
+
+/// Starts loading the cache line of \p address. Any address is allowed; nothing else happens.
+NEURALMESH_ALWAYS_INLINE void prefetch([[maybe_unused]] const void* address) {
+#ifdef __GNUC__
+    __builtin_prefetch(address);
+#endif
+}
+
+/// The same for a cache line that will be written, which other cores then have to give up.
+NEURALMESH_ALWAYS_INLINE void prefetch_for_write([[maybe_unused]] const void* address) {
+#ifdef __GNUC__
+    __builtin_prefetch(address, 1);
+#endif
+}
+
+/// Number of set bits.
+inline int bit_count(std::uint64_t word) {
+#ifdef __GNUC__
+    return __builtin_popcountll(word);
+#else
+    int count = 0;
+    for (; word != 0; word &= word - 1) ++count;
+    return count;
+#endif
+}
+
+/// Position of the lowest set bit. \pre word != 0
+inline int lowest_bit(std::uint64_t word) {
+#ifdef __GNUC__
+    return __builtin_ctzll(word);
+#else
+    return bit_count((word & (~word + 1)) - 1);
+#endif
+}
+
+/// Position of the highest set bit. \pre word != 0
+inline int highest_bit(std::uint64_t word) {
+#ifdef __GNUC__
+    return 63 - __builtin_clzll(word);
+#else
+    int position = 0;
+    while ((word >>= 1) != 0) ++position;
+    return position;
+#endif
+}
+
+/// \p from, which is aligned to \p Alignment bytes, with that promise to the compiler.
+template <std::size_t Alignment, class T>
+NEURALMESH_ALWAYS_INLINE T* assume_aligned(T* from) {
+#ifdef __GNUC__
+    return static_cast<T*>(__builtin_assume_aligned(from, Alignment));
+#else
+    return from;
+#endif
+}
+
+/// One turn of a loop that waits for another thread: lets the other thread of the core run and saves power.
+inline void spin_pause() {
+#ifdef __SSE2__
+    _mm_pause();
+#endif
+}
+
+/// Size and alignment of a huge page.
+constexpr std::size_t kHugePageBytes = std::size_t{1} << 21;
+
+/// Asks the system to back the whole huge pages of \p memory, aligned to kHugePageBytes, by huge pages. A
+/// refusal changes nothing but the speed.
+inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
+#if defined(__linux__) && defined(MADV_HUGEPAGE)
+    madvise(memory, bytes / kHugePageBytes * kHugePageBytes, MADV_HUGEPAGE);
+#endif
+}
+
+}  // namespace neuralmesh
