@@ -12,6 +12,7 @@
 #include "allocations.h"
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
+#include "vcg_core/mesh/vertex_order.h"
 
 namespace neuralmesh {
 namespace {
@@ -54,7 +55,7 @@ TEST(OutOfMemory, ACollapseThatHasNoRoomIsNotBegun) {
     for (const bool interleave_free : {false, true}) {
         Network network = referee::network_of(shapes::icosphere(1));
         if (interleave_free) {
-            std::vector<VertexId> order = network.morton_order();
+            std::vector<VertexId> order = morton_order(network);
             order.insert(order.begin(), -1);
             network.renumber(order);
         }

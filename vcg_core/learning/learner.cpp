@@ -10,6 +10,9 @@
 #include <limits>
 #include <string>
 
+#include "vcg_core/mesh/valence_flips.h"
+#include "vcg_core/mesh/vertex_order.h"
+
 namespace neuralmesh {
 
 namespace {
@@ -42,16 +45,14 @@ std::vector<vcg::Point3f> typical_signals(const TargetSpace& target, int threads
     return drawn;
 }
 
-/// \p ids with \p gaps times -1 spread evenly between them.
-std::vector<VertexId> interleave_free(const std::vector<VertexId>& ids, int gaps) {
-    std::vector<VertexId> result;
-    result.reserve(ids.size() + static_cast<std::size_t>(gaps));
-    const auto size = static_cast<std::int64_t>(ids.size());
-    for (std::int64_t i = 0; i < size; ++i) {
-        result.push_back(ids[static_cast<std::size_t>(i)]);
-        if ((i + 1) * gaps / size > i * gaps / size) result.push_back(-1);
+/// True if each new face is within kFlatEnough of each old one.
+bool is_flat(const FlipNormals& normals) {
+    for (vcg::Point3f n : normals.before) {
+        n.Normalize();
+        for (vcg::Point3f m : normals.after)
+            if (n * m.Normalize() < kFlatEnough) return false;
     }
-    return result;
+    return true;
 }
 
 }  // namespace
@@ -151,7 +152,7 @@ void Learner::reorder_if_grown() {
 void Learner::reorder(int more) {
     vertices_in_order_ = network_.vertex_count();
     changes_in_order_ = splits_ + collapses_;
-    const std::vector<VertexId> order = interleave_free(network_.morton_order(), more);
+    const std::vector<VertexId> order = interleave_free(morton_order(network_), more);
     network_.renumber(order);
     utility_counters_.renumber(order);
     feature_counters_.renumber(order);
@@ -221,7 +222,7 @@ bool Learner::try_split(VertexId v) {
     register_new(u, v);
     search_.keep_up();
     if (!to_the_letter())
-        for (const VertexId w : {v, u, e1, e2}) regularise(w);
+        for (const VertexId w : {v, u, e1, e2}) flip_edges_for_valence(network_, w, {is_flat});
     ++splits_;
     return true;
 }
@@ -284,7 +285,7 @@ int Learner::half_edge_collapse() {
         search_.remove(v);
         utility_counters_.remove(v);
         network_.collapse(v, kept);
-        if (!to_the_letter()) regularise(kept);
+        if (!to_the_letter()) flip_edges_for_valence(network_, kept, {is_flat});
         ++removed;
     }
     search_.keep_up();
@@ -312,38 +313,6 @@ VertexId Learner::best_collapse(VertexId gone) const {
         best = ring[i];
     }
     return best;
-}
-
-/// Flips the edges of v whose flip brings the valences closer to 6 and leaves the shape as it is.
-void Learner::regularise(VertexId v) {
-    for (int i = 0; i < network_.ring(v).valence; ++i) {
-        const VertexId w = network_.ring(v)[i];
-        if (network_.can_flip(v, w) && flip_regularises(v, w)) network_.flip(v, w);
-    }
-}
-
-bool Learner::flip_regularises(VertexId a, VertexId b) const {
-    const Ring& ring = network_.ring(a);
-    const int i = ring.find(b);
-    const VertexId c = ring.next(i);
-    const VertexId d = ring.previous(i);
-    const auto excess = [&](VertexId v) { return network_.ring(v).valence - 6; };
-    // Sum of squared excesses before minus after: a and b lose an edge, c and d gain one.
-    if (excess(a) + excess(b) - excess(c) - excess(d) <= 2) return false;
-    const vcg::Point3f pa = network_.position(a);
-    const vcg::Point3f pb = network_.position(b);
-    const vcg::Point3f pc = network_.position(c);
-    const vcg::Point3f pd = network_.position(d);
-    const auto normal = [](const vcg::Point3f& p, const vcg::Point3f& q, const vcg::Point3f& r) {
-        vcg::Point3f n = (q - p) ^ (r - p);
-        return n.Normalize();
-    };
-    const vcg::Point3f before[] = {normal(pa, pb, pc), normal(pb, pa, pd)};
-    const vcg::Point3f after[] = {normal(pa, pd, pc), normal(pb, pc, pd)};
-    for (const auto& n : before)
-        for (const auto& m : after)
-            if (n * m < kFlatEnough) return false;
-    return true;
 }
 
 std::int64_t Learner::settling_signals(int per_vertex, int vertices) {

@@ -102,8 +102,6 @@ private:
     Halving halve_star(VertexId v, int longest) const;
     bool try_split(VertexId v);
     VertexId best_collapse(VertexId gone) const;
-    void regularise(VertexId v);
-    bool flip_regularises(VertexId a, VertexId b) const;
     void register_new(VertexId u, VertexId v);
 
     const Settings& settings_;

@@ -265,29 +265,4 @@ std::vector<VertexId> Network::renumber(const std::vector<VertexId>& order) {
     return moved;
 }
 
-std::vector<VertexId> Network::morton_order() const {
-    // 21 bits for each coordinate of the core's frame and what lies around it.
-    const auto spread = [](float coordinate) {
-        const float scaled = (std::clamp(coordinate, -1.0F, 0.999F) + 1) * 0x1p20F;
-        auto x = static_cast<std::uint64_t>(scaled);
-        x = (x | x << 32) & 0x1f00000000ffffu;
-        x = (x | x << 16) & 0x1f0000ff0000ffu;
-        x = (x | x << 8) & 0x100f00f00f00f00fu;
-        x = (x | x << 4) & 0x10c30c30c30c30c3u;
-        return (x | x << 2) & 0x1249249249249249u;
-    };
-    std::vector<std::pair<std::uint64_t, VertexId>> places;
-    places.reserve(static_cast<std::size_t>(vertex_count_));
-    for (VertexId v = 0; v < slot_count(); ++v) {
-        if (!alive(v)) continue;
-        const vcg::Point3f p = position(v);
-        places.emplace_back(spread(p[0]) | spread(p[1]) << 1 | spread(p[2]) << 2, v);
-    }
-    std::sort(places.begin(), places.end());
-    std::vector<VertexId> order;
-    order.reserve(places.size());
-    for (const auto& place : places) order.push_back(place.second);
-    return order;
-}
-
 }  // namespace neuralmesh

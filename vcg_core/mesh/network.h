@@ -96,9 +96,6 @@ public:
     /// The same in another order: \p order[i] is the old id of vertex i, every used id once, or -1 where i is
     /// to be free. A new vertex takes a free id near that of the one it is split from. O(vertices).
     std::vector<VertexId> renumber(const std::vector<VertexId>& order);
-    /// The used ids along a curve that visits near places soon after each other (Morton 1966), so that
-    /// vertices near in space come to lie near in memory. O(vertices log vertices).
-    std::vector<VertexId> morton_order() const;
 
     int face_count() const;
     int edge_count() const;

@@ -5,15 +5,18 @@
 #include "vcg_core/mesh/simplify.h"
 
 #include <algorithm>
+#include <iterator>
 #include <queue>
 #include <utility>
+
+#include "vcg_core/mesh/valence_flips.h"
 
 namespace neuralmesh {
 namespace {
 
 using vcg::Point3f;
 
-constexpr int kLowestValence = 3, kHighestValence = 12;
+constexpr int kHighestValence = 12;
 
 Point3f normal_of(const Point3f& a, const Point3f& b, const Point3f& c) { return (b - a) ^ (c - a); }
 
@@ -108,35 +111,16 @@ void collapse_to(Network& net, int vertices, bool careful) {
     }
 }
 
-int valence_cost(int valence) { return (valence - 6) * (valence - 6); }
-
-/// Flips the edges whose flip brings the four valences around it closer to 6 and folds nothing.
-void flip_for_valence(Network& net) {
-    for (VertexId a = 0; a < net.slot_count(); ++a)
-        for (int i = 0; net.alive(a) && i < net.ring(a).valence; ++i) {
-            const Ring& ring = net.ring(a);
-            const VertexId b = ring[i], c = ring.next(i), d = ring.previous(i);
-            if (b < a || !net.can_flip(a, b)) continue;
-            const int va = ring.valence, vb = net.ring(b).valence, vc = net.ring(c).valence,
-                      vd = net.ring(d).valence;
-            const int before = valence_cost(va) + valence_cost(vb) + valence_cost(vc) + valence_cost(vd);
-            const int after =
-                valence_cost(va - 1) + valence_cost(vb - 1) + valence_cost(vc + 1) + valence_cost(vd + 1);
-            if (after >= before || vc + 1 > kHighestValence || vd + 1 > kHighestValence) continue;
-            if (va - 1 < kLowestValence || vb - 1 < kLowestValence) continue;
-            const Point3f pa = net.position(a), pb = net.position(b), pc = net.position(c),
-                          pd = net.position(d);
-            const Point3f n1 = normal_of(pa, pb, pc), n2 = normal_of(pb, pa, pd);
-            const Point3f m1 = normal_of(pa, pd, pc), m2 = normal_of(pb, pc, pd);
-            const Point3f n = n1 + n2;
-            const auto faces_along = [&](const Point3f& m) {
-                const float product = m * n;
-                return product > 0 && product * product > 0.5F * m.SquaredNorm() * n.SquaredNorm();
-            };
-            if (!faces_along(m1) || !faces_along(m2)) continue;
-            net.flip(a, b);
-        }
+/// True if both new faces lie within 45 degrees of the mean, weighted by area, of the old ones.
+bool is_flat(const FlipNormals& normals) {
+    const Point3f n = normals.before[0] + normals.before[1];
+    return std::all_of(std::begin(normals.after), std::end(normals.after), [&](const Point3f& m) {
+        const float product = m * n;
+        return product > 0 && product * product > 0.5F * m.SquaredNorm() * n.SquaredNorm();
+    });
 }
+
+void flip_for_valence(Network& net) { flip_edges_for_valence(net, {is_flat, kHighestValence}); }
 
 /// Moves every vertex halfway to the mean of its neighbours, along the surface.
 void smooth_tangentially(Network& net) {

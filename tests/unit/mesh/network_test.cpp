@@ -17,6 +17,7 @@
 #include "tests/unit/support/network_starts.h"
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
+#include "vcg_core/mesh/vertex_order.h"
 
 namespace neuralmesh {
 namespace {
@@ -94,7 +95,7 @@ TEST(Network, UsesTheIdsOfRemovedVerticesAgain) {
 TEST(Network, RenumberedAlongACurveIsTheSameMesh) {
     Network network = referee::network_of(shapes::torus_grid(30, 20));
     Random random(5);
-    std::vector<VertexId> shuffled = network.morton_order();
+    std::vector<VertexId> shuffled = morton_order(network);
     for (std::size_t i = shuffled.size(); i > 1; --i)
         std::swap(shuffled[i - 1], shuffled[random.below(static_cast<std::uint32_t>(i))]);
     network.renumber(shuffled);
@@ -102,7 +103,7 @@ TEST(Network, RenumberedAlongACurveIsTheSameMesh) {
         if (network.alive(i) && network.can_collapse(i, network.ring(i)[0]))
             network.collapse(i, network.ring(i)[0]);
     const Network before = network;
-    const std::vector<VertexId> order = network.morton_order();
+    const std::vector<VertexId> order = morton_order(network);
     ASSERT_EQ(static_cast<int>(order.size()), network.vertex_count());
     const std::vector<VertexId> moved = network.renumber(order);
     EXPECT_EQ(network.validate(), "");
@@ -129,7 +130,7 @@ TEST(Network, RenumberedAlongACurveIsTheSameMesh) {
 TEST(Network, NewVerticesTakeTheFreeIdsNearTheirParents) {
     Network network = referee::network_of(shapes::torus_grid(30, 20));
     std::vector<VertexId> order;
-    for (const VertexId v : network.morton_order()) {
+    for (const VertexId v : morton_order(network)) {
         order.push_back(v);
         if (order.size() % 5 == 4) order.push_back(-1);
     }

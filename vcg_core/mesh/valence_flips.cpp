@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/mesh/valence_flips.h"
+
+namespace neuralmesh {
+
+namespace {
+
+vcg::Point3f normal_of(const vcg::Point3f& p, const vcg::Point3f& q, const vcg::Point3f& r) {
+    return (q - p) ^ (r - p);
+}
+
+/// \pre network.can_flip(a, b)
+bool should_flip(const Network& network, VertexId a, VertexId b, const FlipRule& rule) {
+    const Ring& ring = network.ring(a);
+    const int i = ring.find(b);
+    const VertexId c = ring.next(i);
+    const VertexId d = ring.previous(i);
+    const auto valence = [&](VertexId v) { return static_cast<int>(network.ring(v).valence); };
+    if (valence(c) >= rule.max_valence || valence(d) >= rule.max_valence) return false;
+    // a and b lose an edge, c and d gain one: the sum of (valence - 6)^2 falls by twice the difference below
+    // minus 4.
+    if (valence(a) + valence(b) - valence(c) - valence(d) <= 2) return false;
+    const vcg::Point3f pa = network.position(a);
+    const vcg::Point3f pb = network.position(b);
+    const vcg::Point3f pc = network.position(c);
+    const vcg::Point3f pd = network.position(d);
+    return rule.is_flat(
+        {{normal_of(pa, pb, pc), normal_of(pb, pa, pd)}, {normal_of(pa, pd, pc), normal_of(pb, pc, pd)}});
+}
+
+/// Flips edges of \p v to neighbours from \p least on.
+int flip_edges(Network& network, VertexId v, VertexId least, const FlipRule& rule) {
+    int flips = 0;
+    for (int i = 0; i < network.ring(v).valence; ++i) {
+        const VertexId w = network.ring(v)[i];
+        if (w < least || !network.can_flip(v, w) || !should_flip(network, v, w, rule)) continue;
+        network.flip(v, w);
+        ++flips;
+    }
+    return flips;
+}
+
+}  // namespace
+
+int flip_edges_for_valence(Network& network, VertexId v, const FlipRule& rule) {
+    return flip_edges(network, v, 0, rule);
+}
+
+int flip_edges_for_valence(Network& network, const FlipRule& rule) {
+    int flips = 0;
+    for (const VertexId v : network.vertices()) flips += flip_edges(network, v, v, rule);
+    return flips;
+}
+
+}  // namespace neuralmesh

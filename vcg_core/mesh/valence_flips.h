@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Edge flips that bring valences closer to 6, the valence of a regular triangulation (Frey and Borouchaki,
+// "Geometric surface mesh optimization", 1998).
+#pragma once
+
+#include <vcg/space/point3.h>
+
+#include "vcg_core/mesh/network.h"
+
+namespace neuralmesh {
+
+/// Normals, as long as twice the area, of the two faces at an edge before and after its flip.
+struct FlipNormals {
+    vcg::Point3f before[2];
+    vcg::Point3f after[2];
+};
+
+/// Which flips are allowed beyond those that Network::can_flip() forbids.
+struct FlipRule {
+    bool (*is_flat)(const FlipNormals& normals);  ///< true if the flip leaves the surface flat enough
+    int max_valence = Ring::kMaxValence;          ///< no flip raises a valence above it
+};
+
+/// (valence - 6)^2: 0 for a regular vertex.
+inline int valence_irregularity(int valence) { return (valence - 6) * (valence - 6); }
+
+/// Flips every inner edge at \p v whose flip lowers the sum of valence_irregularity() over the four vertices
+/// around it and is allowed by \p rule; positions stay. O(valence^2). \return the number of flips
+int flip_edges_for_valence(Network& network, VertexId v, const FlipRule& rule);
+
+/// The same for all edges of \p network, once each, in the order of their smaller vertices. O(vertices).
+int flip_edges_for_valence(Network& network, const FlipRule& rule);
+
+}  // namespace neuralmesh

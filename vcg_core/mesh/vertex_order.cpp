@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/mesh/vertex_order.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+namespace neuralmesh {
+
+namespace {
+
+/// 21 bits of a coordinate in [-1, 1], with two zero bits after each.
+std::uint64_t spread_bits(float coordinate) {
+    const float scaled = (std::clamp(coordinate, -1.0F, 0.999F) + 1) * 0x1p20F;
+    auto x = static_cast<std::uint64_t>(scaled);
+    x = (x | x << 32) & 0x1f00000000ffffu;
+    x = (x | x << 16) & 0x1f0000ff0000ffu;
+    x = (x | x << 8) & 0x100f00f00f00f00fu;
+    x = (x | x << 4) & 0x10c30c30c30c30c3u;
+    return (x | x << 2) & 0x1249249249249249u;
+}
+
+std::uint64_t morton_code(const vcg::Point3f& p) {
+    return spread_bits(p[0]) | spread_bits(p[1]) << 1 | spread_bits(p[2]) << 2;
+}
+
+}  // namespace
+
+std::vector<VertexId> morton_order(const Network& network) {
+    std::vector<std::pair<std::uint64_t, VertexId>> codes;
+    codes.reserve(static_cast<std::size_t>(network.vertex_count()));
+    for (const VertexId v : network.vertices()) codes.emplace_back(morton_code(network.position(v)), v);
+    std::sort(codes.begin(), codes.end());
+    std::vector<VertexId> order;
+    order.reserve(codes.size());
+    for (const auto& [code, v] : codes) order.push_back(v);
+    return order;
+}
+
+std::vector<VertexId> interleave_free(const std::vector<VertexId>& ids, int count) {
+    std::vector<VertexId> result;
+    result.reserve(ids.size() + static_cast<std::size_t>(count));
+    const auto size = static_cast<std::int64_t>(ids.size());
+    std::int64_t i = 0;
+    for (const VertexId v : ids) {
+        result.push_back(v);
+        if ((i + 1) * count / size > i * count / size) result.push_back(-1);
+        ++i;
+    }
+    return result;
+}
+
+}  // namespace neuralmesh
