@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "vcg_core/fit/fit.h"
+#include "vcg_core/learning/feature_counter.h"
 #include "vcg_core/learning/learner.h"
 #include "vcg_core/mesh/simplify.h"
 #include "vcg_core/rms_error.h"
@@ -123,7 +124,6 @@ void write_geometry(const Network& network, const Frame& frame, NeuralMesh& mesh
         for (VertexId& v : f) v = index[static_cast<std::size_t>(v)];
 }
 
-/// eq 7: a vertex is a feature if its counter exceeds C_nc x Mean(n_c).
 /// \p origin: whose counter a vertex of \p network carries; empty: its own.
 void write_counters(const Learner& learner, const Network& network, const std::vector<VertexId>& origin,
                     const Settings& settings, NeuralMesh& mesh) {
@@ -139,7 +139,8 @@ void write_counters(const Learner& learner, const Network& network, const std::v
         sum += static_cast<double>(mesh.counters.back());
     }
     const double mean = sum / static_cast<double>(mesh.counters.size());
-    const double threshold = creases ? settings.feature_threshold : settings.feature_threshold * mean;
+    const double threshold =
+        creases ? settings.feature_threshold : feature_threshold(settings.feature_threshold, mean);
     for (const float n_c : mesh.counters) {
         mesh.features.push_back(static_cast<double>(n_c) > threshold ? 1 : 0);
         mesh.report.feature_vertices += mesh.features.back();

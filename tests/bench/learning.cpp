@@ -14,7 +14,7 @@
 
 #include "vcg_core/engine/eight_steps.h"
 #include "vcg_core/engine/winner_search.h"
-#include "vcg_core/learning/counters.h"
+#include "vcg_core/learning/utility_counter.h"
 #include "vcg_core/learning/learner.h"
 
 namespace {

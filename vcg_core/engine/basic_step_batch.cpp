@@ -188,8 +188,8 @@ void BasicStepBatch::step_group(const Batch& batch, int slab, const int* group, 
     EightVectors n_after;
     part.patches.gather(batch.network, winners, count);
     part.patches.take_normals(n);
-    part.patches.move_winners(towards, batch.rates.learning);
-    part.patches.smooth(batch.rates.sweeps, batch.rates.smoothing);
+    part.patches.move_winners(towards, batch.rates.learning_rate);
+    part.patches.smooth(batch.rates.smoothing_steps, batch.rates.smoothing_rate);
     part.patches.take_normals(n_after);
     part.patches.displacements(moved);
     part.moves += count * (1 + part.patches.valence());

@@ -11,17 +11,11 @@
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/engine/axis_partition.h"
 #include "vcg_core/engine/eight_steps.h"
+#include "vcg_core/engine/step_rates.h"
 #include "vcg_core/engine/winner_search.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
-
-/// The constants of a Basic Step.
-struct StepRates {
-    float learning;   ///< alpha_w, eq 1
-    float smoothing;  ///< alpha_L
-    int sweeps;       ///< C_L
-};
 
 /// Whether a team is faster than its caller alone depends on how far apart the cores are and on what else
 /// they do, so it is tried from time to time. What is computed does not depend on it.

@@ -17,16 +17,6 @@ namespace neuralmesh {
 
 namespace {
 
-/// F_v = (l_v)^2 with l_v the mean length of the edges at v (eq 5).
-double squared_mean_edge(const Network& network, VertexId v) {
-    const Ring& ring = network.ring(v);
-    const vcg::Point3f p = network.position(v);
-    double l = 0;
-    for (int i = 0; i < ring.valence; ++i) l += static_cast<double>((network.position(ring[i]) - p).Norm());
-    l /= ring.valence;
-    return l * l;
-}
-
 /// Cosine between the faces before and after a flip: above it the flip is one in the surface, not of it.
 constexpr float kFlatEnough = 0.95F;
 constexpr int kSplitCandidates = 32;  ///< tried before a split is put off
@@ -66,7 +56,7 @@ Learner::Learner(const TargetSpace& target, const Settings& settings, Network st
       mean_delta_(settings.normalization_window),
       steps_(settings.threads, typical_signals(target, settings.threads)),
       drawn_(target, settings.random_seed, BasicStepBatch::kMostSignals),
-      last_active_(static_cast<std::size_t>(network_.slot_count()), 0),
+      last_active_(network_.slot_count(), 0),
       vertices_at_collapse_(network_.vertex_count()) {
     if (network_.vertex_count() > settings.target_vertices)
         throw SettingError("The start mesh already has " + std::to_string(network_.vertex_count()) +
@@ -173,7 +163,7 @@ void Learner::learn_counters(int i) {
     const VertexId soon = steps_.winner(std::min(i + kCountersAhead, steps_.count() - 1));
     utility_counters_.prefetch(soon);
     feature_counters_.prefetch(soon);
-    __builtin_prefetch(&last_active_[static_cast<std::size_t>(soon)], 1);
+    __builtin_prefetch(&last_active_[soon], 1);
     const VertexId w = steps_.winner(i);
     const double delta = steps_.delta(i);  // eq 2
     mean_delta_.add(delta);
@@ -184,7 +174,7 @@ void Learner::learn_counters(int i) {
     const double n_delta = m_delta > 0 ? delta / m_delta : 1;  // eq 3
     utility_counters_.win(w, settings_.utility_counter == kNormalCounter ? n_delta : 1);
     feature_counters_.win(w, n_delta);
-    std::int64_t& last_active = last_active_[static_cast<std::size_t>(w)];
+    std::int64_t& last_active = last_active_[w];
     if (last_active > batch_begin_) crowding_.repeated(w);
     last_active = ++signals_;
     if (signals_ == batch_end_) crowding_.end_batch(static_cast<int>(batch_end_ - batch_begin_));
@@ -232,11 +222,11 @@ void Learner::register_new(VertexId u, VertexId v) {
     search_.add(u);
     utility_counters_.resize(network_.slot_count());
     feature_counters_.resize(network_.slot_count());
-    last_active_.resize(static_cast<std::size_t>(network_.slot_count()));
+    last_active_.resize(network_.slot_count());
     utility_counters_.share(v, u, squared_mean_edge(network_, v), squared_mean_edge(network_, u));
     feature_counters_.inherit(v, u);
     // A vertex that was not there at the last call of Half-Edge Collapse has not been inactive since.
-    last_active_[static_cast<std::size_t>(u)] = to_the_letter() ? 0 : signals_;
+    last_active_[u] = to_the_letter() ? 0 : signals_;
 }
 
 /// From the longest edge e both ways to e1 and e2, so that the star is halved. "Equally" leaves a choice of
@@ -279,7 +269,7 @@ bool Learner::due_for_collapse() const {
 int Learner::half_edge_collapse() {
     int removed = 0;
     for (VertexId v = 0; v < network_.slot_count(); ++v) {
-        if (!network_.alive(v) || last_active_[static_cast<std::size_t>(v)] > last_collapse_) continue;
+        if (!network_.alive(v) || last_active_[v] > last_collapse_) continue;
         const VertexId kept = best_collapse(v);
         if (kept < 0) continue;
         search_.remove(v);

@@ -11,9 +11,11 @@
 #include "vcg_core/engine/basic_step_batch.h"
 #include "vcg_core/engine/batch_limit.h"
 #include "vcg_core/engine/winner_search.h"
-#include "vcg_core/learning/counters.h"
 #include "vcg_core/learning/crease_measure.h"
+#include "vcg_core/learning/feature_counter.h"
 #include "vcg_core/learning/normal_turn.h"
+#include "vcg_core/learning/utility_counter.h"
+#include "vcg_core/learning/window_mean.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/neural_mesh.h"
 #include "vcg_core/settings.h"
@@ -116,7 +118,7 @@ private:
     SignalStream drawn_;
     BatchLimit crowding_;
     /// Per vertex the signal of its last win, or of its birth.
-    std::vector<std::int64_t> last_active_;
+    PerVertex<std::int64_t> last_active_;
     std::int64_t signals_ = 0;
     std::int64_t batch_begin_ = 0;
     std::int64_t batch_end_ = 0;

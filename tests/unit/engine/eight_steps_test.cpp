@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The gathered Basic Steps, eight at a time, against one that walks over the mesh.
+// Eight Basic Steps at a time against learning/basic_step.h, which takes them one by one.
 #include "vcg_core/engine/eight_steps.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "tests/unit/reference/reference_learner.h"
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
+#include "vcg_core/learning/basic_step.h"
 
 namespace neuralmesh {
 namespace {
 
-/// Float rounding in a frame of diagonal 1, over some ten sweeps.
+/// Float rounding in a frame of diagonal 1, over some ten smoothing steps.
 constexpr double kTolerance = 1e-6;
 
 struct Case {
@@ -55,14 +57,14 @@ struct Steps {
 };
 
 void take(const Network& network, const std::vector<VertexId>& winners,
-          const std::vector<vcg::Point3f>& signals, float alpha_w, int sweeps, float alpha_l,
-          EightSteps& patches, Steps& steps) {
+          const std::vector<vcg::Point3f>& signals, const StepRates& rates, EightSteps& patches,
+          Steps& steps) {
     vcg::Point3f towards[EightSteps::kLanes];
     std::copy(signals.begin(), signals.end(), towards);
     patches.gather(network, winners.data(), static_cast<int>(winners.size()));
     patches.take_normals(steps.normal);
-    patches.move_winners(towards, alpha_w);
-    patches.smooth(sweeps, alpha_l);
+    patches.move_winners(towards, rates.learning_rate);
+    patches.smooth(rates.smoothing_steps, rates.smoothing_rate);
     patches.take_normals(steps.normal_after);
     Four* to[EightSteps::kLanes];
     for (int lane = 0; lane < EightSteps::kLanes; ++lane) to[lane] = steps.moved[lane];
@@ -85,45 +87,43 @@ std::vector<VertexId> winners_like(const Network& network, VertexId first, std::
     return result;
 }
 
-TEST(EightSteps, AreTheStepsWalkedOverTheMesh) {
+void expect_step(const BasicStep& expected, const Steps& steps, int lane, const Network& network,
+                 const Positions& before) {
+    const Ring& ring = network.ring(expected.winner);
+    const auto expect_moved = [&](VertexId v, const vcg::Point3d& to, const Four& by) {
+        EXPECT_LT((point_of(by) - (to - before[v])).Norm(), kTolerance) << "vertex " << v;
+    };
+    expect_moved(expected.winner, expected.winner_position, steps.moved[lane][0]);
+    for (int i = 0; i < ring.valence; ++i)
+        expect_moved(ring[i], expected.ring_positions[static_cast<std::size_t>(i)], steps.moved[lane][1 + i]);
+    const vcg::Point3d turn = lane_of(steps.normal_after, lane) - lane_of(steps.normal, lane);
+    EXPECT_NEAR(turn.SquaredNorm() / 2, expected.delta, 1e-5 * (1 + std::sqrt(expected.delta)));
+    EXPECT_NEAR(lane_of(steps.normal, lane).Norm(), 1, 1e-5);
+}
+
+TEST(EightSteps, AreBasicSteps) {
     Random random(2);
     EightSteps patches;  // reused, as the learner does
     Steps steps;
     for (const Case& c : cases()) {
         const Network network = referee::network_of(c.shape);
+        const Positions before = reference::positions_of(network);
         for (VertexId first = 0; first < network.slot_count(); ++first) {
-            for (const int sweeps : {0, 1, 2, 5, 10}) {
-                SCOPED_TRACE(testing::Message() << c.name << ", winner " << first << ", sweeps " << sweeps);
-                Settings settings;
-                settings.smoothing_steps = sweeps;
-                settings.smoothing_rate = 0.2;
+            for (const int smoothing_steps : {0, 1, 2, 5, 10}) {
+                SCOPED_TRACE(testing::Message()
+                             << c.name << ", winner " << first << ", smoothing steps " << smoothing_steps);
+                const StepRates rates{0.06F, 0.2F, smoothing_steps};
                 const auto winners = winners_like(network, first, 1 + random.below(EightSteps::kLanes));
                 std::vector<vcg::Point3f> signals;
                 for (const VertexId w : winners)
                     signals.push_back(network.position(w) +
                                       vcg::Point3f::Construct(shapes::in_ball(random) * 0.05));
-                take(network, winners, signals, 0.06F, sweeps, 0.2F, patches, steps);
+                take(network, winners, signals, rates, patches, steps);
                 ASSERT_EQ(patches.valence(), network.ring(first).valence);
-                const reference::Positions before = reference::positions_of(network);
-                for (std::size_t lane = 0; lane < winners.size(); ++lane) {
-                    const VertexId w = winners[lane];
-                    const Ring& ring = network.ring(w);
-                    const int l = static_cast<int>(lane);
-                    reference::Positions after = before;
-                    EXPECT_LT((lane_of(steps.normal, l) - reference::normal(network, after, w)).Norm(), 1e-5);
-                    reference::basic_step(network, after, w, vcg::Point3d::Construct(signals[lane]),
-                                          settings);
-                    const auto expect_moved = [&](VertexId v, const Four& by) {
-                        EXPECT_LT(
-                            (point_of(by) - (reference::at(after, v) - reference::at(before, v))).Norm(),
-                            kTolerance)
-                            << "vertex " << v;
-                    };
-                    expect_moved(w, steps.moved[lane][0]);
-                    for (int i = 0; i < ring.valence; ++i) expect_moved(ring[i], steps.moved[lane][1 + i]);
-                    EXPECT_LT((lane_of(steps.normal_after, l) - reference::normal(network, after, w)).Norm(),
-                              1e-5);
-                }
+                for (std::size_t lane = 0; lane < winners.size(); ++lane)
+                    expect_step(basic_step(network, before, winners[lane],
+                                           vcg::Point3d::Construct(signals[lane]), rates),
+                                steps, static_cast<int>(lane), network, before);
             }
         }
     }
@@ -139,9 +139,9 @@ TEST(EightSteps, LanesDoNotKnowOfEachOther) {
     EightSteps patches;
     Steps together;
     Steps alone;
-    take(network, winners, signals, 0.06F, 5, 0.05F, patches, together);
+    take(network, winners, signals, {0.06F, 0.05F, 5}, patches, together);
     for (std::size_t lane = 0; lane < winners.size(); ++lane) {
-        take(network, {winners[lane]}, {signals[lane]}, 0.06F, 5, 0.05F, patches, alone);
+        take(network, {winners[lane]}, {signals[lane]}, {0.06F, 0.05F, 5}, patches, alone);
         for (int i = 0; i <= network.ring(winners[lane]).valence; ++i)
             for (int k = 0; k < 4; ++k) EXPECT_EQ(together.moved[lane][i][k], alone.moved[0][i][k]);
     }
@@ -152,18 +152,13 @@ TEST(EightSteps, SmoothStarsOfThree) {
     for (vcg::Point3d& p : shape.positions) p *= 0.1;
     const Network network = referee::network_of(shape);
     ASSERT_TRUE(has_star_of_three(network, 0));
-    const reference::Positions before = reference::positions_of(network);
-    reference::Positions after = before;
-    reference::basic_step(network, after, 0, {0.3, 0.1, 0.2}, Settings());
+    const Positions before = reference::positions_of(network);
+    const StepRates rates{0.06F, 0.05F, 5};
     EightSteps patches;
     Steps steps;
-    take(network, {0}, {{0.3F, 0.1F, 0.2F}}, 0.06F, 5, 0.05F, patches, steps);
-    for (int i = 0; i < 3; ++i) {
-        const VertexId v = network.ring(0)[i];
-        EXPECT_LT(
-            (point_of(steps.moved[0][1 + i]) - (reference::at(after, v) - reference::at(before, v))).Norm(),
-            kTolerance);
-    }
+    take(network, {0}, {{0.3F, 0.1F, 0.2F}}, rates, patches, steps);
+    const auto s = vcg::Point3d::Construct(vcg::Point3f(0.3F, 0.1F, 0.2F));
+    expect_step(basic_step(network, before, 0, s, rates), steps, 0, network, before);
 }
 
 TEST(EightSteps, LeaveBoundaryVerticesWhereTheyAre) {
@@ -171,7 +166,7 @@ TEST(EightSteps, LeaveBoundaryVerticesWhereTheyAre) {
     EightSteps patches;
     Steps steps;
     for (VertexId w = 0; w < network.slot_count(); ++w) {
-        take(network, {w}, {{0.1F, 0.1F, 0.1F}}, 0.5F, 10, 0.5F, patches, steps);
+        take(network, {w}, {{0.1F, 0.1F, 0.1F}}, {0.5F, 0.5F, 10}, patches, steps);
         for (int i = 0; i < patches.valence(); ++i)
             if (network.ring(network.ring(w)[i]).open != 0) {
                 EXPECT_EQ(point_of(steps.moved[0][1 + i]).Norm(), 0);
@@ -184,7 +179,7 @@ TEST(EightSteps, DoNotLeaveAPlane) {
     EightSteps patches;
     Steps steps;
     for (VertexId w = 0; w < network.slot_count(); ++w) {
-        take(network, {w}, {{0.03F, -0.1F, 0}}, 0.3F, 20, 0.3F, patches, steps);
+        take(network, {w}, {{0.03F, -0.1F, 0}}, {0.3F, 0.3F, 20}, patches, steps);
         for (int i = 0; i <= patches.valence(); ++i) EXPECT_EQ(steps.moved[0][i][2], 0);
     }
 }
@@ -198,7 +193,7 @@ TEST(EightSteps, StayFiniteWhereTheMeshHasNoArea) {
             EightSteps patches;
             Steps steps;
             for (VertexId w = 0; w < network.slot_count(); ++w) {
-                take(network, {w}, {{0.1F, 0, 0}}, 0.06F, 5, 0.05F, patches, steps);
+                take(network, {w}, {{0.1F, 0, 0}}, {0.06F, 0.05F, 5}, patches, steps);
                 EXPECT_LE(lane_of(steps.normal, 0).Norm(), 1.0001);
                 const auto move = [&](VertexId v, const Four& by) {
                     network.set_position(v, network.position(v) + vcg::Point3f(by[0], by[1], by[2]));

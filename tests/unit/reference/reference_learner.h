@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The learning algorithm as one would first write it down: the winner by looking at every vertex, the
-// counters decayed one by one, the smoothing by walking over the mesh in double. Slow, and the measure for
-// Learner.
+// The learning algorithm without anything that makes it fast: Basic Steps by learning/basic_step.h, one by
+// one and in double, and counters that are decayed one by one. The oracle for Learner.
 #pragma once
 
 #include <cmath>
@@ -12,91 +11,16 @@
 #include <utility>
 #include <vector>
 
+#include "vcg_core/learning/basic_step.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/settings.h"
 
 namespace neuralmesh::reference {
 
-using Positions = std::vector<vcg::Point3d>;
-
 inline Positions positions_of(const Network& network) {
-    Positions result;
-    for (VertexId v = 0; v < network.slot_count(); ++v)
-        result.push_back(vcg::Point3d::Construct(network.position(v)));
+    Positions result(network.slot_count());
+    for (const VertexId v : network.vertices()) result[v] = vcg::Point3d::Construct(network.position(v));
     return result;
-}
-
-inline vcg::Point3d& at(Positions& positions, VertexId v) { return positions[static_cast<std::size_t>(v)]; }
-inline const vcg::Point3d& at(const Positions& positions, VertexId v) {
-    return positions[static_cast<std::size_t>(v)];
-}
-
-inline VertexId winner(const Network& network, const Positions& positions, const vcg::Point3d& s) {
-    VertexId best = -1;
-    for (VertexId v = 0; v < network.slot_count(); ++v)
-        if (network.alive(v) &&
-            (best < 0 || (at(positions, v) - s).SquaredNorm() < (at(positions, best) - s).SquaredNorm()))
-            best = v;
-    return best;
-}
-
-/// Sum of the unit normals of the faces around v, normalised.
-inline vcg::Point3d normal(const Network& network, const Positions& positions, VertexId v) {
-    const Ring& ring = network.ring(v);
-    vcg::Point3d sum(0, 0, 0);
-    for (int i = 0; i < ring.face_count(); ++i) {
-        vcg::Point3d n =
-            (at(positions, ring[i]) - at(positions, v)) ^ (at(positions, ring.next(i)) - at(positions, v));
-        sum += n.Normalize();
-    }
-    return sum.Normalize();
-}
-
-/// One sweep over the ring of \p w, all its inner vertices at once: L_t = L - (L.n) n, n the direction of the
-/// area vector of the star. Of a star, the winner and its two neighbours along the winner's ring count where
-/// they are now, the others where they were \p before the sweeps: that matters where one of them is in the
-/// ring, too (three edges that bound no face), and in a star of three, whose face opposite the winner keeps
-/// one old corner.
-inline void sweep(const Network& network, Positions& positions, const Positions& before, VertexId w,
-                  double alpha_l) {
-    const Positions now = positions;
-    const Ring& winners = network.ring(w);
-    for (int i = 0; i < winners.valence; ++i) {
-        const VertexId v = winners[i];
-        const Ring& ring = network.ring(v);
-        if (ring.open != 0) continue;
-        const auto place = [&](VertexId x) {
-            return at(x == w || x == winners.previous(i) || x == winners.next(i) ? now : before, x);
-        };
-        vcg::Point3d mean(0, 0, 0);
-        vcg::Point3d area(0, 0, 0);
-        for (int j = 0; j < ring.valence; ++j) {
-            mean += place(ring[j]) / ring.valence;
-            area += place(ring[j]) ^ place(ring.next(j));
-        }
-        if (ring.valence == 3) {
-            // Relative to the winner's old place, for a path that is not closed has an area vector of its own
-            // there.
-            const vcg::Point3d o = at(before, w);
-            const vcg::Point3d a = at(now, winners.previous(i)) - o;
-            const vcg::Point3d b = at(now, winners.next(i)) - o;
-            const vcg::Point3d b_before = at(before, winners.next(i)) - o;
-            const vcg::Point3d p = at(now, w) - o;
-            area = (p ^ a) + (a ^ b_before) + (b_before ^ b) + (b ^ p);
-        }
-        const vcg::Point3d l = mean - at(now, v);
-        const double squared = area.SquaredNorm();
-        at(positions, v) += (squared > 0 ? l - area * (l * area / squared) : l) * alpha_l;
-    }
-}
-
-/// eq 1 and the smoothing after it.
-inline void basic_step(const Network& network, Positions& positions, VertexId w, const vcg::Point3d& s,
-                       const Settings& settings) {
-    const Positions before = positions;
-    at(positions, w) += (s - at(positions, w)) * settings.learning_rate;
-    for (int i = 0; i < settings.smoothing_steps; ++i)
-        sweep(network, positions, before, w, settings.smoothing_rate);
 }
 
 /// Keeps a network of its own, whose connectivity Network's operations change; decides everything itself.
@@ -107,27 +31,32 @@ public:
         grow();
     }
 
-    /// All from one state of the network, one after the other on a copy of it; what they move is summed.
+    /// Computes all steps from the same state of the network, then adds up their displacements.
     void basic_steps(const std::vector<vcg::Point3f>& signals) {
+        const StepRates rates{static_cast<float>(settings_.learning_rate),
+                              static_cast<float>(settings_.smoothing_rate), settings_.smoothing_steps};
         steps_.clear();
         Positions sum = positions_;
         for (const vcg::Point3f& signal : signals) {
             const auto s = vcg::Point3d::Construct(signal);
-            const VertexId w = reference::winner(network_, positions_, s);
-            Positions after = positions_;
-            reference::basic_step(network_, after, w, s, settings_);
-            const vcg::Point3d turn = normal(network_, after, w) - normal(network_, positions_, w);
-            steps_.emplace_back(w, turn.SquaredNorm() / 2);  // eq 2
-            for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += after[v] - positions_[v];
+            const VertexId w = find_winner(network_, positions_, s);
+            const BasicStep step = basic_step(network_, positions_, w, s, rates);
+            const Ring& ring = network_.ring(w);
+            sum[w] += step.winner_position - positions_[w];
+            for (std::size_t i = 0; i < ring.valence; ++i) {
+                const VertexId v = ring.neighbours[i];
+                sum[v] += step.ring_positions[i] - positions_[v];
+            }
+            steps_.push_back(step);
         }
         positions_ = sum;
-        for (VertexId v = 0; v < network_.slot_count(); ++v)
-            network_.set_position(v, vcg::Point3f::Construct(at(positions_, v)));
+        for (const VertexId v : network_.vertices())
+            network_.set_position(v, vcg::Point3f::Construct(positions_[v]));
     }
 
     void learn_counters(std::size_t step) {
-        const VertexId w = steps_[step].first;
-        deltas_.push_back(steps_[step].second);
+        const VertexId w = steps_[step].winner;
+        deltas_.push_back(steps_[step].delta);
         const auto window = static_cast<std::size_t>(settings_.normalization_window);
         const auto from =
             deltas_.size() > window ? deltas_.end() - settings_.normalization_window : deltas_.begin();
@@ -187,7 +116,7 @@ private:
         utility.resize(n, 0);
         feature.resize(n, 0);
         wins.resize(n, 0);
-        positions_.resize(n);
+        positions_.resize(network_.slot_count(), vcg::Point3d(0, 0, 0));
         won_since_collapse_.resize(n, false);
     }
 
@@ -195,7 +124,7 @@ private:
         const Ring& ring = network_.ring(v);
         double l = 0;
         for (int i = 0; i < ring.valence; ++i)
-            l += (at(positions_, ring[i]) - at(positions_, v)).Norm() / ring.valence;
+            l += (positions_[ring[i]] - positions_[v]).Norm() / ring.valence;
         return l * l;
     }
 
@@ -204,8 +133,8 @@ private:
         const int k = ring.valence;
         int longest = 0;
         for (int i = 1; i < k; ++i)
-            if ((at(positions_, ring[i]) - at(positions_, v)).Norm() >
-                (at(positions_, ring[longest]) - at(positions_, v)).Norm())
+            if ((positions_[ring[i]] - positions_[v]).Norm() >
+                (positions_[ring[longest]] - positions_[v]).Norm())
                 longest = i;
         // Every way to give half of the star away with e in the middle; the most regular valences win.
         const auto square = [](int x) { return (x - 6) * (x - 6); };
@@ -228,10 +157,10 @@ private:
             }
         if (best_first < 0) return false;
         const VertexId ends[] = {ring[best_first], ring[(best_first + best_count - 1) % k]};
-        const vcg::Point3d middle = (at(positions_, v) + at(positions_, ring[longest])) / 2;
+        const vcg::Point3d middle = (positions_[v] + positions_[ring[longest]]) / 2;
         const VertexId u = network_.split(v, best_first, best_count, vcg::Point3f::Construct(middle));
         grow();
-        at(positions_, u) = middle;
+        positions_[u] = middle;
         const auto i = static_cast<std::size_t>(v);
         const auto j = static_cast<std::size_t>(u);
         const double whole = utility[i];  // shared as F_v to F_u (eq 5)
@@ -263,7 +192,7 @@ private:
     }
 
     vcg::Point3d face_normal(VertexId a, VertexId b, VertexId c) const {
-        vcg::Point3d n = (at(positions_, b) - at(positions_, a)) ^ (at(positions_, c) - at(positions_, a));
+        vcg::Point3d n = (positions_[b] - positions_[a]) ^ (positions_[c] - positions_[a]);
         return n.Normalize();
     }
 
@@ -293,7 +222,7 @@ private:
     Settings settings_;
     Positions positions_;
     std::vector<double> deltas_;
-    std::vector<std::pair<VertexId, double>> steps_;  ///< of the last batch: winner, delta
+    std::vector<BasicStep> steps_;  ///< of the last batch
     std::vector<bool> won_since_collapse_;
 };
 

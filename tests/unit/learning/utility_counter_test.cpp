@@ -2,15 +2,13 @@
 // Copyright the Neural Mesh authors
 
 // The lazy counters against eager ones that multiply every counter after every signal.
-#include "vcg_core/learning/counters.h"
+#include "vcg_core/learning/utility_counter.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include "vcg_core/base/random.h"
@@ -220,71 +218,6 @@ TEST(UtilityCounters, ATinyCounterStillRanksAboveNothing) {
     for (int i = 0; i < 100000; ++i) counters.win(0, 0);
     EXPECT_EQ(counters.value(1), 0);  // 1e-200000 in a double
     EXPECT_EQ(counters.highest(), 1);
-}
-
-TEST(UtilityCounters, FindTheHighestAtEverySizeOfTheTree) {
-    UtilityCounters counters(0.99, 0);
-    for (int n = 1; n < 700; ++n) {
-        counters.resize(n);
-        ASSERT_EQ(counters.highest(), n == 1 ? -1 : n - 2) << n;
-        counters.win(n - 1, 1 + n);
-        ASSERT_EQ(counters.highest(), n - 1) << n;
-    }
-    for (int n = 699; n-- > 1;) {
-        counters.remove(n);
-        ASSERT_EQ(counters.highest(), n - 1);
-    }
-}
-
-TEST(WindowMean, IsTheMeanOfTheLastValues) {
-    for (const int window : {1, 2, 7, 1000}) {
-        Random random(3);
-        WindowMean mean(window);
-        EXPECT_EQ(mean.mean(), 0);
-        std::deque<double> last;
-        for (int i = 0; i < 5000; ++i) {
-            last.push_back(static_cast<double>(random.unit()));
-            if (static_cast<int>(last.size()) > window) last.pop_front();
-            mean.add(last.back());
-            ASSERT_NEAR(mean.mean(), std::accumulate(last.begin(), last.end(), 0.0) / double(last.size()),
-                        1e-12);
-        }
-    }
-}
-
-TEST(WindowMean, ForgetsLargeValuesWithinTwoRounds) {
-    WindowMean mean(100);
-    for (int i = 0; i < 150; ++i) mean.add(2);
-    for (int i = 0; i < 200; ++i) mean.add(1e-17);
-    EXPECT_NEAR(mean.mean(), 1e-17, 1e-17 * 100 * 0x1p-53);  // a hundred roundings
-    for (int i = 0; i < 200; ++i) mean.add(0);
-    EXPECT_EQ(mean.mean(), 0);
-}
-
-TEST(WindowMean, IsNeverNegative) {
-    WindowMean mean(10);
-    Random random(9);
-    for (int i = 0; i < 100000; ++i) {
-        mean.add(random.below(5) == 0 ? static_cast<double>(random.unit()) * 2 : 1e-19);
-        ASSERT_GE(mean.mean(), 0) << "after " << i;
-    }
-}
-
-TEST(FeatureCounters, FollowEquation6) {
-    FeatureCounters counters(0.9);
-    counters.resize(2);
-    double by_hand = 0;
-    Random random(2);
-    for (int i = 0; i < 1000; ++i) {
-        const double n_delta = 3 * static_cast<double>(random.unit());
-        counters.win(1, n_delta);
-        by_hand = 0.9 * by_hand + 0.1 * n_delta;
-        ASSERT_NEAR(static_cast<double>(counters.value(1)), by_hand, 3e-6);
-    }
-    EXPECT_EQ(counters.value(0), 0);
-    counters.resize(3);
-    counters.inherit(1, 2);
-    EXPECT_EQ(counters.value(2), counters.value(1));
 }
 
 TEST(UtilityCounters, RenumberedAreTheSameUnderNewIds) {

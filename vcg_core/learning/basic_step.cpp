@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/learning/basic_step.h"
+
+#include <vector>
+
+namespace neuralmesh {
+
+namespace {
+
+/// Sum of the unit normals of the faces around the winner, normalised; 0 if they cancel.
+vcg::Point3d winner_normal(const Ring& ring, const BasicStep& step) {
+    vcg::Point3d sum(0, 0, 0);
+    for (std::size_t i = 0; static_cast<int>(i) < ring.face_count(); ++i) {
+        const vcg::Point3d& a = step.ring_positions[i];
+        const vcg::Point3d& b = step.ring_positions[(i + 1) % ring.valence];
+        vcg::Point3d n = (a - step.winner_position) ^ (b - step.winner_position);
+        sum += n.Normalize();
+    }
+    return sum.Normalize();
+}
+
+/// Ring vertex i of the winner after one iteration of Laplacian smoothing: v + alpha_L L_t, where L is the
+/// mean of v's neighbours minus v and L_t its part at right angles to the normal n of v's star.
+///
+/// The winner and v's two neighbours along the winner's ring are taken where they are in \p step. Further
+/// neighbours of v are taken from \p positions: they do not move, unless they are in the winner's ring, too.
+vcg::Point3d smoothed(const Network& network, const Positions& positions, const BasicStep& step, int i,
+                      double alpha_l) {
+    const Ring& winners = network.ring(step.winner);
+    const Ring& ring = network.ring(winners[i]);
+    const int k = winners.valence;
+    const auto in_step = [&](int j) { return step.ring_positions[static_cast<std::size_t>(j % k)]; };
+    const vcg::Point3d v = in_step(i);
+    if (ring.open != 0) return v;
+
+    std::vector<vcg::Point3d> star = {step.winner_position, in_step(i + k - 1)};
+    for (int j = 2; j < ring.valence - 1; ++j)
+        star.push_back(positions[ring[(ring.find(step.winner) + j) % ring.valence]]);
+    star.push_back(in_step(i + 1));
+
+    vcg::Point3d l = -v;
+    for (const vcg::Point3d& p : star) l += p / ring.valence;
+    // The kernel needs a vertex between the two along the winner's ring. Where v has only three neighbours,
+    // it takes the next ring vertex before smoothing, which changes the normal a little and l not at all.
+    if (ring.valence == 3) star.insert(star.end() - 1, positions[winners.next(i)]);
+    vcg::Point3d n(0, 0, 0);  // of any length
+    for (std::size_t j = 0; j < star.size(); ++j) n += (star[j] - v) ^ (star[(j + 1) % star.size()] - v);
+    const double squared = n.SquaredNorm();
+    const vcg::Point3d l_t = squared > 0 ? l - n * (l * n / squared) : l;
+    return v + l_t * alpha_l;
+}
+
+}  // namespace
+
+VertexId find_winner(const Network& network, const Positions& positions, const vcg::Point3d& s) {
+    VertexId winner = -1;
+    for (const VertexId v : network.vertices())
+        if (winner < 0 || (positions[v] - s).SquaredNorm() < (positions[winner] - s).SquaredNorm())
+            winner = v;
+    return winner;
+}
+
+BasicStep basic_step(const Network& network, const Positions& positions, VertexId w, const vcg::Point3d& s,
+                     const StepRates& rates) {
+    const Ring& ring = network.ring(w);
+    BasicStep step{w, positions[w], {}, 0};
+    for (std::size_t i = 0; i < ring.valence; ++i) step.ring_positions[i] = positions[ring.neighbours[i]];
+    const vcg::Point3d n = winner_normal(ring, step);
+
+    const auto alpha_w = static_cast<double>(rates.learning_rate);
+    step.winner_position = positions[w] * (1 - alpha_w) + s * alpha_w;  // eq 1
+    for (int iteration = 0; iteration < rates.smoothing_steps; ++iteration) {
+        const BasicStep before = step;
+        for (int i = 0; i < ring.valence; ++i)
+            step.ring_positions[static_cast<std::size_t>(i)] =
+                smoothed(network, positions, before, i, static_cast<double>(rates.smoothing_rate));
+    }
+
+    const vcg::Point3d n_after = winner_normal(ring, step);
+    step.delta = (n_after - n).SquaredNorm() / 2;  // eq 2: 1 - n.n' of unit vectors, without cancellation
+    return step;
+}
+
+}  // namespace neuralmesh
