@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The whole job in one call: a target space and settings in, a mesh with counters and figures out.
+// A whole run in one call: from a target space and settings to a mesh with counters and figures.
 #pragma once
 
 #include "vcg_core/base/progress.h"
@@ -11,18 +11,16 @@
 
 namespace neuralmesh {
 
-/// Learns \p target with a growing neural mesh (the paper, section 2).
+/// Learns \p target with a growing neural mesh (the paper, section 2), fits it, and measures it.
 ///
-/// Outliers are left out (start_mesh 0, see shell.h), and so are repeated points, if they are many: of what
-/// remains speak the report's rms_error and its warnings.
-/// The result is one oriented 2-manifold of exactly settings.target_vertices vertices unless
-/// report.stop_reason says otherwise. The same target, settings and seed give the same bytes, whatever
-/// the machine and settings.threads.
-/// \throws SettingError (a parameter out of range), InputError (nothing to learn), std::bad_alloc
-/// Cost: about signals_per_split signals of O(1) expected time for each vertex learned. Below 5,000 vertices
-/// up to four times as many are learned as asked for, and the fit takes some out; where growth stalls, it all
-/// begins anew without that. Memory: 12 bytes more per point where outliers are left out,
-/// and as many where repeated points are.
+/// Repeated points (if they are many) and outliers (unless learning starts from a tetrahedron) are not
+/// learned; report.rms_error is of the other points, and report.warnings says how many were removed. The
+/// result is an oriented 2-manifold of exactly settings.target_vertices vertices unless report.stop_reason
+/// says otherwise. The same target, settings and seed give the same bytes on any x86-64 machine and with any
+/// settings.threads. If \p progress asks to stop, the result is the valid mesh so far.
+/// \throws SettingError (a parameter is out of range), InputError (no surface to learn), std::bad_alloc
+/// Cost: about signals_per_split signals per vertex that the network grows to (see learn_and_fit.h), each of
+/// O(1) expected time. Memory besides the network: 12 bytes per point if points are removed.
 NeuralMesh reconstruct(const TargetSpace& target, const Settings& settings, Progress& progress);
 
 }  // namespace neuralmesh

@@ -40,4 +40,21 @@ private:
     double to_;
 };
 
+/// For a run whose parts may repeat: fractions never decrease, and a request to stop is remembered.
+class MonotoneProgress : public Progress {
+public:
+    explicit MonotoneProgress(Progress& caller) : caller_(caller) {}
+    bool operator()(double fraction, const char* text) override {
+        done_ = std::max(done_, fraction);
+        stopped_ = stopped_ || !caller_(done_, text);
+        return !stopped_;
+    }
+    bool stopped() const { return stopped_; }
+
+private:
+    Progress& caller_;
+    double done_ = 0;
+    bool stopped_ = false;
+};
+
 }  // namespace neuralmesh

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/learn_and_fit.h"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "vcg_core/fit/fit.h"
+#include "vcg_core/learning/learner.h"
+#include "vcg_core/mesh/simplify.h"
+
+namespace neuralmesh {
+
+namespace {
+
+/// What the network grows to; see learn_and_fit(). The surplus pays where the fit may redistribute vertices
+/// and growth is bounded by their number. Beyond one vertex for kPointsPerVertex points the learning has too
+/// few points to place them by. Chosen by tests/experiments/accuracy/accuracy_table.py.
+int vertices_to_grow(const LearningTask& task, const Settings& settings) {
+    constexpr int kLargestSurplus = 2500;
+    constexpr std::size_t kPointsPerVertex = 10;
+    const int final_vertices = settings.target_vertices;
+    if (!settings.fit_to_points || settings.utility_counter != kNormalCounter ||
+        settings.start_mesh == kTetrahedron || !task.encloses_space || settings.stop_below_mean_counter > 0)
+        return final_vertices;
+    const int surplus = std::max(0, std::min(3 * final_vertices, kLargestSurplus - final_vertices / 2));
+    const int grow_to = final_vertices + surplus;
+    if (task.target().has_faces()) return grow_to;
+    const std::size_t supported = task.target().positions().size() / kPointsPerVertex;
+    return std::max(final_vertices, static_cast<int>(std::min(supported, static_cast<std::size_t>(grow_to))));
+}
+
+Settings learner_settings(const LearningTask& task, const Settings& settings, int grow_to) {
+    Settings result = settings;
+    result.target_vertices = grow_to;
+    // The layers of a sheet fold into each other while they learn. Their area vectors cancel, and smoothing
+    // at right angles to what is left of them throws vertices off the sheet, where they win no signal.
+    if (!task.encloses_space) result.smoothing_steps = 0;
+    return result;
+}
+
+FitReport fit(Network& network, const LearningTask& task, const Settings& settings, Progress& progress) {
+    FitOptions options;
+    options.target_vertices = settings.target_vertices;
+    // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
+    // error is largest at the rim, and vertices inserted there stick out.
+    options.redistribute = settings.utility_counter == kNormalCounter && task.encloses_space;
+    return fit_to_points(network, task.target(), options, settings.threads,
+                         static_cast<std::uint64_t>(settings.random_seed) + 3, progress);
+}
+
+/// Per slot of \p network. \p source: the vertex of the learner whose counter a slot takes over; empty: the
+/// slot's own.
+std::vector<float> counters_of(const Learner& learner, const Network& network,
+                               const std::vector<VertexId>& source, const Settings& settings) {
+    if (settings.feature_measure == kCreaseMeasure)
+        return learner.crease_measure().values(learner.network(), network, source);
+    std::vector<float> counters(static_cast<std::size_t>(network.slot_count()));
+    for (const VertexId v : network.vertices()) {
+        const auto slot = static_cast<std::size_t>(v);
+        counters[slot] = learner.feature_counters().value(source.empty() ? v : source[slot]);
+    }
+    return counters;
+}
+
+LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, int grow_to,
+                            MonotoneProgress& progress) {
+    PartOf learning(progress, kPrepared, settings.fit_to_points ? kLearned : 1);
+    PartOf fitting(progress, kLearned, 1);
+    const Settings for_learner = learner_settings(task, settings, grow_to);
+    Learner learner(task.target(), for_learner, task.network);
+    LearnedNetwork result;
+    result.stop_reason = learner.run(task.landing_signals, learning);
+    result.network = learner.network();
+    result.forced = learner.forced();
+    result.signals = learner.signals();
+    result.splits = learner.splits();
+    result.collapses = learner.collapses();
+
+    FitReport report;
+    if (settings.fit_to_points && !progress.stopped()) report = fit(result.network, task, settings, fitting);
+    if (progress.stopped()) {
+        result.stop_reason = StopReason::cancelled;
+        if (result.network.vertex_count() > settings.target_vertices)
+            simplify(result.network, settings.target_vertices);
+    }
+    result.network.orient_outward();
+    // A fit that was taken back has moved no vertex to another's place.
+    result.counters = counters_of(learner, result.network,
+                                  report.improved ? report.origin : std::vector<VertexId>(), settings);
+    return result;
+}
+
+}  // namespace
+
+LearnedNetwork learn_and_fit(const LearningTask& task, const Settings& settings, MonotoneProgress& progress) {
+    const int final_vertices = settings.target_vertices;
+    const int grow_to = vertices_to_grow(task, settings);
+    LearnedNetwork first = grow_and_fit(task, settings, grow_to, progress);
+    const bool stalled = first.forced || first.network.vertex_count() > final_vertices;
+    if (!stalled || grow_to == final_vertices || progress.stopped()) return first;
+
+    LearnedNetwork second = grow_and_fit(task, settings, final_vertices, progress);
+    second.signals += first.signals;
+    second.splits += first.splits;
+    second.collapses += first.collapses;
+    return second;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Before learning: the points that are learned and the network that learning starts from.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vcg_core/base/progress.h"
+#include "vcg_core/mesh/network.h"
+#include "vcg_core/settings.h"
+#include "vcg_core/target/target_space.h"
+
+namespace neuralmesh {
+
+/// What the learner is given.
+struct LearningTask {
+    explicit LearningTask(const TargetSpace& all) : given(all) {}
+
+    /// The points to learn, in the frame that the network has, too.
+    const TargetSpace& target() const { return cleaned ? *cleaned : given; }
+
+    const TargetSpace& given;
+    std::optional<TargetSpace> cleaned;  ///< without repeated points and outliers; empty: all are learned
+    Network network;
+    int landing_signals = 0;  ///< per vertex, before growth, to bring a shell down to the points
+    /// False for a sheet, whose start mesh has two layers with nothing between them.
+    bool encloses_space = true;
+    double topology_confidence = 0;  ///< as in Report
+    std::vector<std::string> warnings;
+};
+
+/// Removes repeated points and outliers from \p given and makes the start mesh that \p settings asks for: the
+/// shell of the cloud, or a tetrahedron. A shell of more than settings.target_vertices vertices is replaced
+/// by a tetrahedron, with a warning. \p given must outlive the result. Fractions of \p progress run from 0
+/// to 1. \throws what shell_of() throws
+LearningTask prepare(const TargetSpace& given, const Settings& settings, Progress& progress);
+
+}  // namespace neuralmesh
