@@ -84,7 +84,7 @@ need_sources() {
         must_be_root "apt does not know its mirrors' packages" "apt-get update"
         as_root apt-get -q -q update
     fi
-    filter_neuralmesh/fetch_meshlab.sh
+    filter_neuralmesh/sources/fetch_meshlab.sh
 }
 
 need_venv() {

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-# Prints the mirror that Debian's own packages come from on this system, asked of apt, so that no host is named
-# here; $DEBIAN_MIRROR goes before. Prints nothing if apt knows none.
+# Prints the Debian mirror to download from: $DEBIAN_MIRROR if set, else the one that apt uses on this system.
+# Prints nothing if apt knows none.
 set -eu
 if [ -n "${DEBIAN_MIRROR:-}" ]; then
     echo "$DEBIAN_MIRROR"

@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-# Puts the sources of the three MeshLab releases into the user's cache, as Debian publishes them: asked of
-# the mirror this system installs from, checked against the sums below, unpacked once.
-# Prints nothing when all is there already.
+# Downloads Debian's source tarballs of the three MeshLab releases from this system's mirror, checks their sums
+# and unpacks them in the user's cache folder. Prints nothing if they are there already.
 set -euo pipefail
 
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
@@ -17,7 +16,7 @@ releases="
 
 fail() {
     echo "$1" >&2
-    echo "Or take MeshLab's sources from where you like and build for them alone:" >&2
+    echo "Or build with MeshLab sources that you have:" >&2
     echo "  cmake -S . -B build/own -DMESHLAB_SOURCE_DIR=DIR && cmake --build build/own" >&2
     exit 1
 }
@@ -32,7 +31,7 @@ fetch() {
     fi
     echo "Fetching $tarball from $uri"
     rm -f "$cache/$tarball.part"
-    # apt's own downloader, so that its proxies and mirrors hold here, too.
+    # apt's downloader uses apt's proxy settings.
     /usr/lib/apt/apt-helper -qq download-file "${uri%/}/pool/main/m/meshlab/$tarball" \
         "$cache/$tarball.part" "SHA256:$sum" 2> "$cache/fetch.log" ||
         fail "$tarball could not be fetched ($(tail -n 1 "$cache/fetch.log")). Check the network and run this again."
@@ -46,7 +45,7 @@ while read -r version tarball sum; do
     holds "$cache/$tarball" "$sum" || fetch "$tarball" "$sum"
     holds "$cache/$tarball" "$sum" || fail "$tarball does not have the expected sum; remove it from $cache."
     echo "Unpacking $tarball"
-    # Unpacked aside and renamed, so that an interrupted run leaves nothing half done behind.
+    # Unpack beside and rename, so that an interrupted run leaves no incomplete tree.
     rm -rf "$cache/unpacking"
     mkdir "$cache/unpacking"
     tar -xf "$cache/$tarball" -C "$cache/unpacking" --strip-components=1

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-# Which MeshLab source trees there are, and the vcglib the core is compiled against.
+# Finds the MeshLab source trees to build for, and the vcglib that the core is compiled with.
 
 if(DEFINED ENV{XDG_CACHE_HOME} AND NOT "$ENV{XDG_CACHE_HOME}" STREQUAL "")
     set(neuralmesh_cache "$ENV{XDG_CACHE_HOME}/neural-mesh")
@@ -9,9 +9,9 @@ else()
     set(neuralmesh_cache "$ENV{HOME}/.cache/neural-mesh")
 endif()
 set(NEURALMESH_CACHE "${neuralmesh_cache}" CACHE PATH
-    "Where filter_neuralmesh/fetch_meshlab.sh keeps MeshLab's sources")
+    "Where filter_neuralmesh/sources/fetch_meshlab.sh keeps MeshLab's sources")
 
-# Sets ${result} to the release of the MeshLab source tree in ${dir}, empty if it is none.
+# Sets ${result} to the release of the MeshLab source tree in ${dir}, or to nothing if it is none.
 function(meshlab_version_of dir result)
     set(version "")
     if(EXISTS "${dir}/ML_VERSION" AND EXISTS "${dir}/src/common")
@@ -21,7 +21,7 @@ function(meshlab_version_of dir result)
     set(${result} "${version}" PARENT_SCOPE)
 endfunction()
 
-# Sets ${result} to the vcglib inside a MeshLab source tree; releases keep it in two places.
+# Sets ${result} to the vcglib in a MeshLab source tree; its place depends on the release.
 function(vcglib_of dir result)
     if(EXISTS "${dir}/src/vcglib/vcg/complex/complex.h")
         set(${result} "${dir}/src/vcglib" PARENT_SCOPE)
@@ -38,7 +38,7 @@ if(MESHLAB_SOURCE_DIR)
     meshlab_version_of("${MESHLAB_SOURCE_DIR}" found_version)
     if(NOT found_version)
         message(FATAL_ERROR "MESHLAB_SOURCE_DIR is ${MESHLAB_SOURCE_DIR}, which holds no MeshLab sources: "
-                            "a file ML_VERSION and a folder src/common are expected there.")
+                            "it has no file ML_VERSION or no folder src/common.")
     endif()
     set(core_meshlab "${MESHLAB_SOURCE_DIR}")
 elseif(NOT EXISTS "${core_meshlab}/ML_VERSION")
@@ -47,8 +47,9 @@ elseif(NOT EXISTS "${core_meshlab}/ML_VERSION")
 endif()
 
 vcglib_of("${core_meshlab}" core_vcglib)
-# In a plugin the core meets the host's vcglib, another release with the same names for functions that differ
-# (Point3 is passed in registers by 2025.07, in memory by its elders): so the core's goes by another name.
+# A plugin contains the core's vcglib and the host's, which may be another release: the same function names with
+# other definitions (2025.07 passes Point3 in registers, earlier releases in memory). So the core's vcglib is
+# compiled in a namespace of its own.
 add_library(neuralmesh_vcglib INTERFACE)
 target_compile_definitions(neuralmesh_vcglib INTERFACE vcg=neuralmesh_vcg)
 target_include_directories(neuralmesh_vcglib SYSTEM INTERFACE "${core_vcglib}")

@@ -19,7 +19,7 @@ fail() {
     exit 1
 }
 
-mirror="$("$here/../../filter_neuralmesh/debian_mirror.sh")"
+mirror="$("$here/../../filter_neuralmesh/sources/debian_mirror.sh")"
 [ -n "$mirror" ] || fail "apt knows no Debian mirror to fetch MeshLab $release from: run apt-get update, as root."
 
 rm -rf "$folder" "$folder.apt"

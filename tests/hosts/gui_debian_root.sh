@@ -24,7 +24,7 @@ if ! command -v debootstrap >/dev/null; then
     exit 1
 fi
 
-mirror=$("$here/../../filter_neuralmesh/debian_mirror.sh")
+mirror=$("$here/../../filter_neuralmesh/sources/debian_mirror.sh")
 if [ -z "$mirror" ]; then
     echo "gui_debian_root: no Debian mirror in apt's sources; name one in DEBIAN_MIRROR." >&2
     exit 1
