@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The result as a layer of the host's, and in its log. Included by each adapter after the host's own headers,
-// as host_parameters.h is.
+// From the host's current layer to the layer that holds the result, and the log. Each adapter includes this
+// after the host's own headers: the class names are the same in all hosts, their layouts are not.
 #pragma once
 
 #include <new>
 #include <string>
+#include <utility>
 
 #include "actions.h"
 
 namespace neuralmesh {
 
-/// The attributes that a result written with \p settings has beyond coordinates and faces.
+/// The attributes of the result besides coordinates and faces, as bits of MeshModel.
 inline int result_mask(const Settings& settings) {
     int mask = MeshModel::MM_VERTQUALITY;
     if (settings.color_by_counter) mask |= MeshModel::MM_VERTCOLOR;
@@ -20,8 +21,8 @@ inline int result_mask(const Settings& settings) {
     return mask;
 }
 
-/// Fills the new layer \p added, all but box and normals. \p transform: the matrix of the layer that was
-/// learned. Adds a warning to \p result if its coordinates cannot be those of the world.
+/// Fills the new layer \p added except for box and normals. \p transform is the matrix of the layer that was
+/// learned. Adds a warning to \p result if the layer cannot store world coordinates.
 template <class Matrix>
 void fill_layer(NeuralMesh& result, const Settings& settings, const Matrix& transform, MeshModel& added) {
     added.updateDataMask(result_mask(settings));
@@ -34,15 +35,41 @@ void fill_layer(NeuralMesh& result, const Settings& settings, const Matrix& tran
     result.report.warnings.push_back(sentence_on_origin(origin));
 }
 
-/// Tells of a run that is done, by \p log(level, line). No memory for that is no failure: the mesh is there
-/// all the same.
+/// Learns the current layer of \p document and adds the result as a new layer, which becomes the current one.
+/// The hosts differ in two steps: \p complete(added, report) updates box and normals of the new layer and
+/// makes what the host returns, \p remove(added) deletes the layer if complete() throws.
+/// \throws InputError if there is no layer, and what run() throws; the document is then as before
+template <class Complete, class Remove>
+Report learn_current_layer(MeshDocument& document, const Settings& settings, vcg::CallBackPos* call_back,
+                           const Complete& complete, const Remove& remove) {
+    MeshModel* const layer = document.mm();
+    if (layer == nullptr) throw InputError(kNoLayer);
+    // The window handles events during a run, so the layer may be gone after it.
+    const auto current = static_cast<int>(layer->id());
+    const Matrix44m transform = layer->cm.Tr;
+    NeuralMesh result = run(layer->cm, transform, settings, call_back);
+
+    MeshModel* const added = document.addNewMesh("", kLayerLabel, true);
+    try {
+        fill_layer(result, settings, transform, *added);
+        complete(*added, result.report);
+    } catch (...) {
+        remove(*added);
+        document.setCurrentMesh(current);
+        throw;
+    }
+    return std::move(result.report);
+}
+
+/// Writes \p report to the log by \p log(level, line). Lack of memory for that is no failure: the mesh
+/// exists.
 template <class Log>
 void log_run(const Report& report, const Log& log) {
     try {
         for (const std::string& line : log_lines(report)) log(GLLogStream::FILTER, line);
         for (const std::string& warning : report.warnings) log(GLLogStream::WARNING, warning);
     } catch (const std::bad_alloc&) {
-        // The log has no memory for it.
+        // The rest of the log is lost.
     }
 }
 

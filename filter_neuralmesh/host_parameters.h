@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The table of settings as the host's dialog parameters, and back. Included by each adapter after the host's
-// own headers: the class names are the same in all hosts, their layouts are not.
+// The table of settings as parameters of the host's dialog, and back. Each adapter includes this after the
+// host's own headers, as host_layer.h.
 #pragma once
 
 #include <QString>
@@ -12,8 +12,8 @@
 
 namespace neuralmesh {
 
-/// Adds the parameter \p info describes to \p list. \p extra: what the host's constructors take behind
-/// the tooltip (from 2022.02 on: whether the parameter is an advanced one).
+/// Adds the parameter that \p info describes to \p list. \p extra: the arguments that the host's constructors
+/// have after the tooltip (from 2022.02 on: whether the parameter is an advanced one).
 template <class... Extra>
 void add_parameter(RichParameterList& list, const SettingInfo& info, Extra... extra) {
     const double value = info.value(Settings());
@@ -28,7 +28,7 @@ void add_parameter(RichParameterList& list, const SettingInfo& info, Extra... ex
             list.addParam(RichInt(id, static_cast<int>(value), label, help, extra...));
             break;
         case SettingInfo::Kind::real:
-            // Hosts keep parameters as float, whatever their scalar is; from_host() takes that back.
+            // All hosts keep parameters as float; from_host() undoes the rounding.
             list.addParam(RichFloat(id, static_cast<float>(value), label, help, extra...));
             break;
         case SettingInfo::Kind::choice: {
@@ -40,7 +40,7 @@ void add_parameter(RichParameterList& list, const SettingInfo& info, Extra... ex
     }
 }
 
-/// The settings that \p list holds, unchecked.
+/// The settings in \p list. Their ranges are not checked.
 inline Settings settings_from(const RichParameterList& list) {
     Settings settings;
     for (const SettingInfo& info : setting_table()) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Forwards MeshLab 2020.09's calls to actions.h. This host checks nothing when it loads a plugin, and would
-// run one built for another release or another scalar into its memory; so the plugin checks its host itself.
+// This host does not check the plugins it loads: one built for another release or scalar type would corrupt
+// its memory. So the plugin checks its host before it runs.
 
-// Before any of Qt's headers, which make a keyword of "signals".
+// Before any header of Qt, which defines "signals" as a macro.
 #include "actions.h"
 
 #include "meshlab_2020.h"
@@ -23,7 +23,7 @@ namespace {
 
 using namespace neuralmesh;
 
-/// The running MeshLab's scalar type, told from a function that its library exports for that type alone.
+/// The scalar type of the running MeshLab. Its library exports this function for that type only.
 std::string scalar_of_host() {
     if (dlsym(RTLD_DEFAULT, "_Z14Matrix44mToXMLRN3vcg8Matrix44IfEER12QDomDocument") != nullptr)
         return "float";
@@ -83,41 +83,23 @@ bool FilterNeuralMeshPlugin::applyFilter(QAction* /*action*/, MeshDocument& docu
     try {
         const std::string refusal = misfit();
         if (!refusal.empty()) throw Error(refusal);
-        learn_current_layer(document, list, call_back);
+        const Report report = learn_current_layer(
+            document, settings_from(list), call_back,
+            [](MeshModel& added, const Report&) { added.UpdateBoxAndNormals(); },
+            [&document](MeshModel& added) { document.delMesh(&added); });
+        log_run(report, [this](auto level, const std::string& line) { Log(level, line); });
         return true;
     } catch (...) {
         const std::string sentence = sentence_of_current_exception();
         try {
             errorMessage = QString::fromStdString(sentence);
-            // meshlabserver prints the log only.
+            // meshlabserver prints the log, not errorMessage.
             Log(GLLogStream::WARNING, sentence);
         } catch (const std::bad_alloc&) {
-            // There is no memory for it; the host says at least that the filter has failed.
+            // Without memory for the sentence, the host still reports that the filter has failed.
         }
         return false;
     }
-}
-
-void FilterNeuralMeshPlugin::learn_current_layer(MeshDocument& document, const RichParameterList& list,
-                                                 vcg::CallBackPos* call_back) {
-    MeshModel* const layer = document.mm();
-    if (layer == nullptr) throw InputError(kNoLayer);
-    const Settings settings = settings_from(list);
-    // The window handles events during a run, so the layer need not be there after it.
-    const auto current = layer->id();
-    const Matrix44m transform = layer->cm.Tr;
-    NeuralMesh result = run(layer->cm, transform, settings, call_back);
-
-    MeshModel* const added = document.addNewMesh("", kLayerLabel, true);
-    try {
-        fill_layer(result, settings, transform, *added);
-        added->UpdateBoxAndNormals();
-    } catch (...) {
-        document.delMesh(added);
-        document.setCurrentMesh(current);
-        throw;
-    }
-    log_run(result.report, [this](auto level, const std::string& line) { Log(level, line); });
 }
 
 MESHLAB_PLUGIN_NAME_EXPORTER(FilterNeuralMeshPlugin)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The filter as MeshLab 2020.09 knows filters: a MeshFilterInterface.
+// The adapter for MeshLab 2020.09, whose filters are MeshFilterInterfaces.
 #pragma once
 
 #include <common/interfaces.h>
@@ -28,8 +28,4 @@ public:
     void initParameterSet(QAction* action, MeshDocument& document, RichParameterList& list) override;
     bool applyFilter(QAction* action, MeshDocument& document, const RichParameterList& list,
                      vcg::CallBackPos* call_back) override;
-
-private:
-    void learn_current_layer(MeshDocument& document, const RichParameterList& list,
-                             vcg::CallBackPos* call_back);
 };

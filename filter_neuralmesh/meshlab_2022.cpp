@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Forwards the calls of MeshLab 2022.02 to 2025.07 and of pymeshlab to actions.h. These hosts compare the
-// plugin's release and scalar type with their own before they use it.
+// These hosts compare the plugin's release and scalar type with their own before they use it, so the adapter
+// need not.
 
-// Before any of Qt's headers, which make a keyword of "signals".
+// Before any header of Qt, which defines "signals" as a macro.
 #include "actions.h"
 
 #include "meshlab_2022.h"
@@ -67,42 +67,25 @@ std::map<std::string, QVariant> FilterNeuralMeshPlugin::applyFilter(const QActio
                                                                     vcg::CallBackPos* call_back) {
     std::string sentence;
     try {
-        return learn_current_layer(document, list, call_back);
+        std::map<std::string, QVariant> results;
+        const auto complete = [&results](MeshModel& added, const Report& report) {
+            added.updateBoxAndNormals();
+            for (const Figure& figure : figures(report))
+                results[figure.key] = figure.is_count ? QVariant(figure.count()) : QVariant(figure.value);
+        };
+        const auto remove = [&document](MeshModel& added) { document.delMesh(added.id()); };
+        const Report report = learn_current_layer(document, settings_from(list), call_back, complete, remove);
+        log_run(report, [this](auto level, const std::string& line) { log(level, line); });
+        return results;
     } catch (...) {
         sentence = sentence_of_current_exception();
     }
     try {
         log(GLLogStream::WARNING, sentence);
     } catch (const std::bad_alloc&) {
-        // The log has no memory for it; the exception tells the same.
+        // The exception holds the same sentence.
     }
     throw MLException(QString::fromStdString(sentence));
-}
-
-std::map<std::string, QVariant> FilterNeuralMeshPlugin::learn_current_layer(
-    MeshDocument& document, const RichParameterList& list, vcg::CallBackPos* call_back) const {
-    MeshModel* const layer = document.mm();
-    if (layer == nullptr) throw InputError(kNoLayer);
-    const Settings settings = settings_from(list);
-    // The window handles events during a run, so the layer need not be there after it.
-    const auto current = layer->id();
-    const Matrix44m transform = layer->cm.Tr;
-    NeuralMesh result = run(layer->cm, transform, settings, call_back);
-
-    std::map<std::string, QVariant> results;
-    MeshModel* const added = document.addNewMesh("", kLayerLabel, true);
-    try {
-        fill_layer(result, settings, transform, *added);
-        added->updateBoxAndNormals();
-        for (const Figure& figure : figures(result.report))
-            results[figure.key] = figure.is_count ? QVariant(figure.count()) : QVariant(figure.value);
-    } catch (...) {
-        document.delMesh(added->id());
-        document.setCurrentMesh(static_cast<int>(current));
-        throw;
-    }
-    log_run(result.report, [this](auto level, const std::string& line) { log(level, line); });
-    return results;
 }
 
 MESHLAB_PLUGIN_NAME_EXPORTER(FilterNeuralMeshPlugin)

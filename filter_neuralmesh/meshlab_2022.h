@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The filter as MeshLab 2022.02 to 2025.07 and pymeshlab know filters: a FilterPlugin.
+// The adapter for MeshLab 2022.02 to 2025.07 and pymeshlab, whose filters are FilterPlugins.
 #pragma once
 
 #include <common/plugins/interfaces/filter_plugin.h>
@@ -32,8 +32,4 @@ public:
     std::map<std::string, QVariant> applyFilter(const QAction* action, const RichParameterList& list,
                                                 MeshDocument& document, unsigned int& post_condition_mask,
                                                 vcg::CallBackPos* call_back) override;
-
-private:
-    std::map<std::string, QVariant> learn_current_layer(MeshDocument& document, const RichParameterList& list,
-                                                        vcg::CallBackPos* call_back) const;
 };
