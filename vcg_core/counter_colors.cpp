@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The ramp and its two ends.
 #include "vcg_core/counter_colors.h"
 
 #include <algorithm>
@@ -13,11 +12,11 @@ namespace neuralmesh {
 
 namespace {
 
-// Every 32nd colour of viridis; between them, straight lines are hard to tell from it.
-// vcglib has the ramp from 2025.07 on only.
-const std::array<Color, 9> kRamp = {Color{68, 1, 84},    Color{71, 45, 123},  Color{59, 82, 139},
-                                    Color{44, 114, 142}, Color{33, 145, 140}, Color{40, 174, 128},
-                                    Color{94, 201, 98},  Color{173, 220, 48}, Color{253, 231, 37}};
+// Every 28th of the 256 colours of magma, from the lightest down; linear interpolation between them is hard
+// to tell from the original.
+const std::array<Color, 7> kRamp = {Color{252, 253, 191}, Color{254, 201, 141}, Color{253, 149, 103},
+                                    Color{241, 96, 93},   Color{205, 64, 113},  Color{159, 47, 127},
+                                    Color{114, 31, 129}};
 
 float percentile(std::vector<float> values, double fraction) {
     const auto rank = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// How the feature counter is shown as a colour.
+// Vertex colours that show the feature measure.
 #pragma once
 
 #include <array>
@@ -11,9 +11,11 @@ namespace neuralmesh {
 
 using Color = std::array<unsigned char, 3>;  ///< red, green, blue
 
-/// One colour per counter on the ramp "viridis" (van der Walt and Smith, 2015), even to the eye and readable
-/// without colour vision: dark violet at the 2nd percentile and below, yellow at the 98th and above, so that
-/// a few outliers do not hide the rest. O(counters).
+/// One colour per counter from the light two thirds of the map "magma" (van der Walt and Smith, 2015), which
+/// is perceptually uniform and readable without colour vision: light yellow at the 2nd percentile and below,
+/// purple at the 98th and above, so that a few extreme counters do not hide the rest. Smooth parts, usually
+/// the most of a surface, get the light end, so that they are readable under a renderer's shading.
+/// O(counters).
 std::vector<Color> counter_colors(const std::vector<float>& counters);
 
 }  // namespace neuralmesh
