@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Names, help, figures and sentences of the filter.
 #include "actions.h"
 
 #include <algorithm>
@@ -21,16 +20,13 @@ namespace neuralmesh {
 namespace {
 
 constexpr const char* kReconstructInfo =
-    "Reconstructs the surface of a point cloud as a triangle mesh with exactly the wanted number of "
-    "vertices, dense where the surface bends and sparse where it is flat. The points need no normals and may "
-    "be noisy and uneven. A growing neural network of mesh vertices learns the cloud: a random point "
-    "attracts "
-    "the nearest vertex, vertices whose normal varies much are split, vertices that never win are "
-    "collapsed.<br/>"
-    "The current layer stays as it is; the result is a new layer in world coordinates (where single "
-    "precision cannot hold those, the new layer has the translation of the current one in its matrix). Its "
-    "vertex quality is what 'Feature measure' names: how much the normal of the vertex still varied while it "
-    "learned, or the crease measure; near zero on smooth parts, large on edges and corners.<br/>"
+    "Reconstructs the surface of a point cloud as a triangle mesh with exactly the given number of vertices, "
+    "dense where the surface bends and sparse where it is flat. The points need no normals and may be noisy "
+    "and unevenly spaced. A growing neural network learns the cloud: a random point attracts the nearest "
+    "vertex, vertices whose normal varies much are split, vertices that never win are collapsed.<br/>"
+    "The current layer is not changed. The result is a new layer in world coordinates; if those exceed "
+    "single precision, it has the translation of the current layer in its matrix. The vertex quality is what "
+    "'Feature measure' names: near zero on smooth parts, large on edges and corners.<br/>"
     "See:<br/>"
     "<i>Won-Ki Jeong, Ioannis Ivrissimtzis, Hans-Peter Seidel</i><br/>"
     "<b>\"Neural Meshes: Statistical Learning based on Normals\"</b><br/>"
@@ -40,35 +36,37 @@ const char* words_for(StopReason reason) {
     switch (reason) {
         case StopReason::target_reached: return "the target was reached";
         case StopReason::converged:
-            return "signals turned the normals by fewer degrees than 'Stop below mean counter' says";
+            return "signals turned the normals by fewer degrees than 'Stop below mean counter'";
         case StopReason::cancelled: return "it was cancelled";
-        case StopReason::cut_short: return "the bound on signals was reached before the target";
+        case StopReason::cut_short: return "the limit on signals was reached before the target";
     }
     return "";
 }
 
-/// A stream that writes decimal points wherever the host has set its locale.
+/// A stream that writes decimal points, whatever locale the host has set.
 std::ostringstream plain_stream() {
     std::ostringstream stream;
     stream.imbue(std::locale::classic());
     return stream;
 }
 
-/// The words of a progress text before its numbers.
+/// The words of a progress text before its first number.
 std::string stage_of(const std::string& text) { return text.substr(0, text.find_first_of("0123456789")); }
 
+const char* words_for_confidence(double confidence) {
+    if (confidence < 0.5) return "low: check the mesh";
+    if (confidence < 0.9) return "fair";
+    return "high, except for details finer than the spacing of the points";
+}
+
 std::string sentence_on_topology(const Report& report) {
-    std::ostringstream told = plain_stream();
-    told << "The cloud was taken for a surface of " << report.components
-         << (report.components == 1 ? " component" : " components") << " with " << report.genus
-         << (report.genus == 1 ? " handle" : " handles") << "; of what was looked at, "
-         << std::lround(100 * report.topology_confidence) << " % says so ("
-         << (report.topology_confidence < 0.5 ? "a guess: check it"
-             : report.topology_confidence < 0.9
-                 ? "likely"
-                 : "clear, but what is finer than the gaps between the points is not seen")
-         << ").";
-    return told.str();
+    std::ostringstream text = plain_stream();
+    text << "The surface was found to have " << report.components
+         << (report.components == 1 ? " component" : " components") << " and " << report.genus
+         << (report.genus == 1 ? " handle" : " handles") << ", with a confidence of "
+         << std::lround(100 * report.topology_confidence) << " % ("
+         << words_for_confidence(report.topology_confidence) << ").";
+    return text.str();
 }
 
 std::string sentence_if_memory_allows() {
@@ -123,8 +121,8 @@ std::vector<Figure> figures(const Report& report) {
 }
 
 std::vector<std::string> log_lines(const Report& report) {
-    std::ostringstream told = plain_stream();
-    told << "Neural Mesh: " << report.vertices << " vertices and " << report.faces << " faces after "
+    std::ostringstream text = plain_stream();
+    text << "Neural Mesh: " << report.vertices << " vertices and " << report.faces << " faces after "
          << report.signals << " signals in " << std::fixed << std::setprecision(2) << report.seconds
          << " seconds, RMS error " << std::setprecision(4) << report.rms_error
          << " % of the diagonal; learning ended because " << words_for(report.stop_reason) << '.';
@@ -140,21 +138,20 @@ std::vector<std::string> log_lines(const Report& report) {
         }
     }
 
-    std::vector<std::string> lines = {told.str(), dictionary.str()};
+    std::vector<std::string> lines = {text.str(), dictionary.str()};
     if (report.topology_confidence > 0) lines.push_back(sentence_on_topology(report));
     return lines;
 }
 
 std::string sentence_on_origin(const Coordinates& origin) {
-    std::ostringstream told = plain_stream();
-    told
-        << std::setprecision(9) << "The layer lies so far from the origin that single precision would round "
-        << "the surface away. So the new layer has the translation (" << origin[0] << ", " << origin[1]
-        << ", " << origin[2]
-        << ") in its matrix, as the learned one has, and its coordinates are counted from there: "
-        << "it is in its right place in MeshLab and in projects, but a mesh file has no matrix and holds the "
-        << "coordinates alone.";
-    return told.str();
+    std::ostringstream text = plain_stream();
+    text << std::setprecision(9)
+         << "World coordinates exceed single precision here. So the new layer has the translation ("
+         << origin[0] << ", " << origin[1] << ", " << origin[2]
+         << ") in its matrix, like the layer it was learned from, and stores coordinates relative to it. "
+         << "MeshLab and project files show it in its place; a mesh file has no matrix and holds the "
+         << "relative coordinates.";
+    return text.str();
 }
 
 double from_host(double value) {
@@ -169,7 +166,7 @@ std::string sentence_of_current_exception() {
     try {
         return sentence_if_memory_allows();
     } catch (const std::bad_alloc&) {
-        return "Out of memory.";  // short enough for a string to hold in itself
+        return "Out of memory.";  // short enough to need no allocation
     }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What MeshLab sees of the filter, without MeshLab: names, help, parameters, figures and run(). The two
-// adapters, one per plugin interface, translate this into the host's classes and decide nothing.
+// The filter without MeshLab: names, help, figures, sentences and run(). The two adapters, one per plugin
+// interface, only translate this into the host's classes.
 #pragma once
 
 #include <chrono>
@@ -44,33 +44,33 @@ struct Figure {
     double value;
     bool is_count;  ///< an int for Python, else a double
 
-    /// A count as an int; what is beyond int, as signals may be, becomes the largest one.
+    /// \pre is_count. Counts that exceed int, as signals may, become the largest int.
     int count() const;
 };
 
-/// The figures of \p report in the order they are told.
+/// The figures of \p report in the order of the log.
 std::vector<Figure> figures(const Report& report);
 
-/// What the log is told after a run beside the warnings: a sentence, all figures as key=value, and how sure
-/// the topology is.
+/// Lines for the log after a run, besides the warnings: a sentence, all figures as key=value, and, unless
+/// learning started from a tetrahedron, the topology found and its confidence.
 std::vector<std::string> log_lines(const Report& report);
 
-/// The warning that the coordinates of the new layer are counted from \p origin.
+/// The warning that the new layer stores its coordinates relative to \p origin.
 std::string sentence_on_origin(const Coordinates& origin);
 
-/// The number a user meant who gave \p value to a host that keeps parameters as float: the shortest decimal
-/// that rounds to it. So .06 is the same number in every host, be its parameters float or double.
+/// Undoes the rounding by hosts that keep parameters as float: the shortest decimal number that rounds to the
+/// float \p value. So .06 is the same double in every host.
 double from_host(double value);
 
-/// What an exception means to the user. Call it inside a catch block, for the exception being handled. Throws
-/// nothing: where not even the sentence finds memory, it is a shorter one.
+/// The sentence that explains the exception being handled to the user; call it inside a catch block. Throws
+/// nothing: if there is no memory for the sentence, it returns a shorter one.
 std::string sentence_of_current_exception();
 
-/// The host's progress callback as the core's progress. At most ten calls a second beside those at a change
-/// of stage, as some hosts redraw their window in each.
+/// The host's progress callback as the core's progress. Some hosts redraw their window in each call, so it
+/// calls them at most ten times a second and when a new stage begins.
 class HostProgress : public Progress {
 public:
-    /// vcg::CallBackPos, spelled out; null: nobody listens.
+    /// The same type as vcg::CallBackPos; may be null.
     using CallBack = bool(const int, const char*);
 
     explicit HostProgress(CallBack* call_back) : call_back_(call_back) {}
@@ -82,7 +82,7 @@ private:
     std::chrono::steady_clock::time_point last_call_{};
 };
 
-/// Learns \p layer, given as the host's mesh and its matrix, and changes neither.
+/// Learns \p layer, the host's mesh, in the world coordinates that the layer's matrix \p transform gives.
 /// \throws what target_space_of() and reconstruct() throw
 template <class MeshType, class Matrix>
 NeuralMesh run(const MeshType& layer, const Matrix& transform, const Settings& settings,

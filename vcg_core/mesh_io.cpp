@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Where the caller's coordinates enter the core's own vcglib, what is said of those that are no numbers, and
-// how far from their origin coordinates may be.
 #include "vcg_core/mesh_io.h"
 
 #include <algorithm>
@@ -12,19 +10,19 @@ namespace neuralmesh::detail {
 
 namespace {
 
-/// Of the result's diagonal: what rounding may move a vertex by. Much below the error of any mesh, and still
-/// a hundred and more diagonals from the origin in single precision.
+/// How far rounding may move a vertex, as a fraction of the diagonal: much less than the error of any mesh.
+/// Single precision keeps it up to 160 diagonals from the origin.
 constexpr double kRounding = 1e-5;
 
 vcg::Point3d point(const Coordinates& c) { return {c[0], c[1], c[2]}; }
 
-/// The largest coordinate of all, without its sign, counted from \p origin.
-double reach(const NeuralMesh& result, const Coordinates& origin) {
-    double reached = 0;
+/// The largest absolute coordinate relative to \p origin.
+double largest_coordinate(const NeuralMesh& result, const Coordinates& origin) {
+    double largest = 0;
     for (const vcg::Point3d& p : result.positions)
         for (int k = 0; k < 3; ++k)
-            reached = std::max(reached, std::abs(p[k] - origin[static_cast<std::size_t>(k)]));
-    return reached;
+            largest = std::max(largest, std::abs(p[k] - origin[static_cast<std::size_t>(k)]));
+    return largest;
 }
 
 }  // namespace
@@ -42,10 +40,10 @@ Coordinates better_origin(const NeuralMesh& result, const Coordinates& of_layer,
     const Coordinates of_world{};
     vcg::Box3d box;
     for (const vcg::Point3d& p : result.positions) box.Add(p);
-    const double in_world = reach(result, of_world);
+    const double in_world = largest_coordinate(result, of_world);
     if (rounding * in_world <= kRounding * box.Diag()) return of_world;
-    // To halve the rounding is the least that is worth a matrix.
-    return reach(result, of_layer) < in_world / 2 ? of_layer : of_world;
+    // A matrix is worth its trouble only if it at least halves the rounding.
+    return largest_coordinate(result, of_layer) < in_world / 2 ? of_layer : of_world;
 }
 
 bool is_finite(const Coordinates& c) {
@@ -55,14 +53,14 @@ bool is_finite(const Coordinates& c) {
 void refuse_not_finite(std::size_t not_finite, std::size_t count) {
     throw InputError(std::to_string(not_finite) + " of the " + std::to_string(count) +
                      " vertices of the layer have coordinates that are not finite (NaN or infinite): select "
-                     "them with the filter 'Conditional Vertex Selection' and the condition "
-                     "x-x != 0 || y-y != 0 || z-z != 0, then remove them with 'Delete Selected Vertices'.");
+                     "them with the filter 'Conditional Vertex Selection' and the condition x-x != 0 || y-y "
+                     "!= 0 || z-z != 0, then remove them with 'Delete Selected Vertices'.");
 }
 
 void refuse_matrix() {
     throw InputError(
-        "The matrix of the layer moves vertices to coordinates that are not finite (NaN or infinite): give "
-        "the layer another one, for example with the filter 'Matrix: Reset Current Matrix'.");
+        "The matrix of the layer moves vertices to coordinates that are not finite (NaN or infinite): replace "
+        "it, for example with the filter 'Matrix: Reset Current Matrix'.");
 }
 
 }  // namespace neuralmesh::detail

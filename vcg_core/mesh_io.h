@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Any vcg mesh in, any vcg mesh out: the only place where the core meets the caller's mesh type.
+// Conversion from and to the caller's mesh, of any vcg type. No other file of the core knows that type.
 #pragma once
 
 #include <vcg/complex/complex.h>
@@ -24,48 +24,48 @@
 
 namespace neuralmesh {
 
-/// The target space of \p mesh under \p transform (the layer's matrix; identity: nothing changes).
-/// Deleted elements are skipped; settings.selected_only keeps the selected vertices (or faces) alone;
-/// settings.draw_from_faces makes a mesh with faces be sampled over its area. The mesh is not changed.
-/// \throws InputError as TargetSpace does, if selected_only finds no selection, and for coordinates that are
-/// not finite, be it by themselves or by the matrix
-/// O(vertices), or O(faces); 8 bytes of passing memory per element beside the target space itself.
+/// The target space of \p mesh in world coordinates; \p transform is the layer's matrix. Deleted elements are
+/// skipped. If settings.draw_from_faces and the mesh has faces, it is sampled over their area, else its
+/// vertices are the cloud; settings.selected_only restricts either to the selected ones.
+/// \throws InputError as TargetSpace does, if selected_only finds no selection, and if coordinates are not
+/// finite in the mesh or after the transform
+/// O(elements); 8 bytes of temporary memory per element besides the target space.
 template <class MeshType, class Matrix>
 TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const Settings& settings);
 
 using Coordinates = std::array<double, 3>;
 
-/// Where the coordinates of \p result are to be counted from in a mesh of MeshType, so that its scalar type
-/// does not round the surface away: the world's origin where that is good to a hundred-thousandth of the
-/// diagonal, else the place the layer's matrix \p transform moves its own origin to, if that is any better.
-/// The layer's own, and not the middle of the result, so that both layers lie in one frame, in a file too.
+/// The origin that a mesh of MeshType should store \p result relative to, so that its scalar type keeps the
+/// surface: the world's origin if rounding there is below 1e-5 of the diagonal; else the translation of the
+/// layer's matrix \p transform, if rounding is at most half as large there. It is the layer's origin and not
+/// the middle of the result, so that both layers have the same frame, in files too.
 template <class MeshType, class Matrix>
 Coordinates origin_of(const NeuralMesh& result, const Matrix& transform);
 
-/// Writes \p result into the empty mesh \p out: coordinates, counted from \p origin, faces, quality =
-/// counter, and as the settings ask: vertex colour and vertex selection. Components that MeshType lacks are
-/// left out. O(vertices + faces).
+/// Writes \p result into the empty mesh \p out: coordinates relative to \p origin, faces, the counter as
+/// vertex quality and, if the settings ask for them, vertex colour and vertex selection. Skips the components
+/// that MeshType lacks. O(vertices + faces).
 template <class MeshType>
 void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& out,
                 const Coordinates& origin = {});
 
 namespace detail {
 
-// The caller may be compiled against another vcglib than the core, and the two pass Point3 in different
-// ways. So only standard types cross here.
+// The caller may be compiled against another release of vcglib than the core, which may pass Point3 in
+// another way. So only standard types cross these calls.
 TargetSpace target_of_points(std::size_t count, const std::function<Coordinates(std::size_t)>& point_at);
 TargetSpace target_of_triangles(std::size_t count,
                                 const std::function<Coordinates(std::size_t, int)>& corner_at);
 
-/// \p rounding: the largest part of a number that its nearest neighbour in the mesh's scalar type is away.
+/// See origin_of(). \p rounding: relative error of the mesh's scalar type.
 Coordinates better_origin(const NeuralMesh& result, const Coordinates& of_layer, double rounding);
 
 bool is_finite(const Coordinates& c);
 [[noreturn]] void refuse_not_finite(std::size_t not_finite, std::size_t count);
 [[noreturn]] void refuse_matrix();
 
-/// Refuses vertices that are not finite, or not so in the world. \p vertex_at(i), i in [0, count), may give a
-/// vertex more than once; it is told once.
+/// \throws InputError if a vertex is not finite, or not finite in world coordinates. \p vertex_at(i), i in
+/// [0, count), may give a vertex more than once; the message counts it once.
 template <class VertexAt, class InWorld>
 void check_finite(std::size_t count, std::size_t all, const VertexAt& vertex_at, const InWorld& in_world) {
     std::set<const void*> not_finite;
@@ -83,7 +83,7 @@ void check_finite(std::size_t count, std::size_t all, const VertexAt& vertex_at,
     if (!world_is_finite) refuse_matrix();
 }
 
-/// The elements of a vcg container that are to be learned, \p kind being their name for the user.
+/// The elements of a vcg container to learn. \p kind: their name in the error message.
 template <class Container>
 std::vector<const typename Container::value_type*> elements_of(const Container& all, bool selected_only,
                                                                const std::string& kind) {
@@ -93,8 +93,8 @@ std::vector<const typename Container::value_type*> elements_of(const Container& 
         if (!element.IsD() && (element.IsS() || !selected_only)) elements.push_back(&element);
     if (selected_only && elements.empty())
         throw InputError("Only the selected " + kind +
-                         " of the layer are to be learned, but none is selected: select "
-                         "some, or switch 'Selected only' off.");
+                         " of the layer are to be learned, but none are selected: select some, or switch "
+                         "'Selected only' off.");
     return elements;
 }
 
@@ -133,7 +133,7 @@ Coordinates origin_of(const NeuralMesh& result, const Matrix& transform) {
     to_world.Import(transform);
     const vcg::Point3d image = to_world * vcg::Point3d(0, 0, 0);
     Coordinates of_layer{};
-    // In the scalar type in which the result's matrix will hold it.
+    // Rounded to the scalar type of the result's matrix, which will hold it.
     for (std::size_t k = 0; k < 3; ++k)
         of_layer[k] = static_cast<double>(static_cast<Scalar>(image[static_cast<int>(k)]));
     return detail::better_origin(result, of_layer, std::numeric_limits<Scalar>::epsilon() / 2);

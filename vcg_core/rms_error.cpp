@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// By the tree of faces that the fit has.
 #include "vcg_core/rms_error.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// How far the target is from the learned surface.
+// The distance of the target from the learned surface.
 #pragma once
 
 #include "vcg_core/base/random.h"
@@ -10,9 +10,8 @@
 
 namespace neuralmesh {
 
-/// Root mean square distance of \p samples random points of \p target from the surface of \p network, in the
-/// core's frame (1 is the bounding box's diagonal). Exact nearest faces. O(faces log faces + samples
-/// x log faces) expected.
+/// Root mean square distance of \p samples random points of \p target from their nearest faces of \p network,
+/// in the core's frame (1 is the diagonal of the bounding box). O((faces + samples) log faces) expected.
 double rms_distance(const TargetSpace& target, const Network& network, int samples, Random& random);
 
 }  // namespace neuralmesh
