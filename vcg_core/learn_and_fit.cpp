@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <vector>
 
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/learning/learner.h"
@@ -50,17 +51,16 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
                          static_cast<std::uint64_t>(settings.random_seed) + 3, progress);
 }
 
-/// Per slot of \p network. \p source: the vertex of the learner whose counter a slot takes over; empty: the
-/// slot's own.
-std::vector<float> counters_of(const Learner& learner, const Network& network,
-                               const std::vector<VertexId>& source, const Settings& settings) {
+/// The counters of \p network's vertices. \p source: the learner's vertex that each takes its counter from;
+/// empty: itself.
+PerVertex<float> counters_of(const Learner& learner, const Network& network,
+                             const std::vector<VertexId>& source, const Settings& settings) {
     if (settings.feature_measure == kCreaseMeasure)
-        return learner.crease_measure().values(learner.network(), network, source);
-    std::vector<float> counters(static_cast<std::size_t>(network.slot_count()));
-    for (const VertexId v : network.vertices()) {
-        const auto slot = static_cast<std::size_t>(v);
-        counters[slot] = learner.feature_counters().value(source.empty() ? v : source[slot]);
-    }
+        return PerVertex<float>(learner.crease_measure().values(learner.network(), network, source));
+    PerVertex<float> counters(network.slot_count());
+    for (const VertexId v : network.vertices())
+        counters[v] =
+            learner.feature_counters().value(source.empty() ? v : source[static_cast<std::size_t>(v)]);
     return counters;
 }
 

@@ -4,8 +4,6 @@
 // Learning and the fit after it, with the number of vertices that the network grows to in between.
 #pragma once
 
-#include <vector>
-
 #include "vcg_core/base/progress.h"
 #include "vcg_core/learning_task.h"
 #include "vcg_core/mesh/network.h"
@@ -19,8 +17,8 @@ constexpr double kPrepared = 0.1;
 constexpr double kLearned = 0.8;
 
 struct LearnedNetwork {
-    Network network;              ///< after the fit, oriented outward
-    std::vector<float> counters;  ///< per vertex slot, what settings.feature_measure names
+    Network network;            ///< after the fit, oriented outward
+    PerVertex<float> counters;  ///< what settings.feature_measure names
     StopReason stop_reason = StopReason::target_reached;
     bool forced = false;  ///< growth had stalled, see Learner::growth_budget()
     /// Of all learning, including growth whose result was discarded.

@@ -33,7 +33,7 @@ void write_geometry(const Network& network, const Frame& frame, NeuralMesh& mesh
 void write_counters(const LearnedNetwork& learned, const Settings& settings, NeuralMesh& mesh) {
     double sum = 0;
     for (const VertexId v : learned.network.vertices()) {
-        mesh.counters.push_back(learned.counters[static_cast<std::size_t>(v)]);
+        mesh.counters.push_back(learned.counters[v]);
         sum += static_cast<double>(mesh.counters.back());
     }
     const double mean = sum / static_cast<double>(mesh.counters.size());
