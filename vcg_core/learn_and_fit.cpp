@@ -10,6 +10,7 @@
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/learning/learner.h"
 #include "vcg_core/mesh/simplify.h"
+#include "vcg_core/options_from_settings.h"
 
 namespace neuralmesh {
 
@@ -32,13 +33,13 @@ int vertices_to_grow(const LearningTask& task, const Settings& settings) {
     return std::max(final_vertices, static_cast<int>(std::min(supported, static_cast<std::size_t>(grow_to))));
 }
 
-Settings learner_settings(const LearningTask& task, const Settings& settings, int grow_to) {
-    Settings result = settings;
-    result.target_vertices = grow_to;
+LearnerOptions learner_options(const LearningTask& task, const Settings& settings, int grow_to) {
+    LearnerOptions options = learner_options_from(settings);
+    options.grow_to = grow_to;
     // The layers of a sheet fold into each other while they learn. Their area vectors cancel, and smoothing
     // at right angles to what is left of them throws vertices off the sheet, where they win no signal.
-    if (!task.encloses_space) result.smoothing_steps = 0;
-    return result;
+    if (!task.encloses_space) options.smoothing_steps = 0;
+    return options;
 }
 
 FitReport fit(Network& network, const LearningTask& task, const Settings& settings, Progress& progress) {
@@ -68,8 +69,7 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
                             MonotoneProgress& progress) {
     PartOf learning(progress, kPrepared, settings.fit_to_points ? kLearned : 1);
     PartOf fitting(progress, kLearned, 1);
-    const Settings for_learner = learner_settings(task, settings, grow_to);
-    Learner learner(task.target(), for_learner, task.network);
+    Learner learner(task.target(), learner_options(task, settings, grow_to), task.network);
     LearnedNetwork result;
     result.stop_reason = learner.run(task.landing_signals, learning);
     result.network = learner.network();

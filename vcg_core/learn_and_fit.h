@@ -20,7 +20,7 @@ struct LearnedNetwork {
     Network network;            ///< after the fit, oriented outward
     PerVertex<float> counters;  ///< what settings.feature_measure names
     StopReason stop_reason = StopReason::target_reached;
-    bool forced = false;  ///< growth had stalled, see Learner::growth_budget()
+    bool forced = false;  ///< growth had stalled, see growth_budget()
     /// Of all learning, including growth whose result was discarded.
     long long signals = 0;
     long long splits = 0;

@@ -10,15 +10,9 @@
 #include <string>
 #include <vector>
 
-namespace neuralmesh {
+#include "vcg_core/learning/stop_reason.h"
 
-/// Why learning ended. The values are part of the filter's results, so they must not change.
-enum class StopReason : int {
-    target_reached = 0,  ///< exactly target_vertices vertices
-    converged = 1,       ///< signals turn the normals by less than stop_below_mean_counter (eq 8)
-    cancelled = 2,       ///< the caller's Progress asked to stop
-    cut_short = 3,       ///< the limit on signals was reached before the target
-};
+namespace neuralmesh {
 
 /// Figures of a run.
 struct Report {

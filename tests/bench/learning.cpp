@@ -14,8 +14,8 @@
 
 #include "vcg_core/engine/eight_steps.h"
 #include "vcg_core/engine/winner_search.h"
-#include "vcg_core/learning/utility_counter.h"
 #include "vcg_core/learning/learner.h"
+#include "vcg_core/learning/utility_counter.h"
 
 namespace {
 
@@ -62,10 +62,10 @@ const Network& learned(int vertices) {
     static std::map<int, Network> networks;
     auto it = networks.find(vertices);
     if (it == networks.end()) {
-        Settings settings;
-        settings.target_vertices = vertices;
-        settings.settling_signals_per_vertex = 0;
-        Learner learner(cloud(), settings, torus_start());
+        LearnerOptions options;
+        options.grow_to = vertices;
+        options.settling_signals_per_vertex = 0;
+        Learner learner(cloud(), options, torus_start());
         NoProgress progress;
         learner.run(0, progress);
         it = networks.emplace(vertices, learner.network()).first;
@@ -92,8 +92,8 @@ void learn(Learner& learner, const std::vector<vcg::Point3f>& drawn) {
     const int size = static_cast<int>(drawn.size());
     for (int from = 0; from < size;) {
         const int count = std::min(learner.batch_size(), size - from);
-        learner.basic_steps(&drawn[static_cast<std::size_t>(from)], count);
-        for (int i = 0; i < count; ++i) learner.learn_counters(i);
+        for (const StepResult& step : learner.basic_steps(&drawn[static_cast<std::size_t>(from)], count))
+            learner.learn_counters(step);
         from += count;
     }
 }
@@ -101,11 +101,11 @@ void learn(Learner& learner, const std::vector<vcg::Point3f>& drawn) {
 /// Whole Basic Steps on a mesh that does not grow, as it settles: signals drawn, counters learned. Arguments:
 /// vertices, C_L, threads.
 void basic_steps(benchmark::State& state) {
-    Settings settings;
-    settings.target_vertices = static_cast<int>(state.range(0));
-    settings.smoothing_steps = static_cast<int>(state.range(1));
-    settings.threads = static_cast<int>(state.range(2));
-    Learner learner(cloud(), settings, learned(settings.target_vertices));
+    LearnerOptions options;
+    options.grow_to = static_cast<int>(state.range(0));
+    options.smoothing_steps = static_cast<int>(state.range(1));
+    options.threads = static_cast<int>(state.range(2));
+    Learner learner(cloud(), options, learned(options.grow_to));
     NoProgress progress;
     learner.settle(1, progress);  // into order and into the caches
     const std::int64_t before = learner.signals();
@@ -119,14 +119,14 @@ BENCHMARK(basic_steps)
 
 /// From the start mesh to so many vertices, splits and collapses included; arguments: vertices, threads.
 void growth(benchmark::State& state) {
-    Settings settings;
-    settings.target_vertices = static_cast<int>(state.range(0));
-    settings.settling_signals_per_vertex = 0;
-    settings.threads = static_cast<int>(state.range(1));
+    LearnerOptions options;
+    options.grow_to = static_cast<int>(state.range(0));
+    options.settling_signals_per_vertex = 0;
+    options.threads = static_cast<int>(state.range(1));
     NoProgress progress;
     std::int64_t count = 0;
     for (auto _ : state) {
-        Learner learner(cloud(), settings, torus_start());
+        Learner learner(cloud(), options, torus_start());
         learner.run(0, progress);
         count += learner.signals();
     }
@@ -195,8 +195,8 @@ void part_smoothing(benchmark::State& state) {
 void part_normals(benchmark::State& state) {
     per_group(state, [](const Network&, const std::vector<VertexId>&, EightSteps& patches) {
         EightVectors n;
-        patches.take_normals(n);
-        patches.take_normals(n);
+        patches.normals(n);
+        patches.normals(n);
         benchmark::DoNotOptimize(n);
     });
 }
@@ -244,12 +244,11 @@ void part_moves(benchmark::State& state) {
 
 /// Vertex splits alone; per split, not per signal.
 void part_topology(benchmark::State& state) {
-    Settings settings;
-    settings.target_vertices = 2 * static_cast<int>(state.range(0));
+    LearnerOptions options;
+    options.grow_to = 2 * static_cast<int>(state.range(0));
     for (auto _ : state) {
         state.PauseTiming();
-        auto learner =
-            std::make_unique<Learner>(cloud(), settings, learned(static_cast<int>(state.range(0))));
+        auto learner = std::make_unique<Learner>(cloud(), options, learned(static_cast<int>(state.range(0))));
         learn(*learner, signals());
         state.ResumeTiming();
         while (learner->splits() < 100 && learner->vertex_split()) {

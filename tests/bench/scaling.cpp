@@ -40,14 +40,14 @@ const Network& learned(int vertices) {
     static std::map<int, Network> networks;
     const auto known = networks.find(vertices);
     if (known != networks.end()) return known->second;
-    Settings settings;
-    settings.target_vertices = vertices;
-    settings.signals_per_split = 20;
-    settings.min_wins_per_split = 5;
-    settings.settling_signals_per_vertex = 0;
+    LearnerOptions options;
+    options.grow_to = vertices;
+    options.signals_per_split = 20;
+    options.min_wins_per_split = 5;
+    options.settling_signals_per_vertex = 0;
     constexpr float kA = 0.1F;
     const TargetSpace target = cloud(1000000);
-    Learner learner(target, settings,
+    Learner learner(target, options,
                     Network({{kA, kA, kA}, {-kA, -kA, kA}, {-kA, kA, -kA}, {kA, -kA, -kA}},
                             {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}));
     NoProgress progress;
@@ -57,10 +57,10 @@ const Network& learned(int vertices) {
 
 /// Whole Basic Steps, signals drawn and counters learned, on a mesh that does not grow.
 void settle(benchmark::State& state, const TargetSpace& target, int vertices, int threads) {
-    Settings settings;
-    settings.target_vertices = vertices;
-    settings.threads = threads;
-    Learner learner(target, settings, learned(vertices));
+    LearnerOptions options;
+    options.grow_to = vertices;
+    options.threads = threads;
+    Learner learner(target, options, learned(vertices));
     NoProgress progress;
     learner.settle(1, progress);  // into order and into the caches
     const std::int64_t before = learner.signals();

@@ -10,6 +10,7 @@
 #include "bytes.h"
 #include "tests/unit/support/shapes.h"
 #include "vcg_core/learning/learner.h"
+#include "vcg_core/options_from_settings.h"
 
 namespace {
 
@@ -94,7 +95,7 @@ void run(const Settings& settings) {
         return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
     }();
     constexpr float kA = 0.1F;
-    Learner learner(target, settings,
+    Learner learner(target, learner_options_from(settings),
                     Network({{kA, kA, kA}, {-kA, -kA, kA}, {-kA, kA, -kA}, {kA, -kA, -kA}},
                             {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}));
     Impatient progress(!waits_for_the_bound(settings, learner.signal_bound()));

@@ -33,7 +33,7 @@ struct EightSteps::Kernels {
     NEURALMESH_MULTIVERSIONED static void move_winners(EightSteps& p, const vcg::Point3f* signals,
                                                        float alpha_w);
     NEURALMESH_MULTIVERSIONED static void smooth(EightSteps& p, int sweeps, float alpha_l);
-    NEURALMESH_MULTIVERSIONED static void take_normals(const EightSteps& p, EightVectors& normals);
+    NEURALMESH_MULTIVERSIONED static void normals(const EightSteps& p, EightVectors& normals);
     NEURALMESH_MULTIVERSIONED static void displacements(const EightSteps& p, Four* const* to);
 };
 
@@ -183,7 +183,7 @@ NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::smooth(EightSteps& p, int sw
     for (int i = 0; i < p.valence_ + 2; ++i) p.at_[i] = from[i];
 }
 
-NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::take_normals(const EightSteps& p, EightVectors& normals) {
+NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::normals(const EightSteps& p, EightVectors& normals) {
     const EightVectors w = p.winner_at_;
     EightVectors sum{};
     EightVectors a = p.at_[1];
@@ -236,7 +236,7 @@ void EightSteps::move_winners(const vcg::Point3f* signals, float alpha_w) {
 
 void EightSteps::smooth(int sweeps, float alpha_l) { Kernels::smooth(*this, sweeps, alpha_l); }
 
-void EightSteps::take_normals(EightVectors& normals) const { Kernels::take_normals(*this, normals); }
+void EightSteps::normals(EightVectors& n) const { Kernels::normals(*this, n); }
 
 void EightSteps::displacements(Four* const* to) const { Kernels::displacements(*this, to); }
 

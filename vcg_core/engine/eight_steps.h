@@ -35,7 +35,7 @@ public:
     /// direction: L = mean of the neighbours - v, L_t = L - (L.n) n, v <- v + alpha_L L_t.
     void smooth(int sweeps, float alpha_l);
     /// n_w, the sum of the unit normals of the faces around each winner, normalised; 0 if they cancel.
-    void take_normals(EightVectors& normals) const;
+    void normals(EightVectors& n) const;
 
     int valence() const { return valence_; }
     /// By what every lane moves its winner and its ring: \p to[lane][0] the winner, \p to[lane][1 + i] ring

@@ -4,13 +4,15 @@
 // An array of numbers that is multiplied by a factor in O(1), without overflow or underflow.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <vector>
 
+#include "vcg_core/base/bits.h"
 #include "vcg_core/base/indexed.h"
 #include "vcg_core/base/permuted.h"
+#include "vcg_core/base/platform.h"
 
 namespace neuralmesh {
 
@@ -68,36 +70,26 @@ public:
     void set_zero(int i) { keys_[i] = kZero; }
     /// Number i becomes that of \p order[i], or 0 where that is -1. O(n).
     void renumber(const std::vector<std::int32_t>& order) { keys_ = permuted(keys_, order, kZero); }
-    void prefetch(int i) const { __builtin_prefetch(&keys_[i], 1); }
+    void prefetch(int i) const { prefetch_for_write(&keys_[i]); }
     std::size_t bytes() const { return keys_.vector().size() * sizeof(double); }
 
 private:
     static constexpr std::int64_t kExponentBias = 1023;
     static constexpr int kMantissaBits = 52;
 
-    static std::uint64_t bits_of(double x) {
-        std::uint64_t bits = 0;
-        std::memcpy(&bits, &x, sizeof bits);
-        return bits;
-    }
-    static double double_of(std::uint64_t bits) {
-        double x = 0;
-        std::memcpy(&x, &bits, sizeof x);
-        return x;
-    }
     /// 2^exponent; 0 below the range of normal numbers.
     static double power_of_two(std::int64_t exponent) {
         return exponent < 1 - kExponentBias
                    ? 0
-                   : double_of(static_cast<std::uint64_t>(exponent + kExponentBias) << kMantissaBits);
+                   : bit_cast<double>(static_cast<std::uint64_t>(exponent + kExponentBias) << kMantissaBits);
     }
     /// The key of value x 2^exponent. \p value must be a normal positive number.
     static double key_of(double value, double exponent) {
-        const std::uint64_t bits = bits_of(value);
+        const auto bits = bit_cast<std::uint64_t>(value);
         const std::int64_t own = static_cast<std::int64_t>(bits >> kMantissaBits) - kExponentBias;
         const std::uint64_t mantissa = bits & ((std::uint64_t{1} << kMantissaBits) - 1);
         return exponent + static_cast<double>(own) +
-               (double_of(mantissa | static_cast<std::uint64_t>(kExponentBias) << kMantissaBits) - 1);
+               (bit_cast<double>(mantissa | static_cast<std::uint64_t>(kExponentBias) << kMantissaBits) - 1);
     }
     /// The largest integer not above x, for |x| < 2^62.
     static std::int64_t floor_of(double x) {

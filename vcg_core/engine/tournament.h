@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "vcg_core/base/platform.h"
+
 namespace neuralmesh {
 
 /// A tournament tree: the maximum of keys that are set one by one. Each node has eight children, one cache
@@ -25,7 +27,7 @@ public:
     int highest() const;
     /// Index i gets the key of \p order[i]; it does not take part where that is -1. O(n).
     void renumber(const std::vector<std::int32_t>& order);
-    void prefetch(int i) const { __builtin_prefetch(&levels_[0][static_cast<std::size_t>(i)], 1); }
+    void prefetch(int i) const { prefetch_for_write(&levels_[0][static_cast<std::size_t>(i)]); }
     std::size_t bytes() const;
 
 private:

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vcg_core/base/permuted.h"
+#include "vcg_core/base/platform.h"
 #include "vcg_core/mesh/ring.h"
 
 namespace neuralmesh {
@@ -24,7 +25,7 @@ public:
         float& n_c = values_[w];
         n_c = alpha_fd_ * n_c + (1 - alpha_fd_) * static_cast<float>(n_delta);  // eq 6
     }
-    void prefetch(VertexId v) const { __builtin_prefetch(&values_[v], 1); }
+    void prefetch(VertexId v) const { prefetch_for_write(&values_[v]); }
     float value(VertexId v) const { return values_[v]; }
     /// As UtilityCounters::renumber().
     void renumber(const std::vector<VertexId>& order) { values_ = permuted(values_, order, 0.0F); }

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "vcg_core/base/platform.h"
 #include "vcg_core/engine/scaled_numbers.h"
 #include "vcg_core/engine/tournament.h"
 #include "vcg_core/mesh/network.h"
@@ -35,7 +36,7 @@ public:
     /// Prefetches what win(v) accesses.
     void prefetch(VertexId v) const {
         counters_.prefetch(v);
-        __builtin_prefetch(&wins_[v], 1);
+        prefetch_for_write(&wins_[v]);
         tournament_.prefetch(v);
     }
     /// The counter of v. 0 for a vertex that never won.

@@ -16,13 +16,13 @@ int main() {
     const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
     shapes::Shape sphere = shapes::icosphere(4);
     for (vcg::Point3d& p : sphere.positions) p = vcg::Point3d::Construct(target.frame().inside(p));
-    Settings settings;
-    settings.target_vertices = 2800;
-    settings.settling_signals_per_vertex = 1;
-    settings.threads = 1;  // how threads wait for each other is no matter of instructions
-    Learner learner(target, settings, referee::network_of(sphere));
+    LearnerOptions options;
+    options.grow_to = 2800;
+    options.settling_signals_per_vertex = 1;
+    options.threads = 1;  // waiting for each other costs instructions, too
+    Learner learner(target, options, referee::network_of(sphere));
     NoProgress progress;
     learner.run(0, progress);
     std::cout << learner.signals() << '\n';
-    return learner.network().vertex_count() == settings.target_vertices ? 0 : 1;
+    return learner.network().vertex_count() == options.grow_to ? 0 : 1;
 }

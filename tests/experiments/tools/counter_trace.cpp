@@ -9,6 +9,7 @@
 
 #include "tests/experiments/tools/ply_mesh.h"
 #include "vcg_core/learning/learner.h"
+#include "vcg_core/options_from_settings.h"
 #include "vcg_core/shell/shell.h"
 
 namespace {
@@ -66,7 +67,7 @@ int run(int argc, char** argv) {
     NoProgress nobody;
     Random random(1);
     const StartMesh shell = shell_of(target, ShellOptions(), random, nobody);
-    Learner learner(target, settings, Network(shell.positions, shell.faces));
+    Learner learner(target, learner_options_from(settings), Network(shell.positions, shell.faces));
     Trace trace(learner);
     learner.run(kSignalsToLand, trace);
     return 0;

@@ -78,14 +78,14 @@ TEST(BatchLimit, GrowsAgainWhenTheWinsHaveSpread) {
 /// What happens in the learner: most signals at one vertex make its batches short.
 TEST(BatchLimit, ShortensTheLearnersBatches) {
     for (const bool crowded : {false, true}) {
-        Settings settings;
-        settings.target_vertices = 700;
+        LearnerOptions options;
+        options.grow_to = 700;
         const Cloud cloud = crowded ? crowded_sphere(0) : shapes::sphere_cloud(2000);
         const TargetSpace target = soundness::target_of(cloud);
         const shapes::Shape start = shapes::icosphere(3);
         std::vector<vcg::Point3f> positions;
         for (const vcg::Point3d& p : start.positions) positions.push_back(target.frame().inside(p));
-        Learner learner(target, settings, Network(positions, start.faces));
+        Learner learner(target, options, Network(positions, start.faces));
         const int most = learner.batch_size();
         EXPECT_EQ(most, 642 / Learner::kVerticesPerSignal);
         NoProgress progress;

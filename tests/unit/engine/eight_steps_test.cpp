@@ -62,10 +62,10 @@ void take(const Network& network, const std::vector<VertexId>& winners,
     vcg::Point3f towards[EightSteps::kLanes];
     std::copy(signals.begin(), signals.end(), towards);
     patches.gather(network, winners.data(), static_cast<int>(winners.size()));
-    patches.take_normals(steps.normal);
+    patches.normals(steps.normal);
     patches.move_winners(towards, rates.learning_rate);
     patches.smooth(rates.smoothing_steps, rates.smoothing_rate);
-    patches.take_normals(steps.normal_after);
+    patches.normals(steps.normal_after);
     Four* to[EightSteps::kLanes];
     for (int lane = 0; lane < EightSteps::kLanes; ++lane) to[lane] = steps.moved[lane];
     patches.displacements(to);

@@ -20,12 +20,12 @@ namespace {
 struct Learned {
     Learned(const shapes::Cloud& cloud, int vertices)
         : target(TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; })) {
-        settings.target_vertices = vertices;
-        settings.utility_counter = kSignalCounter;
-        settings.settling_signals_per_vertex = 0;
+        options.grow_to = vertices;
+        options.utility_increment = UtilityIncrement::one;
+        options.settling_signals_per_vertex = 0;
         shapes::Shape start = shapes::icosphere(1);
         for (vcg::Point3d& p : start.positions) p *= 0.3;
-        Learner learner(target, settings, referee::network_of(start));
+        Learner learner(target, options, referee::network_of(start));
         NoProgress progress;
         learner.run(100, progress);
         CreaseMeasure statistic;
@@ -51,7 +51,7 @@ struct Learned {
     }
 
     TargetSpace target;
-    Settings settings;
+    LearnerOptions options;
     Network network;
     std::vector<float> values;
 };

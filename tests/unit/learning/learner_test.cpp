@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "tests/unit/reference/reference_learner.h"
 #include "tests/unit/support/referee.h"
@@ -46,29 +47,31 @@ void expect_alike(const Learner& learner, const reference::ReferenceLearner& exp
 
 /// Runs are short, and short of the moment when a crumpled mesh (its star nearly without area) makes float
 /// and double part: from there both learn, but not the same mesh.
-void compare_runs(const shapes::Cloud& cloud, const Network& start, Settings settings, int signals,
+void compare_runs(const shapes::Cloud& cloud, const Network& start, LearnerOptions options, int signals,
                   int batch = 1) {
-    settings.target_vertices = 100000;
+    options.grow_to = 100000;
     const TargetSpace target = target_of(cloud);
-    Learner learner(target, settings, start);
-    reference::ReferenceLearner expected(start, settings);
+    Learner learner(target, options, start);
+    reference::ReferenceLearner expected(start, options);
     Random random(3);
     int last_collapse = 0;
     int at_collapse = start.vertex_count();
     for (int i = 0; i < signals;) {
         std::vector<vcg::Point3f> drawn;
         while (static_cast<int>(drawn.size()) < batch) drawn.push_back(target.sample(random));
-        learner.basic_steps(drawn.data(), batch);
-        expected.basic_steps(drawn);
-        for (int step = 0; step < batch; ++step) {
-            learner.learn_counters(step);
-            expected.learn_counters(static_cast<std::size_t>(step));
-            if (++i % settings.signals_per_split != 0) continue;
+        const std::vector<StepResult>& steps = learner.basic_steps(drawn.data(), batch);
+        const std::vector<BasicStep>& expected_steps = expected.basic_steps(drawn);
+        ASSERT_EQ(steps.size(), drawn.size());
+        for (std::size_t step = 0; step < drawn.size(); ++step) {
+            ASSERT_EQ(steps[step].winner, expected_steps[step].winner) << "at signal " << i;
+            learner.learn_counters(steps[step]);
+            expected.learn_counters(expected_steps[step]);
+            if (++i % options.signals_per_split != 0) continue;
             ASSERT_EQ(learner.vertex_split(), expected.vertex_split()) << "at signal " << i;
             ASSERT_EQ(learner.network().faces(), expected.network().faces())
                 << "after the split at signal " << i;
         }
-        if (i - last_collapse >= at_collapse * settings.signals_per_collapse) {
+        if (i - last_collapse >= at_collapse * options.signals_per_collapse) {
             ASSERT_EQ(learner.half_edge_collapse(), expected.half_edge_collapse()) << "at signal " << i;
             ASSERT_EQ(learner.network().faces(), expected.network().faces())
                 << "after the collapse at signal " << i;
@@ -84,54 +87,54 @@ void compare_runs(const shapes::Cloud& cloud, const Network& start, Settings set
 }
 
 TEST(Learner, IsTheReferenceOnASphere) {
-    Settings settings;
-    settings.signals_per_split = 40;
-    compare_runs(shapes::sphere_cloud(2000), start_of(shapes::icosphere(1), 0.25), settings, 4000);
+    LearnerOptions options;
+    options.signals_per_split = 40;
+    compare_runs(shapes::sphere_cloud(2000), start_of(shapes::icosphere(1), 0.25), options, 4000);
 }
 
 TEST(Learner, IsTheReferenceOnATorusWithTheSignalCounter) {
-    Settings settings;
-    settings.utility_counter = kSignalCounter;
-    settings.signals_per_split = 40;
-    compare_runs(shapes::torus_cloud(2000, 0.02), start_of(shapes::torus_grid(10, 6), 0.3), settings, 4000);
+    LearnerOptions options;
+    options.utility_increment = UtilityIncrement::one;
+    options.signals_per_split = 40;
+    compare_runs(shapes::torus_cloud(2000, 0.02), start_of(shapes::torus_grid(10, 6), 0.3), options, 4000);
 }
 
 TEST(Learner, IsTheReferenceByTheLetterOfThePaper) {
-    Settings settings;
-    settings.min_wins_per_split = 0;
-    settings.signals_per_split = 30;
-    settings.signals_per_collapse = 4;
-    compare_runs(shapes::box_cloud(2000), start_of(shapes::icosphere(1), 0.25), settings, 1200);
+    LearnerOptions options;
+    options.min_wins_per_split = 0;
+    options.signals_per_split = 30;
+    options.signals_per_collapse = 4;
+    compare_runs(shapes::box_cloud(2000), start_of(shapes::icosphere(1), 0.25), options, 1200);
 }
 
 TEST(Learner, IsTheReferenceFromATetrahedron) {
-    Settings settings;
-    settings.utility_counter = kSignalCounter;
-    compare_runs(shapes::sphere_cloud(2000, 0.01), start_of(shapes::tetrahedron(), 0.1), settings, 1500);
+    LearnerOptions options;
+    options.utility_increment = UtilityIncrement::one;
+    compare_runs(shapes::sphere_cloud(2000, 0.01), start_of(shapes::tetrahedron(), 0.1), options, 1500);
 }
 
 TEST(Learner, IsTheReferenceInBatches) {
-    Settings settings;
-    settings.signals_per_split = 40;
-    settings.min_wins_per_split = 5;
+    LearnerOptions options;
+    options.signals_per_split = 40;
+    options.min_wins_per_split = 5;
     for (const int threads : {1, 3}) {
-        settings.threads = threads;
-        compare_runs(shapes::sphere_cloud(2000), start_of(shapes::icosphere(1), 0.25), settings, 2600, 13);
-        compare_runs(shapes::torus_cloud(2000, 0.02), start_of(shapes::torus_grid(20, 12), 0.3), settings,
+        options.threads = threads;
+        compare_runs(shapes::sphere_cloud(2000), start_of(shapes::icosphere(1), 0.25), options, 2600, 13);
+        compare_runs(shapes::torus_cloud(2000, 0.02), start_of(shapes::torus_grid(20, 12), 0.3), options,
                      1600, 160);
     }
 }
 
-/// With regions, and with signals drawn by one thread while the other learns the counters.
+/// With slabs, and with signals drawn by one thread while the other learns the counters.
 TEST(Learner, SettlesAlikeOnOneThreadAndOnTwo) {
     const TargetSpace target = target_of(shapes::torus_cloud(5000));
     NoProgress progress;
-    Settings settings;
-    settings.threads = 1;
-    Learner alone(target, settings, start_of(shapes::torus_grid(70, 50), 0.3));
+    LearnerOptions options;
+    options.threads = 1;
+    Learner alone(target, options, start_of(shapes::torus_grid(70, 50), 0.3));
     ASSERT_TRUE(alone.settle(1, progress));
-    settings.threads = 2;
-    Learner together(target, settings, start_of(shapes::torus_grid(70, 50), 0.3));
+    options.threads = 2;
+    Learner together(target, options, start_of(shapes::torus_grid(70, 50), 0.3));
     ASSERT_TRUE(together.settle(1, progress));
     EXPECT_EQ(together.signals(), alone.signals());
     for (VertexId v = 0; v < alone.network().slot_count(); ++v) {
@@ -143,32 +146,32 @@ TEST(Learner, SettlesAlikeOnOneThreadAndOnTwo) {
 
 TEST(Learner, TakesSignalsOneByOneToTheLetter) {
     const TargetSpace target = target_of(shapes::sphere_cloud(100));
-    Settings settings;
+    LearnerOptions options;
     const Network start = start_of(shapes::icosphere(3), 0.25);
-    EXPECT_EQ(Learner(target, settings, start).batch_size(), 642 / Learner::kVerticesPerSignal);
-    settings.min_wins_per_split = 0;
-    EXPECT_EQ(Learner(target, settings, start).batch_size(), 1);
+    EXPECT_EQ(Learner(target, options, start).batch_size(), 642 / Learner::kVerticesPerSignal);
+    options.min_wins_per_split = 0;
+    EXPECT_EQ(Learner(target, options, start).batch_size(), 1);
 }
 
 TEST(Learner, RefusesAStartLargerThanTheTarget) {
     const TargetSpace target = target_of(shapes::sphere_cloud(100));
-    Settings settings;
-    settings.target_vertices = 41;
-    EXPECT_THROW(Learner(target, settings, start_of(shapes::icosphere(1), 0.2)), SettingError);
-    settings.target_vertices = 42;
-    EXPECT_NO_THROW(Learner(target, settings, start_of(shapes::icosphere(1), 0.2)));
+    LearnerOptions options;
+    options.grow_to = 41;
+    EXPECT_THROW(Learner(target, options, start_of(shapes::icosphere(1), 0.2)), SettingError);
+    options.grow_to = 42;
+    EXPECT_NO_THROW(Learner(target, options, start_of(shapes::icosphere(1), 0.2)));
 }
 
 TEST(Learner, StaysSoundThroughEveryStepOfARun) {
     for (const int min_wins : {0, 30}) {
         for (const shapes::Shape& shape : {shapes::tetrahedron(), shapes::torus_grid(8, 5)}) {
-            Settings settings;
-            settings.min_wins_per_split = min_wins;
-            settings.signals_per_split = 20;
-            settings.signals_per_collapse = 3;
+            LearnerOptions options;
+            options.min_wins_per_split = min_wins;
+            options.signals_per_split = 20;
+            options.signals_per_collapse = 3;
             const TargetSpace target = target_of(shapes::torus_cloud(3000, 0.01));
             const Network start = start_of(shape, 0.2);
-            Learner learner(target, settings, start);
+            Learner learner(target, options, start);
             Random random(4);
             for (int i = 1; i <= 12000; ++i) {
                 learner.basic_step(target.sample(random));
@@ -184,13 +187,13 @@ TEST(Learner, StaysSoundThroughEveryStepOfARun) {
 }
 
 TEST(Learner, ReachesItsTargetOnAnOpenMeshToo) {
-    Settings settings;
-    settings.target_vertices = 300;
+    LearnerOptions options;
+    options.grow_to = 300;
     const TargetSpace target = target_of(shapes::plane_cloud(3000));
     NoProgress progress;
     for (const shapes::Shape& shape : {shapes::grid(2, 2), shapes::grid(5, 5), shapes::tube(5, 3)}) {
         const Network start = start_of(shape, 0.5);
-        Learner learner(target, settings, start);
+        Learner learner(target, options, start);
         EXPECT_EQ(learner.run(0, progress), StopReason::target_reached);
         EXPECT_EQ(learner.network().vertex_count(), 300);
         EXPECT_EQ(learner.network().validate(), "");
@@ -220,9 +223,9 @@ public:
 
 TEST(Learner, ReportsHowMuchOfTheRunIsDone) {
     const TargetSpace target = target_of(shapes::sphere_cloud(2000));
-    Settings settings;
-    settings.target_vertices = 900;
-    Learner learner(target, settings, start_of(shapes::icosphere(3), 0.25));
+    LearnerOptions options;
+    options.grow_to = 900;
+    Learner learner(target, options, start_of(shapes::icosphere(3), 0.25));
     Fractions progress;
     EXPECT_EQ(learner.run(100, progress), StopReason::target_reached);
     EXPECT_GT(progress.settling, 100) << "at the start mesh and at the end";
@@ -233,11 +236,11 @@ TEST(Learner, ReportsHowMuchOfTheRunIsDone) {
 
 TEST(Learner, ObservesNothingOfAStartThatIsToGrow) {
     const TargetSpace target = target_of(shapes::box_cloud(2000));
-    Settings settings;
-    settings.feature_measure = kCreaseMeasure;
-    settings.target_vertices = 643;
-    settings.settling_signals_per_vertex = 0;
-    Learner learner(target, settings, start_of(shapes::icosphere(3), 0.25));
+    LearnerOptions options;
+    options.observe_creases = true;
+    options.grow_to = 643;
+    options.settling_signals_per_vertex = 0;
+    Learner learner(target, options, start_of(shapes::icosphere(3), 0.25));
     NoProgress progress;
     ASSERT_TRUE(learner.settle(1, progress, false));
     EXPECT_EQ(learner.crease_measure().moments(), 0);

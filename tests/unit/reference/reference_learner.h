@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "vcg_core/learning/basic_step.h"
+#include "vcg_core/learning/learner_options.h"
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/settings.h"
 
 namespace neuralmesh::reference {
 
@@ -26,15 +26,15 @@ inline Positions positions_of(const Network& network) {
 /// Keeps a network of its own, whose connectivity Network's operations change; decides everything itself.
 class ReferenceLearner {
 public:
-    ReferenceLearner(Network start, const Settings& settings)
-        : network_(std::move(start)), settings_(settings), positions_(positions_of(network_)) {
+    ReferenceLearner(Network start, const LearnerOptions& options)
+        : network_(std::move(start)), options_(options), positions_(positions_of(network_)) {
         grow();
     }
 
     /// Computes all steps from the same state of the network, then adds up their displacements.
-    void basic_steps(const std::vector<vcg::Point3f>& signals) {
-        const StepRates rates{static_cast<float>(settings_.learning_rate),
-                              static_cast<float>(settings_.smoothing_rate), settings_.smoothing_steps};
+    const std::vector<BasicStep>& basic_steps(const std::vector<vcg::Point3f>& signals) {
+        const StepRates rates{static_cast<float>(options_.learning_rate),
+                              static_cast<float>(options_.smoothing_rate), options_.smoothing_steps};
         steps_.clear();
         Positions sum = positions_;
         for (const vcg::Point3f& signal : signals) {
@@ -52,21 +52,22 @@ public:
         positions_ = sum;
         for (const VertexId v : network_.vertices())
             network_.set_position(v, vcg::Point3f::Construct(positions_[v]));
+        return steps_;
     }
 
-    void learn_counters(std::size_t step) {
-        const VertexId w = steps_[step].winner;
-        deltas_.push_back(steps_[step].delta);
-        const auto window = static_cast<std::size_t>(settings_.normalization_window);
+    void learn_counters(const BasicStep& step) {
+        const VertexId w = step.winner;
+        deltas_.push_back(step.delta);
+        const auto window = static_cast<std::size_t>(options_.normalization_window);
         const auto from =
-            deltas_.size() > window ? deltas_.end() - settings_.normalization_window : deltas_.begin();
+            deltas_.size() > window ? deltas_.end() - options_.normalization_window : deltas_.begin();
         const double mean =
             std::accumulate(from, deltas_.end(), 0.0) / static_cast<double>(deltas_.end() - from);
         const double n_delta = mean > 0 ? deltas_.back() / mean : 1;  // eq 3
         const auto i = static_cast<std::size_t>(w);
-        utility[i] += settings_.utility_counter == kNormalCounter ? n_delta : 1;  // eq 4
-        for (double& counter : utility) counter *= settings_.counter_decay;
-        feature[i] = settings_.feature_decay * feature[i] + (1 - settings_.feature_decay) * n_delta;  // eq 6
+        utility[i] += options_.utility_increment == UtilityIncrement::n_delta ? n_delta : 1;  // eq 4
+        for (double& counter : utility) counter *= options_.counter_decay;
+        feature[i] = options_.feature_decay * feature[i] + (1 - options_.feature_decay) * n_delta;  // eq 6
         ++wins[i];
         won_since_collapse_[i] = true;
     }
@@ -77,7 +78,7 @@ public:
             VertexId best = -1;
             for (VertexId v = 0; v < network_.slot_count(); ++v) {
                 const auto i = static_cast<std::size_t>(v);
-                if (!network_.alive(v) || tried[i] || wins[i] < settings_.min_wins_per_split || wins[i] == 0)
+                if (!network_.alive(v) || tried[i] || wins[i] < options_.min_wins_per_split || wins[i] == 0)
                     continue;
                 if (best < 0 || utility[i] > utility[static_cast<std::size_t>(best)]) best = v;
             }
@@ -97,7 +98,7 @@ public:
             network_.collapse(v, kept);
             utility[i] = 0;
             wins[i] = 0;
-            if (settings_.min_wins_per_split != 0) regularise(kept);
+            if (options_.min_wins_per_split != 0) regularise(kept);
             ++removed;
         }
         won_since_collapse_.assign(won_since_collapse_.size(), false);
@@ -168,8 +169,8 @@ private:
         utility[j] = whole - utility[i];
         feature[j] = feature[i];
         wins[i] = wins[j] = 0;
-        won_since_collapse_[j] = settings_.min_wins_per_split != 0;
-        if (settings_.min_wins_per_split != 0)
+        won_since_collapse_[j] = options_.min_wins_per_split != 0;
+        if (options_.min_wins_per_split != 0)
             for (const VertexId w : {v, u, ends[1], ends[0]}) regularise(w);
         return true;
     }
@@ -219,7 +220,7 @@ private:
     }
 
     Network network_;
-    Settings settings_;
+    LearnerOptions options_;
     Positions positions_;
     std::vector<double> deltas_;
     std::vector<BasicStep> steps_;  ///< of the last batch

@@ -15,6 +15,7 @@
 #include "tests/unit/support/environment.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/learning/learner.h"
+#include "vcg_core/options_from_settings.h"
 
 namespace neuralmesh {
 namespace {
@@ -37,7 +38,7 @@ constexpr int kPatience = 400;  ///< looks, one in a thousand signals while it l
 
 /// The most signals that one growth may take: the start mesh comes down, the network grows, it settles.
 std::int64_t most_of_growth(const TargetSpace& target, const Settings& settings) {
-    const Learner learner(target, settings, referee::network_of(shapes::tetrahedron()));
+    const Learner learner(target, learner_options_from(settings), referee::network_of(shapes::tetrahedron()));
     const std::int64_t vertices = settings.target_vertices;
     const auto learning = [&](std::int64_t per_vertex) {
         return std::max<std::int64_t>(60000, per_vertex * vertices);

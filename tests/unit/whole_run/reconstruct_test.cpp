@@ -15,6 +15,7 @@
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/learning/learner.h"
+#include "vcg_core/options_from_settings.h"
 
 namespace neuralmesh {
 namespace {
@@ -278,7 +279,7 @@ void expect_run_within_bound(const Cloud& cloud, Settings settings) {
     settings.settling_signals_per_vertex = 0;
     const TargetSpace target = target_of(cloud);
     constexpr float kA = 0.1F;
-    Learner learner(target, settings,
+    Learner learner(target, learner_options_from(settings),
                     Network({{kA, kA, kA}, {-kA, -kA, kA}, {-kA, kA, -kA}, {kA, -kA, -kA}},
                             {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}));
     NoProgress progress;

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Whether a batch runs faster on one thread or on all.
+#pragma once
+
+namespace neuralmesh {
+
+/// Times batches on one thread and on all, periodically, and chooses the faster: it depends on inter-core
+/// latency and load. The choice does not change what is computed.
+class ThreadTiming {
+public:
+    /// Whether to run the next batch on all threads.
+    bool use_all_threads() const;
+    /// Reports how long that batch took.
+    void add_batch(double nanoseconds_per_signal);
+
+private:
+    int batch_ = 0;  ///< since the last trial began
+    double one_thread_ = 0;
+    double all_threads_ = 0;
+};
+
+}  // namespace neuralmesh

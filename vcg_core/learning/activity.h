@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// When each vertex was last active, for Half-Edge Collapse.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "vcg_core/base/permuted.h"
+#include "vcg_core/base/platform.h"
+#include "vcg_core/engine/basic_step_batch.h"
+#include "vcg_core/engine/batch_limit.h"
+#include "vcg_core/mesh/ring.h"
+
+namespace neuralmesh {
+
+/// The number of the signal that each vertex won last, or after which it was born.
+class Activity {
+public:
+    void resize(int slots) { last_active_.resize(slots, 0); }
+
+    /// Records the winners of a batch that starts after \p begin signals, and lets \p limit know which of
+    /// them won repeatedly. O(1) per step.
+    void record(const std::vector<StepResult>& steps, std::int64_t begin, BatchLimit& limit) {
+        const auto count = static_cast<int>(steps.size());
+        const auto winner = [&](int i) { return steps[static_cast<std::size_t>(i)].winner; };
+        for (int i = 0; i < count; ++i) {
+            prefetch_for_write(&last_active_[winner(std::min(i + kAhead, count - 1))]);
+            std::int64_t& last_active = last_active_[winner(i)];
+            if (last_active > begin) limit.repeated(winner(i));
+            last_active = begin + i + 1;
+        }
+        limit.end_batch(count);
+    }
+    void set(VertexId v, std::int64_t signal) { last_active_[v] = signal; }
+    bool active_since(VertexId v, std::int64_t signal) const { return last_active_[v] > signal; }
+    /// As UtilityCounters::renumber().
+    void renumber(const std::vector<VertexId>& order) {
+        last_active_ = permuted(last_active_, order, std::int64_t{0});
+    }
+
+private:
+    static constexpr int kAhead = 8;  ///< steps between the prefetch and the use of an entry
+
+    PerVertex<std::int64_t> last_active_;
+};
+
+}  // namespace neuralmesh

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// After how many signals the learning splits, collapses, settles and gives up.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "vcg_core/learning/learner_options.h"
+
+namespace neuralmesh {
+
+/// Signals after which growth that has not reached its goal is forced: no more collapses, no more maturity,
+/// so that every C_vs signals add a vertex. (Growth stalls where more vertices are asked for than the target
+/// space has places to win, a handful of points for instance.)
+inline std::int64_t growth_budget(const LearnerOptions& options) {
+    constexpr std::int64_t kBase = 100000;  ///< for small networks, which take their time to unfold
+    const std::int64_t per_vertex =
+        4 * std::int64_t{options.signals_per_split} + 2 * std::int64_t{options.min_wins_per_split};
+    return per_vertex * options.grow_to + kBase;
+}
+
+/// Signals after which growth is cut short. Leaves twice what forced growth needs.
+inline std::int64_t signal_bound(const LearnerOptions& options) {
+    return growth_budget(options) + 2 * std::int64_t{options.signals_per_split} * options.grow_to;
+}
+
+/// Signals of a settling phase of \p per_vertex signals per vertex: at least 60,000 unless \p per_vertex is
+/// 0.
+inline std::int64_t settling_signals(int per_vertex, int vertices) {
+    constexpr std::int64_t kLeast = 60000;
+    return per_vertex == 0 ? 0 : std::max(std::int64_t{per_vertex} * vertices, kLeast);
+}
+
+/// When the steps of growth are due. All arguments count signals since the start of the learning.
+class GrowthSchedule {
+public:
+    GrowthSchedule(const LearnerOptions& options, int vertices)
+        : signals_per_split_(options.signals_per_split),
+          signals_per_collapse_(options.signals_per_collapse),
+          growth_budget_(growth_budget(options)),
+          signal_bound_(signal_bound(options)),
+          vertices_at_collapse_(vertices) {}
+
+    /// Growth begins: the budget and the bound count from here.
+    void begin(std::int64_t signals) { begin_ = signals; }
+    bool split_due(std::int64_t signals) const { return signals % signals_per_split_ == 0; }
+    bool collapse_due(std::int64_t signals) const {
+        return signals - last_collapse_ >= std::int64_t{vertices_at_collapse_} * signals_per_collapse_;
+    }
+    void collapsed(std::int64_t signals, int vertices) {
+        last_collapse_ = signals;
+        vertices_at_collapse_ = vertices;
+    }
+    std::int64_t last_collapse() const { return last_collapse_; }
+    bool stalled(std::int64_t signals) const { return signals >= begin_ + growth_budget_; }
+    bool exhausted(std::int64_t signals) const { return signals >= begin_ + signal_bound_; }
+
+private:
+    int signals_per_split_;
+    int signals_per_collapse_;
+    std::int64_t growth_budget_;
+    std::int64_t signal_bound_;
+    std::int64_t begin_ = 0;
+    std::int64_t last_collapse_ = 0;
+    int vertices_at_collapse_;
+};
+
+}  // namespace neuralmesh

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The constants of the learning, with the paper's symbols.
+#pragma once
+
+namespace neuralmesh {
+
+/// What is added to the winner's utility counter.
+enum class UtilityIncrement {
+    n_delta,  ///< the normal counter: the mesh gets denser where the surface bends
+    one,      ///< the signal counter: the density of the mesh follows that of the cloud
+};
+
+/// The first group has the paper's values (eq 9), the second has symbols but no values in the paper's list,
+/// the third is not in the paper.
+struct LearnerOptions {
+    double learning_rate = 0.06;    ///< alpha_w
+    double smoothing_rate = 0.05;   ///< alpha_L
+    int smoothing_steps = 5;        ///< C_L
+    int signals_per_split = 100;    ///< C_vs
+    int signals_per_collapse = 10;  ///< C_ec, signals per vertex between two Half-Edge Collapse Steps
+    double counter_decay = 0.95;    ///< alpha_nc
+    double feature_decay = 0.95;    ///< alpha_fd
+
+    int normalization_window = 1000;  ///< C_delta
+    double stop_below_turn = 0;       ///< alpha_t, in degrees as NormalTurn measures; 0: off
+    UtilityIncrement utility_increment = UtilityIncrement::n_delta;
+
+    int grow_to = 10000;  ///< vertices at which growth ends
+    /// Wins since its birth or last split that a vertex needs before it is split. 0 is the paper to the
+    /// letter: no maturity, no batches, no edge flips.
+    int min_wins_per_split = 30;
+    int settling_signals_per_vertex = 60;  ///< signals after the last split
+    bool observe_creases = false;          ///< settling fills Learner::crease_measure()
+    int random_seed = 1;
+    int threads = 0;  ///< 0: as many as the machine has
+};
+
+}  // namespace neuralmesh

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The network with everything that learning stores per vertex.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vcg_core/engine/winner_search.h"
+#include "vcg_core/learning/activity.h"
+#include "vcg_core/learning/feature_counter.h"
+#include "vcg_core/learning/learner_options.h"
+#include "vcg_core/learning/utility_counter.h"
+#include "vcg_core/mesh/network.h"
+
+namespace neuralmesh {
+
+/// What the steps of the paper read and change. Change the connectivity only through the members below: they
+/// keep the winner search and the counters consistent with the network.
+struct LearningState {
+    LearningState(const LearnerOptions& the_options, Network start);
+    LearningState(const LearningState&) = delete;
+    LearningState& operator=(const LearningState&) = delete;
+
+    /// Network::split(); the twins share the utility counter (see eq 5), the new one inherits the feature
+    /// counter.
+    VertexId split(VertexId v, int first, int count, const vcg::Point3f& where);
+    /// Network::collapse().
+    void collapse(VertexId gone, VertexId kept);
+    /// Flips edges of \p v where that brings valences closer to 6 and hardly changes the surface. Does
+    /// nothing to the letter of the paper.
+    void regularise(VertexId v);
+    /// Network::renumber().
+    void renumber(const std::vector<VertexId>& order);
+
+    bool to_the_letter() const { return options.min_wins_per_split == 0; }
+
+    const LearnerOptions options;
+    Network network;
+    WinnerSearch search;
+    UtilityCounters utility_counters;
+    FeatureCounters feature_counters;
+    Activity activity;
+    std::int64_t signals = 0;  ///< learned so far
+    std::int64_t splits = 0;
+    std::int64_t collapses = 0;
+};
+
+}  // namespace neuralmesh

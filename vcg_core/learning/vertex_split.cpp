@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/learning/vertex_split.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+
+#include "vcg_core/mesh/valence_flips.h"
+
+namespace neuralmesh {
+
+namespace {
+
+constexpr int kMostTried = 32;  ///< vertices
+
+/// The edges of a star that go to the new vertex, by position in the ring: \p count of them from \p first on.
+struct Half {
+    int first;
+    int count;  ///< 0: the star cannot be halved
+};
+
+int longest_edge(const Network& network, VertexId v) {
+    const Ring& ring = network.ring(v);
+    int longest = 0;
+    float length = -1;
+    for (int i = 0; i < ring.valence; ++i) {
+        const float l = (network.position(ring[i]) - network.position(v)).SquaredNorm();
+        if (l <= length) continue;
+        length = l;
+        longest = i;
+    }
+    return longest;
+}
+
+/// Sum of valence_irregularity() over the four vertices whose valence the split changes.
+int irregularity_after(const Network& network, VertexId v, const Half& half) {
+    const Ring& ring = network.ring(v);
+    const auto end_valence = [&](int i) { return network.ring(ring[i % ring.valence]).valence + 1; };
+    return valence_irregularity(half.count + 1) + valence_irregularity(ring.valence - half.count + 3) +
+           valence_irregularity(end_valence(half.first)) +
+           valence_irregularity(end_valence(half.first + half.count - 1));
+}
+
+/// Walking "equally" both ways leaves one edge more or less on either side open: of the choices, this takes
+/// the one with the most regular valences.
+Half halve_star(const Network& network, VertexId v, int longest) {
+    const Ring& ring = network.ring(v);
+    const int k = ring.valence;
+    Half best{0, 0};
+    int least = std::numeric_limits<int>::max();
+    for (int back = 1; back <= k / 2; ++back) {
+        for (int ahead = 1; ahead <= k / 2; ++ahead) {
+            if (std::abs(back - ahead) > 1 || std::abs(2 * (back + ahead) - std::max(k, 3)) > 1) continue;
+            Half half{(longest - back + k) % k, back + ahead + 1};
+            if (ring.open != 0) {  // an open star ends at its boundary edges
+                half.first = std::max(longest - back, 0);
+                half.count = std::min(longest + ahead, k - 1) - half.first + 1;
+            }
+            if (!network.can_split(v, half.first, half.count)) continue;
+            const int irregularity = irregularity_after(network, v, half);
+            if (irregularity >= least) continue;
+            least = irregularity;
+            best = half;
+        }
+    }
+    return best;
+}
+
+bool split_along_longest_edge(LearningState& state, VertexId v) {
+    const Network& network = state.network;
+    const int longest = longest_edge(network, v);
+    const Half half = halve_star(network, v, longest);
+    if (half.count == 0) return false;
+    const Ring& ring = network.ring(v);
+    const VertexId e1 = ring[(half.first + half.count - 1) % ring.valence];
+    const VertexId e2 = ring[half.first];
+    const vcg::Point3f midpoint = (network.position(v) + network.position(ring[longest])) / 2;
+    const VertexId u = state.split(v, half.first, half.count, midpoint);
+    for (const VertexId w : {v, u, e1, e2}) state.regularise(w);
+    return true;
+}
+
+}  // namespace
+
+bool vertex_split(LearningState& state) {
+    for (int tried = 0; tried < kMostTried; ++tried) {
+        const VertexId v = state.utility_counters.highest();
+        if (v < 0) return false;
+        if (split_along_longest_edge(state, v)) return true;
+        state.utility_counters.defer(v);
+    }
+    return false;
+}
+
+}  // namespace neuralmesh
