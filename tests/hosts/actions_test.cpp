@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What the filter tells its host, without a host.
+// Figures, log lines and sentences of the filter, without a host.
 #include "filter_neuralmesh/actions.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// check_mesh MESH [REFERENCE]: what vcglib itself says of a mesh file, as one JSON object. With a reference
-// (a surface or a cloud) also the RMS and largest distances both ways, in % of the reference's diagonal.
+// check_mesh MESH [REFERENCE]: prints vcglib's measures of a mesh file as one JSON object: size, topology,
+// volume. With a reference (a surface or a cloud) also the RMS and largest distance in both directions, in %
+// of the reference's diagonal.
 #include <vcg/complex/algorithms/clean.h>
 #include <vcg/complex/algorithms/point_sampling.h>
 #include <vcg/complex/complex.h>
@@ -39,13 +40,15 @@ int load(Mesh& mesh, const std::string& path) {
 }
 
 template <class Value>
-void tell(const char* key, const Value& value) {
+void print(const char* key, const Value& value) {
     std::cout << ", \"" << key << "\": " << value;
 }
 
-void tell(const char* key, bool value) { std::cout << ", \"" << key << "\": " << (value ? "true" : "false"); }
+void print(const char* key, bool value) {
+    std::cout << ", \"" << key << "\": " << (value ? "true" : "false");
+}
 
-/// The share of the vertices with 5, 6 or 7 neighbours, in %.
+/// Percentage of the vertices that have valence 5, 6 or 7.
 double regular_valences(Mesh& mesh) {
     Mesh::PerVertexAttributeHandle<int> valence = vcg::tri::Allocator<Mesh>::AddPerVertexAttribute<int>(mesh);
     for (Vertex& v : mesh.vert) valence[v] = 0;
@@ -56,22 +59,22 @@ double regular_valences(Mesh& mesh) {
     return 100.0 * regular / mesh.vn;
 }
 
-void tell_topology(Mesh& mesh) {
+void print_topology(Mesh& mesh) {
     vcg::tri::UpdateTopology<Mesh>::FaceFace(mesh);
-    tell("watertight", Clean::IsWaterTight(mesh));
-    tell("non_manifold_edges", Clean::CountNonManifoldEdgeFF(mesh));
-    tell("non_manifold_vertices", Clean::CountNonManifoldVertexFF(mesh));
-    tell("oriented", Clean::IsCoherentlyOrientedMesh(mesh));
-    tell("genus", Clean::MeshGenus(mesh));
-    tell("components", Clean::CountConnectedComponents(mesh));
-    tell("boundary_loops", Clean::CountHoles(mesh));
-    tell("unreferenced_vertices", Clean::CountUnreferencedVertex(mesh));
-    tell("volume", vcg::tri::Stat<Mesh>::ComputeMeshVolume(mesh));
-    tell("regular_valences", regular_valences(mesh));
+    print("watertight", Clean::IsWaterTight(mesh));
+    print("non_manifold_edges", Clean::CountNonManifoldEdgeFF(mesh));
+    print("non_manifold_vertices", Clean::CountNonManifoldVertexFF(mesh));
+    print("oriented", Clean::IsCoherentlyOrientedMesh(mesh));
+    print("genus", Clean::MeshGenus(mesh));
+    print("components", Clean::CountConnectedComponents(mesh));
+    print("boundary_loops", Clean::CountHoles(mesh));
+    print("unreferenced_vertices", Clean::CountUnreferencedVertex(mesh));
+    print("volume", vcg::tri::Stat<Mesh>::ComputeMeshVolume(mesh));
+    print("regular_valences", regular_valences(mesh));
 }
 
 /// Distances from \p from (its surface, or its points if it has no faces) to \p to.
-void tell_distance(const std::string& name, Mesh& from, Mesh& to, double unit) {
+void print_distance(const std::string& name, Mesh& from, Mesh& to, double unit) {
     vcg::tri::UpdateNormal<Mesh>::PerVertexNormalizedPerFaceNormalized(from);
     vcg::tri::HausdorffSampler<Mesh> sampler(&to);
     sampler.dist_upper_bound = to.bbox.Diag() + from.bbox.Diag();
@@ -82,8 +85,8 @@ void tell_distance(const std::string& name, Mesh& from, Mesh& to, double unit) {
         vcg::tri::SurfaceSampling<Mesh, vcg::tri::HausdorffSampler<Mesh>>::Montecarlo(from, sampler,
                                                                                       kSamples);
     }
-    tell(("rms_" + name).c_str(), 100.0 * static_cast<double>(sampler.getRMSDist()) / unit);
-    tell(("max_" + name).c_str(), 100.0 * static_cast<double>(sampler.getMaxDist()) / unit);
+    print(("rms_" + name).c_str(), 100.0 * static_cast<double>(sampler.getRMSDist()) / unit);
+    print(("max_" + name).c_str(), 100.0 * static_cast<double>(sampler.getMaxDist()) / unit);
 }
 
 void check(const std::string& path, const std::string& reference_path) {
@@ -91,17 +94,17 @@ void check(const std::string& path, const std::string& reference_path) {
     const int mask = load(mesh, path);
     std::cout.precision(9);
     std::cout << "{\"vertices\": " << mesh.vn;
-    tell("faces", mesh.fn);
-    tell("quality", (mask & Mask::IOM_VERTQUALITY) != 0);
-    tell("color", (mask & Mask::IOM_VERTCOLOR) != 0);
-    tell("selected", vcg::tri::UpdateSelection<Mesh>::VertexCount(mesh));
-    if (mesh.fn > 0) tell_topology(mesh);
+    print("faces", mesh.fn);
+    print("quality", (mask & Mask::IOM_VERTQUALITY) != 0);
+    print("color", (mask & Mask::IOM_VERTCOLOR) != 0);
+    print("selected", vcg::tri::UpdateSelection<Mesh>::VertexCount(mesh));
+    if (mesh.fn > 0) print_topology(mesh);
     if (!reference_path.empty()) {
         Mesh reference;
         load(reference, reference_path);
         const double unit = reference.bbox.Diag();
-        tell_distance("to_mesh", reference, mesh, unit);
-        tell_distance("to_reference", mesh, reference, unit);
+        print_distance("to_mesh", reference, mesh, unit);
+        print_distance("to_reference", mesh, reference, unit);
     }
     std::cout << "}\n";
 }

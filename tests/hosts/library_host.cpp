@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The filter run by MeshLab 2022.02 or 2025.07 without its window: the plugin manager of libmeshlab-common
-// checks and loads the plugin, and the filter learns a layer. Compiled per release, its symbols left to load
-// time; run_library_host.cpp starts it with
-//   LAYER OUT          the layer that inputs.py has written, the result to OUT
-//   LAYER OUT cancel   the same again and again, the host asking to stop at ever later calls
-//   LAYER OUT memory   the same again and again, out of memory at ever later allocations
-//   LAYER OUT repeat   the same more than a hundred times, and at last how much the process has grown
-//   LAYER OUT together two runs at once, and whether each gives what it gives alone
-// and prints one JSON object for each run, or the host's refusal of the plugin.
+// MeshLab 2022.02 or 2025.07 without its window: the plugin manager of libmeshlab-common checks and loads the
+// plugin, and the filter learns a layer. It is compiled once per release, with MeshLab's symbols left
+// undefined until run_library_host.cpp loads it. Arguments:
+//   LAYER OUT          learns the layer that inputs.py has written and writes the result to OUT
+//   LAYER OUT cancel   repeats this; the host asks to stop at a later call of the progress each time
+//   LAYER OUT memory   repeats this; a later allocation fails each time
+//   LAYER OUT repeat   repeats this more than a hundred times and prints by how much the process has grown
+//   LAYER OUT together compares two runs at the same time with each alone
+// It prints one JSON object per run, or the host's refusal of the plugin.
 #include <common/mlexception.h>
 #include <common/plugins/interfaces/filter_plugin.h>
 #include <common/plugins/plugin_manager.h>
@@ -28,7 +28,7 @@ namespace {
 namespace allocations = neuralmesh::allocations;
 using allocations::Failure;
 
-/// What the host answers to the filter's progress; a plain function has no other memory.
+/// State of call_back(), which as a plain function can only use globals.
 int calls_until_stop = 0;
 int calls = 0;
 bool call_back(const int, const char*) { return ++calls < calls_until_stop; }
@@ -42,14 +42,16 @@ std::string quoted(const std::string& text) {
     return result + '"';
 }
 
+const char* truth(bool value) { return value ? "true" : "false"; }
+
 class Host {
 public:
     explicit Host(const char* plugin_file)
         : plugin_(dynamic_cast<FilterPlugin*>(manager_.loadPlugin(plugin_file))),
           action_(plugin_->actions().front()) {}
 
-    /// Learns the layer once and tells what came of it. \p nth, \p failure: which allocation of the filter
-    /// fails.
+    /// Learns the layer once and prints the outcome. The filter's \p nth allocation fails, counted from 0;
+    /// none if -1.
     void learn(const char* layer_file, const char* out, long long nth = -1, Failure failure = Failure::once) {
         MeshDocument document;
         document.addNewMesh("", "other", false);
@@ -59,41 +61,29 @@ public:
         plugin_->setLog(&document.Log);
         const std::string before = bytes_of(document, layer);
 
-        std::map<std::string, QVariant> told;
-        std::string sentence;
+        Outcome outcome;
         unsigned int mask = 0;
         calls = 0;
         allocations::fail_at(nth, failure);
         try {
-            told = plugin_->applyFilter(action_, list, document, mask, call_back);
+            outcome.results = plugin_->applyFilter(action_, list, document, mask, call_back);
         } catch (const std::exception& error) {
             allocations::fail_at(-1);
-            sentence = error.what();
+            outcome.sentence = error.what();
         }
         allocated = allocations::count();
         allocations::fail_at(-1);
 
-        QStringList logged;
-        document.Log.print(logged);
-        const bool learned = sentence.empty();
-        std::cout << "{\"sentence\": " << quoted(sentence)
-                  << ", \"logged\": " << quoted(logged.join(' ').toStdString())
-                  << ", \"layers\": " << document.meshNumber()
-                  << ", \"current\": " << quoted(document.mm()->label().toStdString());
-        for (const auto& [key, value] : told) std::cout << ", \"" << key << "\": " << value.toDouble();
-        std::cout << ", \"asked_to_stop\": " << (calls >= calls_until_stop ? "true" : "false");
-        if (learned) {
-            std::cout << ", \"vn\": " << document.mm()->cm.vn
-                      << ", \"matrix\": " << words_of(document.mm()->cm.Tr);
+        print(document, outcome);
+        if (outcome.sentence.empty()) {
             std::ofstream file(out);
             write_off(document.mm()->cm, file);
             document.delMesh(document.mm()->id());
         }
-        std::cout << ", \"unchanged\": " << (bytes_of(document, layer) == before ? "true" : "false") << "}"
-                  << std::endl;
+        std::cout << ", \"unchanged\": " << truth(bytes_of(document, layer) == before) << "}" << std::endl;
     }
 
-    /// The result for the layer with \p seed, told nobody: all runs of a plugin share one log.
+    /// The result for the layer with \p seed. Call disable_log() before runs at the same time: they share it.
     std::string result_of(const char* layer_file, int seed) {
         MeshDocument document;
         MeshModel& layer = *document.addNewMesh("", "layer", true);
@@ -107,17 +97,39 @@ public:
         return text.str();
     }
 
-    void keep_quiet() { plugin_->setLog(nullptr); }
+    void disable_log() { plugin_->setLog(nullptr); }
 
     long long allocated = 0;  ///< by the filter in the last run
 
 private:
+    /// What the filter returned, or the sentence of its exception.
+    struct Outcome {
+        std::map<std::string, QVariant> results;
+        std::string sentence;
+    };
+
+    /// All but the end of the JSON object of a run.
+    static void print(MeshDocument& document, const Outcome& outcome) {
+        QStringList logged;
+        document.Log.print(logged);
+        std::cout << "{\"sentence\": " << quoted(outcome.sentence)
+                  << ", \"logged\": " << quoted(logged.join(' ').toStdString())
+                  << ", \"layers\": " << document.meshNumber()
+                  << ", \"current\": " << quoted(document.mm()->label().toStdString());
+        for (const auto& [key, value] : outcome.results)
+            std::cout << ", \"" << key << "\": " << value.toDouble();
+        std::cout << ", \"asked_to_stop\": " << truth(calls >= calls_until_stop);
+        if (outcome.sentence.empty())
+            std::cout << ", \"vn\": " << document.mm()->cm.vn
+                      << ", \"matrix\": " << words_of(document.mm()->cm.Tr);
+    }
+
     PluginManager manager_;
     FilterPlugin* plugin_;
     QAction* action_;
 };
 
-/// Pages of this process that lie in memory now, in bytes.
+/// Resident memory of this process.
 long long resident_bytes() {
     long long size = 0, resident = 0;
     std::ifstream("/proc/self/statm") >> size >> resident;
@@ -134,7 +146,7 @@ void repeat(Host& host, const char* layer, const char* out) {
 }
 
 void learn_together(Host& host, const char* layer) {
-    host.keep_quiet();
+    host.disable_log();
     const std::string alone[] = {host.result_of(layer, 1), host.result_of(layer, 2)};
     bool alike = true;
     for (int round = 0; round < 3; ++round) {
@@ -144,8 +156,8 @@ void learn_together(Host& host, const char* layer) {
         other.join();
         alike = alike && together[0] == alone[0] && together[1] == alone[1];
     }
-    std::cout << "{\"different\": " << (alone[0] != alone[1] ? "true" : "false")
-              << ", \"alike\": " << (alike ? "true" : "false") << "}" << std::endl;
+    std::cout << "{\"different\": " << truth(alone[0] != alone[1]) << ", \"alike\": " << truth(alike) << "}"
+              << std::endl;
 }
 
 void run(Host& host, const char* layer, const char* out, const std::string& mode) {
@@ -156,7 +168,7 @@ void run(Host& host, const char* layer, const char* out, const std::string& mode
         for (calls_until_stop = 1; calls_until_stop <= all_calls; calls_until_stop += 1 + all_calls / 10)
             host.learn(layer, out);
     } else if (mode == "memory") {
-        // Every allocation of the first and the last ones, where the adapter works, and some of the learning.
+        // Every allocation near both ends, which are the adapter's, and a sample of those during learning.
         const long long all = host.allocated;
         for (long long nth = 0; nth < all; nth += nth < 60 || nth > all - 150 ? 1 : (all - 210) / 20 + 1) {
             host.learn(layer, out, nth, Failure::once);

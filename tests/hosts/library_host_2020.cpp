@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The filter run by MeshLab 2020.09 without its window, out of memory at ever later allocations: a ball is
-// learned by the plugin again and again. Qt's own allocations are not among them: they do not go through what
-// can be made to fail. run_library_host.cpp starts it with two words it does not need, and it prints one JSON
-// object for each run.
+// MeshLab 2020.09 without its window: the plugin learns a ball many times, and a later allocation fails each
+// time. Qt's own allocations never fail, because they do not go through the replaced functions.
+// run_library_host.cpp starts it; LAYER and OUT are ignored. It prints one JSON object per run.
 #include <common/interfaces.h>
 
 #include <QApplication>
@@ -32,7 +31,8 @@ class Host {
 public:
     explicit Host(MeshFilterInterface& filter) : filter_(filter), action_(filter.actions().front()) {}
 
-    /// Learns the ball once, the \p nth allocation of the filter failing, and tells what came of it.
+    /// Learns the ball once and prints the outcome. The filter's \p nth allocation fails, counted from 0;
+    /// none if -1.
     void learn(long long nth, Failure failure) {
         MeshDocument document;
         add_ball(document.addNewMesh("", "layer", true)->cm);
@@ -83,7 +83,7 @@ extern "C" __attribute__((visibility("default"))) int library_host(int argc, cha
     }
     Host host(*filter);
     host.learn(-1, Failure::once);
-    // Every allocation of the first and the last ones, where the adapter works, and some of the learning.
+    // Every allocation near both ends, which are the adapter's, and a sample of those during learning.
     const long long all = host.allocated;
     for (long long nth = 0; nth < all; nth += nth < 60 || nth > all - 150 ? 1 : (all - 210) / 20 + 1) {
         host.learn(nth, Failure::once);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Layers of a document for library_host.cpp: read from the words that inputs.py writes, compared byte by
-// byte, written for check_mesh.
+// Layers for library_host.cpp: reads the text that inputs.py writes, serialises a layer to compare it before
+// and after a run, and writes the OFF file that check_mesh reads.
 #pragma once
 
 #include <common/ml_document/mesh_document.h>
@@ -13,7 +13,7 @@
 #include <sstream>
 #include <string>
 
-/// A number as Python spells it, inf and nan among them.
+/// A number as Python prints it, including inf and nan.
 inline double number(std::istream& words) {
     std::string word;
     words >> word;
@@ -46,7 +46,7 @@ inline void read_face(std::istream& words, CMeshO& mesh) {
         if ((inner & (1 << k)) != 0) f.SetF(k);
 }
 
-/// Texture coordinates, and attributes of a name of their own.
+/// Adds texture coordinates and a user-defined attribute.
 inline void read_textured(MeshModel& layer) {
     CMeshO& mesh = layer.cm;
     layer.updateDataMask(MeshModel::MM_WEDGTEXCOORD | MeshModel::MM_FACECOLOR);
@@ -57,7 +57,7 @@ inline void read_textured(MeshModel& layer) {
         for (int k = 0; k < 3; ++k) f.WT(k).P() = Point2m(Scalarm(k == 1), Scalarm(k == 2));
 }
 
-/// Fills the current layer of \p document, and \p list where the file sets parameters.
+/// Fills \p layer, and sets the parameters in \p list that the file names.
 inline void read_layer(const char* file, MeshModel& layer, RichParameterList& list) {
     layer.updateDataMask(MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR | MeshModel::MM_POLYGONAL);
     std::ifstream words(file);
@@ -94,8 +94,8 @@ std::string raw_bytes(const Elements& elements) {
                                           elements.size() * sizeof(elements[0]));
 }
 
-/// All that a layer is: its elements' memory, flags and deleted ones included, attributes, matrix, box, name,
-/// place in the document.
+/// The state of a layer: memory of all elements with flags, deleted ones too; attributes, matrix, box, name,
+/// and number of layers in the document.
 inline std::string bytes_of(const MeshDocument& document, MeshModel& layer) {
     CMeshO& mesh = layer.cm;
     std::ostringstream bytes;
@@ -116,7 +116,7 @@ inline std::string bytes_of(const MeshDocument& document, MeshModel& layer) {
     return bytes.str();
 }
 
-/// Row by row, as JSON.
+/// A JSON array, row by row.
 inline std::string words_of(const Matrix44m& matrix) {
     std::ostringstream words;
     words.precision(17);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// write_mlx [ID=VALUE ...]: a complete script for meshlabserver on the standard output, all parameters of
-// the filter with their defaults or the values given. (meshlabserver aborts on incomplete scripts.)
-// write_mlx --table: the parameters, one per line: id, type, low, high, default, advanced; for tests.
+// write_mlx [ID=VALUE ...]: prints a script for meshlabserver with all parameters of the filter, at their
+// defaults or the values given. (meshlabserver aborts on scripts that omit one.) write_mlx --table: prints
+// the parameters for tests, one per line: id, type, low, high, default, advanced.
 #include <cstdlib>
 #include <iostream>
 #include <map>
@@ -27,7 +27,7 @@ const char* type_of(const SettingInfo& info) {
     return "";
 }
 
-/// A default as MeshLab writes it into a script.
+/// The default as MeshLab writes it into a script.
 std::string default_of(const SettingInfo& info) {
     const double value = info.value(Settings());
     if (info.kind == Kind::boolean) return value != 0 ? "true" : "false";
