@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A caller's mesh in single precision: what is said of coordinates that are no numbers, and where the
-// result's coordinates are counted from.
+// A caller's mesh in single precision: error messages for coordinates that are not finite, and the origin
+// that the result's coordinates are relative to.
 #include "vcg_core/mesh_io.h"
 
 #include <gtest/gtest.h>
@@ -47,18 +47,18 @@ TEST_P(OfFaces, CountsVerticesThatAreNotFiniteOnce) {
     mesh.vert[2].P()[1] = kNan;
     EXPECT_EQ(complaint(mesh, moved(0, 0, 0)).find("1 of the 8 vertices of the layer"), 0U);
     mesh.vert[5].P()[0] = -kInfinity;
-    // That the matrix is not finite, too, would not help with these.
+    // The message names the vertices although the matrix is not finite either.
     EXPECT_EQ(complaint(mesh, moved(kNan, 0, 0)).find("2 of the 8 vertices of the layer"), 0U);
 }
 
-TEST_P(OfFaces, TellsAMatrixThatIsNotFiniteFromVertices) {
+TEST_P(OfFaces, DistinguishesAMatrixThatIsNotFinite) {
     Mesh mesh;
     fill(mesh, shapes::cube(), GetParam());
     EXPECT_EQ(complaint(mesh, moved(0, kNan, 0)).find("The matrix of the layer"), 0U);
     EXPECT_EQ(complaint(mesh, moved(0, 0, kInfinity)).find("The matrix of the layer"), 0U);
 }
 
-TEST_P(OfFaces, LooksAtWhatIsLearnedOnly) {
+TEST_P(OfFaces, ChecksOnlyWhatIsLearned) {
     Mesh mesh;
     fill(mesh, shapes::cube(), GetParam());
     vcg::tri::Allocator<Mesh>::AddVertex(mesh, vcg::Point3f(kNan, 0, 0));
@@ -80,23 +80,23 @@ NeuralMesh cube_at(const vcg::Point3d& place) {
 
 constexpr Coordinates kWorld{};
 
-TEST(MeshIo, CountsFromTheWorldsOriginWhereThatIsExact) {
+TEST(MeshIo, UsesTheWorldsOriginIfPreciseEnough) {
     EXPECT_EQ(origin_of<Mesh>(cube_at({0, 0, 0}), moved(0, 0, 0)), kWorld);
     EXPECT_EQ(origin_of<Mesh>(cube_at({100, -50, 7}), moved(100, -50, 7)), kWorld);
 }
 
-TEST(MeshIo, CountsFromTheLayersOriginWhereRoundingWouldBeSeen) {
+TEST(MeshIo, UsesTheLayersOriginIfRoundingWouldBeVisible) {
     const Coordinates there{1e7, -1e7, 5e6};
     EXPECT_EQ(origin_of<Mesh>(cube_at({1e7, -1e7, 5e6}), moved(1e7F, -1e7F, 5e6F)), there);
 }
 
-TEST(MeshIo, LeavesTheWorldsOriginOnlyWhereThatHelps) {
+TEST(MeshIo, UsesTheLayersOriginOnlyIfItHelps) {
     EXPECT_EQ(origin_of<Mesh>(cube_at({1e7, 0, 0}), moved(0, 0, 0)), kWorld);
     EXPECT_EQ(origin_of<Mesh>(cube_at({1e7, 0, 0}), moved(1000, 0, 0)), kWorld);
     EXPECT_EQ(origin_of<Mesh>(cube_at({1e7, 0, 0}), moved(-1e7F, 0, 0)), kWorld);
 }
 
-TEST(MeshIo, KeepsTheGeometryCountedFromAnOrigin) {
+TEST(MeshIo, KeepsTheGeometryRelativeToAnOrigin) {
     const vcg::Point3d place(1e7, -1e7, 5e6);
     const vcg::Point3d shift(0.123456, -0.654321, 0.5);
     const NeuralMesh result = cube_at(place + shift);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The table of parameters: complete, consistent, and guarded at both ends of every range.
+// The table of parameters is complete and consistent, and values beyond either end of a range are refused.
 #include "vcg_core/settings.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 using Kind = SettingInfo::Kind;
 
-/// The message that check() throws with, or nothing.
+/// The message that check() throws, or nothing.
 std::string complaint(const Settings& settings) {
     try {
         settings.check();
@@ -87,7 +87,7 @@ TEST(Settings, BothEndsOfARangePassAndNothingBeyond) {
     }
 }
 
-TEST(Settings, AnIntegerNoIntCanHoldIsRefusedNotWrapped) {
+TEST(Settings, IntegersOutsideTheRangeOfIntAreRefused) {
     const double two_to_32 = 4294967296.0;
     for (const SettingInfo& info : setting_table()) {
         SCOPED_TRACE(info.id);

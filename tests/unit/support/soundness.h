@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What is true of every result of reconstruct(), whatever was learned, with which settings, to the end or
-// not.
+// Properties of every result of reconstruct(), for any input and settings, complete or cancelled.
 #pragma once
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
 
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
@@ -17,7 +20,7 @@ inline TargetSpace target_of(const shapes::Cloud& cloud) {
     return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
 }
 
-/// A closed, oriented manifold whose figures are those of the report, all numbers finite.
+/// The mesh is a closed, oriented manifold with the figures of its report, and all numbers are finite.
 inline void expect_sound(const NeuralMesh& mesh) {
     const referee::Census census = referee::census(mesh.faces);
     EXPECT_EQ(census.breach, "");
@@ -45,6 +48,13 @@ inline void expect_exact(const NeuralMesh& mesh, const Settings& settings) {
     expect_sound(mesh);
     EXPECT_EQ(mesh.report.vertices, settings.target_vertices);
     EXPECT_EQ(mesh.report.stop_reason, StopReason::target_reached);
+}
+
+/// True if a warning of the report contains \p words.
+inline bool has_warning(const NeuralMesh& mesh, const std::string& words) {
+    const std::vector<std::string>& all = mesh.report.warnings;
+    return std::any_of(all.begin(), all.end(),
+                       [&](const std::string& warning) { return warning.find(words) != std::string::npos; });
 }
 
 }  // namespace neuralmesh::soundness

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The same input gives the same bytes, and what must not matter does not.
+// The same input gives the same bytes, whatever the threads; position and scale of the cloud do not matter.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,18 +12,15 @@
 #include <string>
 
 #include "tests/unit/support/shapes.h"
+#include "tests/unit/support/soundness.h"
 #include "vcg_core/reconstruct.h"
 
 namespace neuralmesh {
 namespace {
 
-TargetSpace target_of(const shapes::Cloud& cloud) {
-    return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
-}
-
 NeuralMesh learn(const shapes::Cloud& cloud, const Settings& settings) {
     NoProgress progress;
-    return reconstruct(target_of(cloud), settings, progress);
+    return reconstruct(soundness::target_of(cloud), settings, progress);
 }
 
 template <class T>
@@ -41,7 +38,7 @@ void expect_same(const NeuralMesh& a, const NeuralMesh& b) {
     EXPECT_EQ(a.report.mean_counter, b.report.mean_counter);
 }
 
-/// Each start, with and without fit, each counter.
+/// Both start meshes, with and without fit, both utility counters; and the defaults.
 std::vector<Settings> variants() {
     std::vector<Settings> result;
     for (int i = 0; i < 4; ++i) {
@@ -52,7 +49,7 @@ std::vector<Settings> variants() {
         settings.utility_counter = i == 1 || i == 2 ? kSignalCounter : kNormalCounter;
         result.push_back(settings);
     }
-    // The defaults, but for so few vertices that more are learned and some taken out.
+    // Few vertices, so that the network grows to more and the fit removes some.
     result.emplace_back();
     result.back().target_vertices = 60;
     return result;
@@ -74,7 +71,7 @@ TEST(Determinism, SameSeedSameBytesWhateverTheThreads) {
         expect_same_with({1, 3, 0}, shapes::sphere_cloud(1500, 0.01), settings);
 }
 
-/// So many vertices that the threads have regions of their own.
+/// From 3,000 vertices on, each thread has its own region of space.
 TEST(Determinism, SameBytesWhereThreadsShareTheNetwork) {
     Settings settings;
     settings.target_vertices = 5000;
@@ -85,7 +82,7 @@ TEST(Determinism, SameBytesWhereThreadsShareTheNetwork) {
     expect_same_with({2, 3, 8}, shapes::torus_cloud(20000, 0.005), settings);
 }
 
-/// FNV-1a.
+/// Adds \p values to \p hash by FNV-1a.
 template <class T>
 void hash_bytes(const std::vector<T>& values, std::uint64_t& hash) {
     const char* bytes = reinterpret_cast<const char*>(values.data());
@@ -93,7 +90,8 @@ void hash_bytes(const std::vector<T>& values, std::uint64_t& hash) {
         hash = (hash ^ static_cast<std::uint8_t>(bytes[i])) * 0x100000001b3U;
 }
 
-/// Solid, noisy, flat; each start, counter and measure. Nothing of it is of the mathematics library's making.
+/// One line for each run on noisy, sharp and flat clouds with variants(). The clouds need no function of the
+/// mathematics library, whose results may differ between machines.
 std::string recorded_runs() {
     std::ostringstream lines;
     const std::pair<const char*, shapes::Cloud> clouds[] = {{"sphere", shapes::sphere_cloud(1500, 0.01)},
@@ -116,15 +114,15 @@ std::string recorded_runs() {
     return lines.str();
 }
 
-/// Whatever the compiler, its optimisation and the machine. NEURALMESH_RECORD=1 makes the present bytes the
-/// recorded ones, where a change of the results is meant.
+/// For any compiler, optimisation and machine. NEURALMESH_RECORD=1 records the bytes after an intended
+/// change.
 TEST(Determinism, SameBytesAsRecorded) {
     const std::string runs = recorded_runs();
     if (std::getenv("NEURALMESH_RECORD") != nullptr) std::ofstream(NEURALMESH_RECORDED_BYTES) << runs;
     std::ostringstream recorded;
     recorded << std::ifstream(NEURALMESH_RECORDED_BYTES).rdbuf();
     EXPECT_EQ(runs, recorded.str())
-        << "If results were meant to change, record them anew: tests/README.md says how.";
+        << "After an intended change of results, record them: see tests/README.md.";
 }
 
 TEST(Determinism, AnotherSeedGivesAnotherMesh) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Every parameter at the ends of its range, and random settings on random clouds: no crash, no run beyond the
-// signals that the settings allow, always a sound mesh. NEURALMESH_RANDOM_RUNS=500 tries more of them than
-// every test run has the time for, NEURALMESH_RANDOM_FIRST=N starts with the N-th, to have a failure again.
+// Every parameter at both ends of its range, and random settings on random clouds: no crash, a sound mesh,
+// and no more signals than the settings allow. NEURALMESH_RANDOM_RUNS=500 makes 500 runs instead of 40;
+// NEURALMESH_RANDOM_FIRST=N starts with run N, to repeat a failure.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 using shapes::Cloud;
 using Kind = SettingInfo::Kind;
 
-/// Stops after \p patience looks: some settings mean billions of signals, and are meant to.
+/// Asks to stop after \p patience calls, because some settings take billions of signals.
 class Patience : public Progress {
 public:
     explicit Patience(int patience) : left_(patience) {}
@@ -34,9 +34,9 @@ private:
     int left_;
 };
 
-constexpr int kPatience = 400;  ///< looks, one in a thousand signals while it learns
+constexpr int kPatience = 400;  ///< calls; learning makes one per thousand signals
 
-/// The most signals that one growth may take: the start mesh comes down, the network grows, it settles.
+/// Upper bound on the signals of one growth with landing and settling.
 std::int64_t most_of_growth(const TargetSpace& target, const Settings& settings) {
     const Learner learner(target, learner_options_from(settings), referee::network_of(shapes::tetrahedron()));
     const std::int64_t vertices = settings.target_vertices;
@@ -46,19 +46,20 @@ std::int64_t most_of_growth(const TargetSpace& target, const Settings& settings)
     return learning(100) + learner.signal_bound() + learning(settings.settling_signals_per_vertex);
 }
 
-/// Of a run, which learns up to four times the vertices asked for and, if that stalls, begins anew.
+/// Upper bound on the signals of a run: it grows to at most four times the vertices asked for and, if that
+/// growth stalls, grows once more.
 std::int64_t most_signals(const TargetSpace& target, const Settings& settings) {
     Settings more = settings;
     more.target_vertices *= 4;
     return most_of_growth(target, more) + most_of_growth(target, settings);
 }
 
-/// Network's own check beside the referee's, and the box: nothing flies away from the points.
+/// No vertex is far from the points, and Network::validate() agrees with the referee.
 void expect_near_the_points(const NeuralMesh& mesh, const TargetSpace& target) {
     vcg::Box3f box;
     for (const vcg::Point3f& p : target.positions()) box.Add(p);
-    // The box has a diagonal of 1; a start mesh may stand off by its radius, which is about that of the box
-    // where there is but a handful of places. Vertices that never win stay there.
+    // The diagonal of the box is 1. The radius of a shell around few points is about that of the box, and
+    // vertices that never win stay where the shell put them.
     const std::optional<TargetSpace> once = target.each_place_once();
     const double limit = (once ? *once : target).positions().size() < 20 ? 1.5 : 1;
     std::vector<vcg::Point3f> positions;
@@ -69,7 +70,7 @@ void expect_near_the_points(const NeuralMesh& mesh, const TargetSpace& target) {
     EXPECT_EQ(Network(positions, mesh.faces).validate(), "");
 }
 
-void expect_kept_promises(const TargetSpace& target, const Settings& settings) {
+void expect_valid_result(const TargetSpace& target, const Settings& settings) {
     Patience patience(kPatience);
     const NeuralMesh mesh = reconstruct(target, settings, patience);
     soundness::expect_sound(mesh);
@@ -86,7 +87,7 @@ void expect_kept_promises(const TargetSpace& target, const Settings& settings) {
     }
 }
 
-TEST(RandomSettings, EveryParameterLearnsAtBothEndsOfItsRange) {
+TEST(RandomSettings, EveryParameterWorksAtBothEndsOfItsRange) {
     const TargetSpace target = soundness::target_of(shapes::sphere_cloud(500));
     for (const SettingInfo& info : setting_table()) {
         for (const double end : {info.low, info.high}) {
@@ -95,17 +96,14 @@ TEST(RandomSettings, EveryParameterLearnsAtBothEndsOfItsRange) {
             settings.target_vertices = 60;
             settings.settling_signals_per_vertex = 10;
             info.store(settings, end);
-            expect_kept_promises(target, settings);
+            expect_valid_result(target, settings);
         }
     }
 }
 
-// ---- random settings
-// --------------------------------------------------------------------------------------------
-
 double fraction(Random& random) { return static_cast<double>(random.unit()); }
 
-/// Uniform between the bounds in the logarithm, so that small and large values are as frequent.
+/// Log-uniform between the bounds.
 double log_uniform(Random& random, double low, double high) {
     const double shift = low <= 0 ? 1e-3 - low : 0;
     return std::clamp(
@@ -113,7 +111,7 @@ double log_uniform(Random& random, double low, double high) {
         low, high);
 }
 
-/// Half of the parameters as they are, the others anywhere in their ranges, now and then at an end.
+/// Half of the parameters at their defaults, the others random in their ranges, a sixth of them at an end.
 Settings random_settings(Random& random) {
     Settings settings;
     for (const SettingInfo& info : setting_table()) {
@@ -127,8 +125,7 @@ Settings random_settings(Random& random) {
     settings.target_vertices = static_cast<int>(log_uniform(random, 4, 400));
     if (random.below(4) != 0)
         settings.settling_signals_per_vertex = std::min(settings.settling_signals_per_vertex, 100);
-    // Above this the shell and the fit run at the pace of their points, which is no business of the
-    // parameters.
+    // More would only make the run slow.
     settings.smoothing_steps = std::min(settings.smoothing_steps, 30);
     return settings;
 }
@@ -161,7 +158,7 @@ Cloud random_cloud(Random& random) {
     return cloud;
 }
 
-/// The cloud's points, or triangles between points taken as they come.
+/// A random cloud, or triangles of three consecutive points each.
 TargetSpace random_target(Random& random) {
     const Cloud cloud = random_cloud(random);
     if (random.below(4) != 0 || cloud.size() < 6) return soundness::target_of(cloud);
@@ -169,7 +166,7 @@ TargetSpace random_target(Random& random) {
         cloud.size() / 3, [&](std::size_t i, int k) { return cloud[3 * i + static_cast<std::size_t>(k)]; });
 }
 
-/// What differs from the defaults.
+/// The parameters that differ from their defaults.
 std::string changes(const Settings& settings) {
     std::ostringstream text;
     for (const SettingInfo& info : setting_table())
@@ -178,7 +175,7 @@ std::string changes(const Settings& settings) {
     return text.str();
 }
 
-TEST(RandomSettings, KeepThePromisesOnRandomClouds) {
+TEST(RandomSettings, GiveValidResultsOnRandomClouds) {
     const int runs = environment::number_of("NEURALMESH_RANDOM_RUNS", 40, 1);
     const int first = environment::number_of("NEURALMESH_RANDOM_FIRST", 0, 0);
     if (HasFailure()) return;
@@ -189,10 +186,10 @@ TEST(RandomSettings, KeepThePromisesOnRandomClouds) {
         SCOPED_TRACE(testing::Message() << "run " << i << ": " << changes(settings));
         try {
             const TargetSpace target = random_target(random);
-            expect_kept_promises(target, settings);
+            expect_valid_result(target, settings);
             ++learned;
         } catch (const InputError& error) {
-            // A cloud that came out flat on a line, or with fewer points than a surface needs.
+            // The points lie on a line, or too few are distinct.
             EXPECT_EQ(std::string(error.what()).back(), '.') << error.what();
         }
         if (HasFailure()) break;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The promises of a whole run: count, manifold, orientation, progress, reasons to stop; and settings and
+// Whole runs: exact number of vertices, manifold, orientation, progress, stop reasons; also with settings and
 // clouds chosen to break them.
 #include "vcg_core/reconstruct.h"
 
@@ -25,7 +25,7 @@ using soundness::expect_exact;
 using soundness::expect_sound;
 using soundness::target_of;
 
-/// Notes what it is told; asks to stop after \p patience calls.
+/// Checks fractions and texts; asks to stop after \p patience calls.
 class Watch : public Progress {
 public:
     explicit Watch(int patience = 1 << 30) : patience_(patience) {}
@@ -125,7 +125,7 @@ TEST(Reconstruct, ProgressNeverGoesBack) {
 }
 
 TEST(Reconstruct, CanBeCancelledAtAnyTime) {
-    // From the shell more than 300 are learned.
+    // From the shell, the network grows to more than 300 vertices.
     const TargetSpace target = target_of(shapes::sphere_cloud(12000));
     for (const int start : {kShell, kTetrahedron}) {
         Watch all;
@@ -143,14 +143,14 @@ TEST(Reconstruct, CanBeCancelledAtAnyTime) {
     }
 }
 
-/// Adds up the signals that the progress is told of, also those of a growth that was given up.
-class SignalsToldOf : public Progress {
+/// Adds up the signals in the progress texts, including those of a growth whose result was discarded.
+class SignalCount : public Progress {
 public:
     bool operator()(double, const char* text) override {
         long long signals = 0;
         if (std::sscanf(text, "Learning: %*d vertices, %lld", &signals) != 1) return true;
         if (signals < last_) {
-            ++given_up;
+            ++discarded;
             before_ += last_;
         }
         last_ = signals;
@@ -158,21 +158,21 @@ public:
     }
     long long all() const { return before_ + last_; }
 
-    int given_up = 0;
+    int discarded = 0;
 
 private:
     long long before_ = 0;
     long long last_ = 0;
 };
 
-TEST(Reconstruct, CountsTheSignalsOfAGrowthThatWasGivenUp) {
+TEST(Reconstruct, CountsTheSignalsOfADiscardedGrowth) {
     Settings settings = with_target(150);
     settings.signals_per_collapse = 1;  // growth stalls
-    SignalsToldOf told;
-    const NeuralMesh mesh = reconstruct(target_of(shapes::sphere_cloud(20000)), settings, told);
+    SignalCount counted;
+    const NeuralMesh mesh = reconstruct(target_of(shapes::sphere_cloud(20000)), settings, counted);
     expect_exact(mesh, settings);
-    ASSERT_EQ(told.given_up, 1);
-    EXPECT_GE(mesh.report.signals, told.all());
+    ASSERT_EQ(counted.discarded, 1);
+    EXPECT_GE(mesh.report.signals, counted.all());
     EXPECT_EQ(mesh.report.faces, 296);
 }
 
@@ -203,9 +203,6 @@ TEST(Reconstruct, FeatureThresholdSelectsByTheMean) {
     for (const float counter : all.counters) sum += static_cast<double>(counter);
     EXPECT_NEAR(sum / 300, all.report.mean_counter, 1e-4 * all.report.mean_counter);
 }
-
-// ---- inputs chosen to break a run
-// ---------------------------------------------------------------------------
 
 std::vector<std::pair<const char*, Cloud>> hostile_clouds() {
     Cloud two = shapes::sphere_cloud(1000);
@@ -274,7 +271,7 @@ std::vector<std::pair<const char*, Settings>> hostile_settings() {
     return result;
 }
 
-/// Growth of the learner alone, held to its own bound.
+/// Growth of the learner alone ends within Learner::signal_bound().
 void expect_run_within_bound(const Cloud& cloud, Settings settings) {
     settings.settling_signals_per_vertex = 0;
     const TargetSpace target = target_of(cloud);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Sheets: points that enclose no space, so that the mesh goes around them in two layers.
+// Sheets: points that enclose no space, so that the mesh surrounds them with two layers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 using shapes::Cloud;
 using soundness::expect_exact;
 
-/// The unit square's points that \p keep takes, at the height that \p height gives.
+/// Points (x, y, height(x, y)) of the unit square where keep(x, y).
 Cloud sheet(int count, const std::function<bool(double, double)>& keep,
             const std::function<double(double, double)>& height) {
     Cloud cloud;
@@ -42,7 +42,7 @@ std::vector<Sheet> sheets() {
         const double b = (x - 0.2) * (x - 0.2) + (y - 0.15) * (y - 0.15);
         return a > 0.015 && b > 0.022;
     };
-    // A wave without a transcendental function, a thousandth high; and an arch.
+    // A wave of a thousandth, by a polynomial, because transcendental functions differ between machines.
     const auto wave = [](double x, double y) { return 0.03 * x * y * (1 - 4 * x * x) * (1 - 4 * y * y); };
     const auto arch = [](double x, double) { return 0.4 * x * x; };
     return {{"square", sheet(8000, all, flat), 0},
@@ -52,16 +52,11 @@ std::vector<Sheet> sheets() {
             {"arch", sheet(8000, all, arch), 0}};
 }
 
-/// Of \p p from the nearest point of \p cloud.
+/// Distance of \p p from the nearest point of \p cloud.
 double distance(const vcg::Point3d& p, const Cloud& cloud) {
     double least = 1e30;
     for (const vcg::Point3d& q : cloud) least = std::min(least, (p - q).SquaredNorm());
     return std::sqrt(least);
-}
-
-bool warned(const NeuralMesh& mesh, const std::string& words) {
-    return std::any_of(mesh.report.warnings.begin(), mesh.report.warnings.end(),
-                       [&](const std::string& warning) { return warning.find(words) != std::string::npos; });
 }
 
 TEST(Sheets, AreClosedOnBothSidesWithEveryVertexOnThem) {
@@ -77,8 +72,8 @@ TEST(Sheets, AreClosedOnBothSidesWithEveryVertexOnThem) {
             expect_exact(mesh, settings);
             EXPECT_EQ(mesh.report.components, 1);
             EXPECT_EQ(mesh.report.genus, sheet.genus);
-            EXPECT_TRUE(warned(mesh, "closed around both of their sides"));
-            EXPECT_FALSE(warned(mesh, "forced"));
+            EXPECT_TRUE(soundness::has_warning(mesh, "closed around both of their sides"));
+            EXPECT_FALSE(soundness::has_warning(mesh, "forced"));
             EXPECT_LT(mesh.report.rms_error, 1);
             double farthest = 0;
             for (const vcg::Point3d& p : mesh.positions)

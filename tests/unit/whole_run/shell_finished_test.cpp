@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What becomes of open, dirty and thin clouds: the shell's promises, kept by the finished mesh.
+// Whole runs on open, noisy and thin clouds: the finished mesh keeps the components and genus of the shell.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "tests/unit/support/shell_shapes.h"
+#include "tests/unit/support/soundness.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/reconstruct.h"
 
 namespace neuralmesh {
 namespace {
 
+using soundness::has_warning;
+
 NeuralMesh finished(const std::vector<vcg::Point3d>& cloud, int vertices) {
     Settings settings;
     settings.target_vertices = vertices;
-    const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
     NoProgress progress;
-    return reconstruct(target, settings, progress);
+    return reconstruct(soundness::target_of(cloud), settings, progress);
 }
 
 void expect_closed(const NeuralMesh& mesh, int vertices, int components, int genus) {
@@ -33,12 +34,7 @@ void expect_closed(const NeuralMesh& mesh, int vertices, int components, int gen
     EXPECT_EQ(Network(positions, mesh.faces).validate(), "");
 }
 
-bool warned_of(const NeuralMesh& mesh, const std::string& words) {
-    return std::any_of(mesh.report.warnings.begin(), mesh.report.warnings.end(),
-                       [&](const std::string& w) { return w.find(words) != std::string::npos; });
-}
-
-/// A sphere's points with every hundredth thrown anywhere into a box three times as wide.
+/// Points of a sphere; every hundredth is replaced by a random point in a box three times as wide.
 std::vector<vcg::Point3d> sphere_with_gross_outliers() {
     Random random(11);
     std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
@@ -52,12 +48,12 @@ void expect_sphere(const NeuralMesh& mesh, double within) {
     for (const vcg::Point3d& p : mesh.positions) ASSERT_NEAR(p.Norm(), 1, within);
 }
 
-TEST(ShellFinished, GrossOutliersMakeNoComponentsAndPullAtNothing) {
+TEST(ShellFinished, GrossOutliersMakeNoComponentsAndDoNotPull) {
     for (const int vertices : {500, 2000}) {
         const NeuralMesh mesh = finished(sphere_with_gross_outliers(), vertices);
         expect_closed(mesh, vertices, 1, 0);
         expect_sphere(mesh, 0.05);
-        EXPECT_TRUE(warned_of(mesh, "as outliers"));
+        EXPECT_TRUE(has_warning(mesh, "as outliers"));
     }
 }
 
@@ -69,17 +65,17 @@ TEST(ShellFinished, OnePointFarAwayCostsNeitherTimeNorPrecision) {
     expect_closed(mesh, 500, 1, 0);
     expect_sphere(mesh, 0.01);
     EXPECT_LT(mesh.report.rms_error, 0.5);
-    EXPECT_GT(mesh.report.rms_error, 0.01) << "% of the sphere's box, not of the far point's";
+    EXPECT_GT(mesh.report.rms_error, 0.01) << "must be relative to the sphere's box, without the far point";
 }
 
-TEST(ShellFinished, PointsDeepInsidePullAtNothing) {
+TEST(ShellFinished, PointsDeepInsideDoNotPull) {
     Random random(17);
     std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
     for (std::size_t i = 0; i < 200; ++i) cloud[i] *= 0.1 + 0.6 * static_cast<double>(random.unit());
     const NeuralMesh mesh = finished(cloud, 500);
     expect_closed(mesh, 500, 1, 0);
     expect_sphere(mesh, 0.02);
-    EXPECT_TRUE(warned_of(mesh, "200 of 20000 points were ignored as outliers"));
+    EXPECT_TRUE(has_warning(mesh, "200 of 20000 points were ignored as outliers"));
 }
 
 TEST(ShellFinished, AHalfAThousandTimesSparserIsNoOutlier) {
@@ -89,7 +85,7 @@ TEST(ShellFinished, AHalfAThousandTimesSparserIsNoOutlier) {
     shell_shapes::cut_off(cloud, [&](const vcg::Point3d& p) { return p[2] < 0 && ++below % 1000 != 0; });
     const NeuralMesh mesh = finished(cloud, 500);
     expect_closed(mesh, 500, 1, 0);
-    EXPECT_FALSE(warned_of(mesh, "outliers"));
+    EXPECT_FALSE(has_warning(mesh, "outliers"));
 }
 
 TEST(ShellFinished, RepeatedPointsAreLearnedOnce) {
@@ -98,7 +94,7 @@ TEST(ShellFinished, RepeatedPointsAreLearnedOnce) {
     for (int doubling = 0; doubling < 7; ++doubling) cloud.insert(cloud.end(), cloud.begin(), cloud.end());
     const NeuralMesh mesh = finished(cloud, 250);
     expect_closed(mesh, 250, 1, 0);
-    EXPECT_TRUE(warned_of(mesh, "7620 of 7680 points repeat others"));
+    EXPECT_TRUE(has_warning(mesh, "7620 of 7680 points repeat others"));
 }
 
 TEST(ShellFinished, FarClumpsOfFewPointsMakeNoComponents) {
@@ -110,7 +106,7 @@ TEST(ShellFinished, FarClumpsOfFewPointsMakeNoComponents) {
                                0.05 * static_cast<double>(random.unit()), 2);
     const NeuralMesh mesh = finished(cloud, 500);
     expect_closed(mesh, 500, 1, 1);
-    EXPECT_TRUE(warned_of(mesh, "450 of 20450 points were ignored as outliers"));
+    EXPECT_TRUE(has_warning(mesh, "450 of 20450 points were ignored as outliers"));
 }
 
 TEST(ShellFinished, AGroupOfOnePercentIsAComponent) {
@@ -127,7 +123,7 @@ TEST(ShellFinished, HalfASphereIsClosedWithAWarning) {
     shell_shapes::cut_off(cloud, [](const vcg::Point3d& p) { return p[2] > 0; });
     const NeuralMesh mesh = finished(cloud, 500);
     expect_closed(mesh, 500, 1, 0);
-    EXPECT_TRUE(warned_of(mesh, "closed"));
+    EXPECT_TRUE(has_warning(mesh, "closed"));
 }
 
 TEST(ShellFinished, APlanePatchIsClosedWithAWarning) {
@@ -137,7 +133,7 @@ TEST(ShellFinished, APlanePatchIsClosedWithAWarning) {
         cloud.emplace_back(static_cast<double>(random.unit()), static_cast<double>(random.unit()), 0);
     const NeuralMesh mesh = finished(cloud, 500);
     expect_closed(mesh, 500, 1, 0);
-    EXPECT_TRUE(warned_of(mesh, "closed"));
+    EXPECT_TRUE(has_warning(mesh, "closed"));
 }
 
 TEST(ShellFinished, ACloudTooSparseForItsShellTakesACoarserOneAndSaysSo) {
@@ -149,7 +145,7 @@ TEST(ShellFinished, ACloudTooSparseForItsShellTakesACoarserOneAndSaysSo) {
         for (int i = 0; i < 30; ++i) cloud.push_back(p + vcg::Point3d(jitter(), jitter(), jitter()));
     const NeuralMesh mesh = finished(cloud, 200);
     expect_closed(mesh, 200, 1, 1);
-    EXPECT_TRUE(warned_of(mesh, "a coarser one was taken"));
+    EXPECT_TRUE(has_warning(mesh, "a coarser one was taken"));
 }
 
 }  // namespace
