@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <vector>
 
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/learning/learner.h"
@@ -44,7 +43,7 @@ LearnerOptions learner_options(const LearningTask& task, const Settings& setting
 
 FitReport fit(Network& network, const LearningTask& task, const Settings& settings, Progress& progress) {
     FitOptions options;
-    options.target_vertices = settings.target_vertices;
+    options.reduce_to = settings.target_vertices;
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
     // error is largest at the rim, and vertices inserted there stick out.
     options.redistribute = settings.utility_counter == kNormalCounter && task.encloses_space;
@@ -55,13 +54,12 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
 /// The counters of \p network's vertices. \p source: the learner's vertex that each takes its counter from;
 /// empty: itself.
 PerVertex<float> counters_of(const Learner& learner, const Network& network,
-                             const std::vector<VertexId>& source, const Settings& settings) {
+                             const PerVertex<VertexId>& source, const Settings& settings) {
     if (settings.feature_measure == kCreaseMeasure)
-        return PerVertex<float>(learner.crease_measure().values(learner.network(), network, source));
+        return PerVertex<float>(learner.crease_measure().values(learner.network(), network, source.vector()));
     PerVertex<float> counters(network.slot_count());
     for (const VertexId v : network.vertices())
-        counters[v] =
-            learner.feature_counters().value(source.empty() ? v : source[static_cast<std::size_t>(v)]);
+        counters[v] = learner.feature_counters().value(source.empty() ? v : source[v]);
     return counters;
 }
 
@@ -88,7 +86,7 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
     result.network.orient_outward();
     // A fit that was taken back has moved no vertex to another's place.
     result.counters = counters_of(learner, result.network,
-                                  report.improved ? report.origin : std::vector<VertexId>(), settings);
+                                  report.improved ? report.sources : PerVertex<VertexId>(), settings);
     return result;
 }
 

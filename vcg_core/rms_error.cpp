@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "vcg_core/mesh/surface.h"
+#include "vcg_core/mesh/face_tree.h"
 
 namespace neuralmesh {
 

@@ -23,7 +23,8 @@ public:
     using const_iterator = typename Vector::const_iterator;
 
     Indexed() = default;
-    explicit Indexed(int size, const T& value = T()) : values_(static_cast<std::size_t>(size), value) {}
+    explicit Indexed(int size) : values_(static_cast<std::size_t>(size)) {}
+    Indexed(int size, const T& value) : values_(static_cast<std::size_t>(size), value) {}
     Indexed(std::initializer_list<T> values) : values_(values) {}
     explicit Indexed(Vector values) : values_(std::move(values)) {}
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A loop over all cores whose results do not depend on how many there are.
+// Loops over all cores whose results do not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 namespace neuralmesh {
 
 /// Calls \p body(chunk, begin, end) for every chunk of \p size indices of [0, count), by \p team. The chunks
-/// are the same for any number of threads; a body writes only what belongs to its chunk. A member of the team
-/// whose body throws takes no more chunks, the others go on; then one of the exceptions is thrown on.
+/// are the same for any number of threads; a call writes only what belongs to its chunk. If calls throw, the
+/// threads they ran on take no more chunks, the other threads finish, and one of the exceptions is rethrown.
 template <class Body>
 void for_chunks(std::size_t count, std::size_t size, ThreadTeam& team, const Body& body) {
     const std::size_t chunks = (count + size - 1) / size;
@@ -33,6 +33,31 @@ void for_chunks(std::size_t count, std::size_t size, ThreadTeam& team, const Bod
     });
     for (const std::exception_ptr& e : errors)
         if (e) std::rethrow_exception(e);
+}
+
+/// Calls \p body(i) for every index i of [0, count), by \p team, \p chunk consecutive indices at a time. A
+/// call writes only what belongs to its index. Exceptions as in for_chunks().
+template <class Body>
+void parallel_for(int count, int chunk, ThreadTeam& team, const Body& body) {
+    for_chunks(static_cast<std::size_t>(count), static_cast<std::size_t>(chunk), team,
+               [&](std::size_t, std::size_t begin, std::size_t end) {
+                   for (std::size_t i = begin; i < end; ++i) body(static_cast<int>(i));
+               });
+}
+
+/// Calls \p find(i, found) for every index i of [0, count), as parallel_for() does; each call appends what it
+/// finds to the vector \p found. \return all that was found, in the order of the indices.
+template <class Value, class Find>
+std::vector<Value> parallel_collect(int count, int chunk, ThreadTeam& team, const Find& find) {
+    const auto chunks = static_cast<std::size_t>((count + chunk - 1) / chunk);
+    std::vector<std::vector<Value>> found(chunks);
+    for_chunks(static_cast<std::size_t>(count), static_cast<std::size_t>(chunk), team,
+               [&](std::size_t c, std::size_t begin, std::size_t end) {
+                   for (std::size_t i = begin; i < end; ++i) find(static_cast<int>(i), found[c]);
+               });
+    std::vector<Value> all;
+    for (const std::vector<Value>& part : found) all.insert(all.end(), part.begin(), part.end());
+    return all;
 }
 
 }  // namespace neuralmesh

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Edge flips driven by the points.
+// Edge flips that bring the surface closer to the points.
 #pragma once
 
+#include <vector>
+
 #include "vcg_core/base/thread_team.h"
-#include "vcg_core/fit/least_squares.h"
+#include "vcg_core/fit/points_by_face.h"
 
 namespace neuralmesh {
 
@@ -15,16 +17,16 @@ struct EdgeFlip {
     VertexId a, b;
 };
 
-/// The inner edges of \p network, best first, with which flipped the sum of the squared distances of the
-/// points tied to the edge's two faces drops by more than \p least_gain. No face turns over or becomes a
-/// sliver. Where the points do not care and the surface is flat, a flip counts with a gain of 0 if it makes
-/// the worse of the two faces better by a fifth, in triangle_quality(). \p surface and \p points are those of
-/// the network. O(points x 3), by \p team, with the same result for any number of them.
+/// The inner edges worth flipping, best first: those whose flip lowers the sum of squared distances of the
+/// points on the edge's two faces by more than \p least_gain; those whose flip opens a fold; and, with a gain
+/// of 0, those on flat surface whose flip hardly changes the distances but raises the smaller
+/// triangle_quality() of the two faces by a fifth. kFlipRules of face_rules.h hold. \p surface is that of the
+/// network. O(points). The result does not depend on the number of threads.
 std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface, const PointsByFace& points,
                                  float least_gain, ThreadTeam& team);
 
-/// Flips those of \p found in their order that have no face in common with one flipped before and no corner
-/// that is \p barred (by slot). \return the number of flips
-int flip_edges(Network& network, const std::vector<EdgeFlip>& found, const std::vector<char>& barred);
+/// Flips the edges \p found, in their order, leaving out those with a face in common with an earlier flip and
+/// those with a \p barred corner. \return the number of flips
+int flip_edges(Network& network, const std::vector<EdgeFlip>& found, const PerVertex<char>& barred);
 
 }  // namespace neuralmesh

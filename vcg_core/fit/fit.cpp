@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The rounds of the fit, and what is kept of them.
+// The order of the fit's steps, and whether their result is kept.
 #include "vcg_core/fit/fit.h"
 
 #include <algorithm>
@@ -15,143 +15,175 @@ namespace neuralmesh {
 
 namespace {
 
-/// With fewer points than this there is nothing to fit to and to judge by.
-constexpr std::size_t kLeastPoints = 64;
-/// The points held back from the fit were not held back from the learning, which has followed their noise:
-/// its mean squared error at them is too low by about this many noise variances x vertices / points (twice
-/// the leverage of a point, 1 without any smoothing; measured at 0.1 to 0.6 % noise).
+/// With fewer points than this there is nothing to fit to.
+constexpr std::size_t kMinPoints = 64;
+/// The points held out of the fit were not held out of the learning, which has followed their noise: its mean
+/// squared error at them is too low by about this many noise variances x vertices / points (twice the
+/// leverage of a point, which is 1 without any smoothing; measured at 0.1 to 0.6 % noise).
 constexpr double kLearnedShare = 0.8;
-/// A crumpled surface is nearer to points even along a given direction, by about the square of its slopes,
-/// which are those of noise over edges. So a mesh that learning left crumpled must not win by that.
+/// A crumpled surface is nearer to points even along a fixed direction, by about the square of its slopes,
+/// which are those of noise over edges. A mesh that learning left crumpled must not win by that.
 constexpr double kCrumpling = 3;
-/// The first round with a redistribution, and how many of the last possible rounds are without any.
-constexpr int kFirstShift = 1;
+/// The first round with a redistribution, and how many of the last possible rounds have none.
+constexpr int kFirstRedistribution = 1;
 constexpr int kQuietRounds = 3;
-/// The fit is over when two rounds bring less than this share of the error, but not in the first ones.
+/// The fit ends when two rounds lower the error by less than this share, but not in the first ones.
 constexpr double kLeastProgress = 0.001;
 constexpr int kFirstRounds = 5;
 
-/// For every vertex that was put in anew the vertex of \p before whose place it came to: the nearest one that
-/// a walk from the vertex beside which it was put in comes to. So a counter stays where it was learned.
-void settle_origins(const Network& before, const Network& after, std::vector<VertexId>& origin) {
-    for (VertexId v = 0; v < after.slot_count(); ++v) {
-        if (!after.alive(v)) origin[index(v)] = -1;
-        if (!after.alive(v) || origin[index(v)] == v) continue;
-        const Vector3 here = to_eigen(after.position(v));
-        const auto distance = [&](VertexId u) { return (to_eigen(before.position(u)) - here).squaredNorm(); };
-        VertexId nearest = origin[index(v)];
-        for (VertexId from = -1; from != nearest;) {
-            from = nearest;
-            const Ring& ring = before.ring(from);
-            for (int i = 0; i < ring.valence; ++i)
-                if (distance(ring[i]) < distance(nearest)) nearest = ring[i];
-        }
-        origin[index(v)] = nearest;
-    }
-}
-
-/// Small meshes are cheap, and there every vertex counts.
+/// 20 rounds for small meshes, where a round is cheap and every vertex counts.
 int automatic_rounds(int vertices) { return std::min(20, std::max(8, 40000 / std::max(vertices, 1))); }
 
-/// What the rounds come to.
-struct Rounds {
-    TrackedPoints at_start;  ///< the points held back, with the directions of the mesh before
-    Network best;
-    double best_error = 0;
-};
+/// For every inserted vertex the vertex of \p before at whose place it lies: the nearest one that a walk
+/// finds from the vertex beside which it was inserted. So a counter stays where it was learned.
+void find_sources(const Network& before, const Network& after, PerVertex<VertexId>& sources) {
+    for (VertexId v = 0; v < after.slot_count(); ++v) {
+        if (!after.alive(v)) sources[v] = -1;
+        if (!after.alive(v) || sources[v] == v) continue;
+        const Vector3 here = to_eigen(after.position(v));
+        const auto distance = [&](VertexId u) { return (to_eigen(before.position(u)) - here).squaredNorm(); };
+        VertexId nearest = sources[v];
+        for (VertexId from = -1; from != nearest;) {
+            from = nearest;
+            for (VertexId u : before.ring(from))
+                if (distance(u) < distance(nearest)) nearest = u;
+        }
+        sources[v] = nearest;
+    }
+}
 
-Rounds take_rounds(Network& network, Fitter& steps, const FitOptions& options, FitReport& report,
-                   Progress& progress) {
-    const int rounds = options.rounds > 0 ? options.rounds : automatic_rounds(network.vertex_count());
-    Rounds result{{}, network};
-    double last_error = 0;
-    double error_before = 0;
-    for (int round = 0; round < rounds; ++round) {
+/// The rounds of a fit and the best mesh they came to.
+class FitRounds {
+public:
+    FitRounds(Network& network, Fitter& fitter, const FitOptions& options, FitReport& report)
+        : network_(network),
+          fitter_(fitter),
+          options_(options),
+          report_(report),
+          rounds_(options.rounds > 0 ? options.rounds : automatic_rounds(network.vertex_count())),
+          at_start_(fitter.held_out()),
+          best_(network) {}
+
+    void run(Progress& progress) {
+        if (!wants_on(progress, 0)) return;
+        bool converged = first_round();
+        for (int round = 1; round < rounds_ && !converged && wants_on(progress, round); ++round)
+            converged = next_round(round);
+    }
+
+    /// Whether the best mesh is closer to the held-out points than the mesh before the rounds was, along the
+    /// directions of the latter.
+    /// \param learned_share see kLearnedShare
+    void judge(double learned_share, ThreadTeam& team) {
+        if (report_.rounds == 0) return;
+        const Surface fitted(best_);
+        at_start_.relocate(fitted, team);
+        const double error = fitter_.error_at(at_start_, fitted);
+        const double edge = static_cast<double>(mean_edge_length(fitted));
+        const double variance = static_cast<double>(fitter_.noise_variance());
+        const double optimism = variance * (learned_share + kCrumpling * variance / (edge * edge));
+        report_.improved = error * error < report_.rms_unfitted * report_.rms_unfitted + optimism;
+        if (report_.improved) report_.rms_fitted = error;
+    }
+
+    Network& best() { return best_; }
+
+private:
+    bool wants_on(Progress& progress, int round) const {
         const std::string text = "Fitting to the points, round " + std::to_string(round + 1);
-        if (!progress(static_cast<double>(round) / rounds, text.c_str())) break;
-        Surface surface(network);
-        PointsByFace ties = steps.tie(surface, round == 0);
-        if (options.redistribute && round >= kFirstShift && round + kQuietRounds < rounds) {
-            const int moved = steps.shift_vertices(surface, ties);
-            report.moved_vertices += moved;
+        return progress(static_cast<double>(round) / rounds_, text.c_str());
+    }
+
+    /// \return whether the fit has converged
+    bool first_round() {
+        Surface surface(network_);
+        PointsByFace points = fitter_.locate_points(surface);
+        fitter_.set_directions(surface);
+        at_start_ = fitter_.held_out();
+        report_.rms_unfitted = report_.rms_fitted = fitter_.held_out_error(surface);
+        return solve(0, surface, points);
+    }
+
+    bool next_round(int round) {
+        Surface surface(network_);
+        PointsByFace points = fitter_.assign_faces(surface);
+        if (options_.redistribute && round >= kFirstRedistribution && round + kQuietRounds < rounds_) {
+            const int moved = fitter_.redistribute_vertices(surface, points);
+            report_.moved_vertices += moved;
             if (moved > 0) {
-                surface = Surface(network);
-                ties = steps.tie(surface, false);
+                surface = Surface(network_);
+                points = fitter_.assign_faces(surface);
             }
         }
-        if (round == 0) steps.find_held(surface);
-        steps.aim(surface);
-        if (round == 0) {
-            result.at_start = steps.held();
-            report.rms_before = report.rms_after = steps.held_error(surface);
-        }
-        const double error = steps.move(ties, surface);
-        if (round == 0 || error < result.best_error) {
-            result.best = network;
-            result.best_error = error;
-            report.origin = steps.origin();
-            report.rounds = round + 1;
-        }
-        if (round >= kFirstRounds && error > (1 - kLeastProgress) * error_before) break;
-        error_before = last_error;
-        last_error = error;
-        if (options.flip_edges && round + 1 < rounds) report.flips += steps.flip(surface, ties);
+        fitter_.set_directions(surface);
+        return solve(round, surface, points);
     }
-    return result;
-}
 
-/// The verdict: whether the mesh after the fit is closer to the points held back than the one before, both
-/// along the directions of the one before.
-/// \param learned_share see kLearnedShare
-void judge(Rounds& rounds, Fitter& steps, double learned_share, FitReport& report) {
-    const Surface fitted(rounds.best);
-    steps.find_again(std::move(rounds.at_start), fitted);
-    const double error = steps.held_error(fitted);
-    const double edge = static_cast<double>(mean_edge(fitted));
-    const double variance = static_cast<double>(steps.variance());
-    const double optimism = variance * (learned_share + kCrumpling * variance / (edge * edge));
-    report.improved = report.rounds > 0 && error * error < report.rms_before * report.rms_before + optimism;
-    if (report.improved) report.rms_after = error;
-}
+    bool solve(int round, Surface& surface, PointsByFace& points) {
+        const double error = fitter_.solve(points, surface);
+        if (round == 0 || error < best_error_) {
+            best_ = network_;
+            best_error_ = error;
+            report_.sources = fitter_.sources();
+            report_.rounds = round + 1;
+        }
+        if (round >= kFirstRounds && error > (1 - kLeastProgress) * error_before_last_) return true;
+        error_before_last_ = last_error_;
+        last_error_ = error;
+        if (options_.flip_edges && round + 1 < rounds_) report_.flips += fitter_.flip_edges(surface, points);
+        return false;
+    }
+
+    Network& network_;
+    Fitter& fitter_;
+    const FitOptions& options_;
+    FitReport& report_;
+    const int rounds_;
+    HeldOut at_start_;  ///< with the directions of the mesh before the rounds
+    Network best_;
+    double best_error_ = 0;
+    double last_error_ = 0;
+    double error_before_last_ = 0;
+};
 
 }  // namespace
 
 FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOptions& options, int threads,
                         std::uint64_t seed, Progress& progress) {
     FitReport report;
-    report.origin = own_places(network);
+    report.sources = own_sources(network);
     Random random(seed);
-    const bool to_be_reduced =
-        options.target_vertices > 0 && options.target_vertices < network.vertex_count();
-    const int vertices = to_be_reduced ? options.target_vertices : network.vertex_count();
+    const bool reduces = options.reduce_to > 0 && options.reduce_to < network.vertex_count();
+    const int vertices = reduces ? options.reduce_to : network.vertex_count();
     const auto wanted = static_cast<std::size_t>(std::max<long long>(
         options.min_points, static_cast<long long>(options.points_per_vertex) * vertices));
-    Split points = choose_points(target, wanted, random);
-    if (points.fitted.points.size() < kLeastPoints || network.face_count() == 0) return report;
+    PointChoice points = choose_points(target, wanted, random);
+    if (points.fitted.size() < kMinPoints || network.face_count() == 0) return report;
     const double learned_share = target.has_faces() ? 0.0
                                                     : kLearnedShare * network.vertex_count() /
                                                           static_cast<double>(target.positions().size());
     ThreadTeam team(thread_count(threads));
-    Fitter steps(network, std::move(points), team);
+    Fitter fitter(network, std::move(points), team);
     // By time: the reduction takes about as long as the rounds.
     PartOf untangling(progress, 0, 0.1);
     PartOf reducing(progress, 0.1, 0.5);
-    PartOf fitting(progress, to_be_reduced ? 0.5 : 0.1, 1);
-    if (!steps.untangle_surface(untangling)) return report;
-    if (to_be_reduced) {
-        const bool reduced = steps.reduce_to(vertices, reducing);
-        report.origin = own_places(network);
+    PartOf fitting(progress, reduces ? 0.5 : 0.1, 1);
+    if (!fitter.untangle_surface(untangling)) return report;
+    if (reduces) {
+        const bool reduced = fitter.reduce_to(vertices, reducing);
+        report.sources = own_sources(network);
         if (!reduced) return report;
     }
     const Network before = network;
-    Rounds rounds = take_rounds(network, steps, options, report, fitting);
-    judge(rounds, steps, learned_share, report);
+    FitRounds rounds(network, fitter, options, report);
+    rounds.run(fitting);
+    rounds.judge(learned_share, team);
     if (report.improved) {
-        network = std::move(rounds.best);
-        settle_origins(before, network, report.origin);
+        network = std::move(rounds.best());
+        find_sources(before, network, report.sources);
     } else {
         network = before;
-        report.origin = own_places(before);
+        report.sources = own_sources(before);
     }
     return report;
 }

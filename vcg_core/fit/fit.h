@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The fit to the points: learning leaves every vertex somewhat behind its signals, least squares take it the
-// rest of the way. Comes after the learning; vertices that it can do without are taken out.
+// Least-squares fit to the points after learning: removes the lag that learning leaves, and surplus vertices.
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "vcg_core/base/progress.h"
 #include "vcg_core/mesh/network.h"
@@ -14,57 +12,62 @@
 
 namespace neuralmesh {
 
-/// What the fit may do. The defaults were found by experiment.
+/// What the fit may change. The defaults were chosen by tests/experiments/accuracy.
 struct FitOptions {
-    int rounds = 0;  ///< of least squares at most, each with new nearest faces; 0: 20 up to 2,000 vertices, 8
-                     ///< from 5,000 on
+    /// Most rounds of least squares, each with new nearest faces. 0: 20 up to 2,000 vertices, falling to 8
+    /// from 5,000 on.
+    int rounds = 0;
     bool flip_edges = true;
-    /// Move vertices from where they are of little use to where the error is large (Hoppe et al. 1993). Off:
-    /// every vertex keeps its place in the mesh, for meshes whose density is to follow something else than
-    /// the error.
+    /// Move vertices from where they matter little to where the error is large (Hoppe et al. 1993). Turn it
+    /// off for meshes whose density must follow something else than the error.
     bool redistribute = true;
-    /// If the network has more vertices, it is first reduced to so many: those whose removal costs least go.
-    /// 0: it keeps what it has.
-    int target_vertices = 0;
-    /// Points used: all, or if there are more, a random choice of this many per vertex, but at least
-    /// min_points.
+    /// Reduce the network to this number of vertices first, removing those whose removal costs least. 0, or
+    /// at least the present number: keep it.
+    int reduce_to = 0;
+    /// Number of points used: this many per vertex, at least min_points, at most all of a cloud.
     int points_per_vertex = 100;
     int min_points = 100000;
 };
 
-/// Figures of a fit. Errors are root mean squares over points held back from it, in the core's frame, along
-/// smoothed normals of the mesh as it was before, every distance counted up to where outliers begin.
+/// Figures of a fit. Errors are root mean squares over points held out of the fit, in the core's frame,
+/// measured along smoothed normals of the mesh before the fit; each distance counts up to a bound above which
+/// points are outliers.
 struct FitReport {
-    double rms_before = 0;  ///< too low under noise: the points were not held back from the learning
-    double rms_after = 0;
+    /// After the reduction, before the first round. Too low under noise: the points were held out of the fit,
+    /// not out of the learning.
+    double rms_unfitted = 0;
+    double rms_fitted = 0;  ///< of the mesh that was kept
     int rounds = 0;
     int flips = 0;
-    int moved_vertices = 0;  ///< taken out at one place and put in at another
-    /// False: no round was kept. What comes before the rounds stays: the smoothing of a mesh that cut itself,
-    /// and the reduction.
+    int moved_vertices = 0;  ///< removed in one place and inserted in another
+    /// False: the result of the rounds was discarded. What comes before them stays: the smoothing of a mesh
+    /// that cuts itself, and the reduction.
     bool improved = false;
-    /// For every slot the vertex whose counters it takes over: itself, or, if it was put in anew, the one at
-    /// whose place it came to lie.
-    /// Ids are those before the fit. -1 for free slots.
-    std::vector<VertexId> origin;
+    /// For every slot the vertex, by its id before the fit, whose counters belong to it: itself, or for an
+    /// inserted vertex the one at whose place it lies. -1 for free slots.
+    PerVertex<VertexId> sources;
 };
 
-/// Moves the vertices of \p network so that its surface comes as close to the points of \p target as it can:
-/// rounds of linear least squares over the distances of the points to their nearest faces, with a bending
-/// term whose weight the points held back decide; between them edges are flipped (and vertices redistributed)
-/// where that brings the points closer. Far outliers lose their pull. No face turns over or becomes a sliver;
-/// the result is kept only if it is closer to the points held back than the mesh was before (but for what
-/// learning has followed of their noise, see rms_before). Where the surface cuts itself it is smoothed first,
-/// and it does not come to cut itself in more faces than before.
+/// Moves the vertices of \p network so that the sum of squared distances of the points of \p target becomes
+/// as small as the points held out of the fit support. Each round assigns the points to their nearest faces
+/// and solves linear least squares with a bending term, whose weight minimises the error at the held-out
+/// points. Between rounds edges are flipped and vertices redistributed where that lowers the distances.
 ///
-/// The number of components, handles and boundary loops stays, and that of vertices unless
-/// options.target_vertices asks for less; \p network has more than that only if it was asked to stop, or if
-/// nothing more can be taken out without harm to the surface,
-/// or if there are hardly any points to fit to. "Before" is after the reduction. The same bytes
-/// for any \p threads (0: as many as the machine has). Stops early, with the best mesh so far, when \p
-/// progress asks for it; fractions run from 0 to 1. Exact nearest faces: O(points log faces) a round, in all
-/// about 2.5 s of processor time for 10k vertices and 200k points. Sources: Hoppe, DeRose, Duchamp, McDonald,
-/// Stuetzle, "Mesh Optimization" (1993); the linearisation is Gauss-Newton's for distances (point to plane).
+/// - What stays: components, handles, boundary loops, and the number of vertices unless options.reduce_to is
+///   less. No face turns over, folds onto a neighbour or becomes a sliver.
+/// - Self-crossings are smoothed out first where possible; the fit adds none.
+/// - Outliers: the influence of a far point falls with its squared distance.
+/// - The result of the rounds is kept only if its error at the held-out points is smaller, allowing for the
+///   noise that learning has followed (see rms_unfitted). Else the mesh stays as it was before them.
+/// - The reduction falls short of options.reduce_to if it was stopped, if no more vertices can go without
+///   harm, or if there are fewer than 64 points.
+/// - If \p progress asks to stop, the best mesh so far is kept. Fractions run from 0 to 1.
+/// - The result has the same bytes for any number of \p threads (0: all cores).
+///
+/// Cost: O(points x log faces) once and O(points) per round; about 2.5 s of processor time for 10,000
+/// vertices and 200,000 points. Sources: Hoppe, DeRose, Duchamp, McDonald, Stuetzle, "Mesh Optimization"
+/// (1993); the linearised distances are those of Chen and Medioni, "Object modelling by registration of
+/// multiple range images" (1992) (point to plane).
 FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOptions& options, int threads,
                         std::uint64_t seed, Progress& progress);
 

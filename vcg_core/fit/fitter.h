@@ -1,80 +1,101 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The steps of the fit and what they share: points, noise, weight, crossings.
+// The steps of the fit, on one network and its points.
 #pragma once
 
 #include <vector>
 
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/thread_team.h"
+#include "vcg_core/fit/crossing_guard.h"
+#include "vcg_core/fit/held_out.h"
+#include "vcg_core/fit/point_choice.h"
 #include "vcg_core/fit/points_by_face.h"
 #include "vcg_core/fit/redistribute.h"
-#include "vcg_core/mesh/self_crossings.h"
 
 namespace neuralmesh {
 
-/// A network on its way to the points. fit_to_points() takes the steps in their order.
-class Fitter {
+/// Chooses the bending weights that a round tries: a wide range in the first round, later the last choice and
+/// one weight on either side. The least weight falls from round to round: in the first rounds points may
+/// still be assigned to wrong faces.
+class BendingSearch {
 public:
-    /// References to \p network and \p team are kept; there are fitted and held-back points.
-    Fitter(Network& network, Split points, ThreadTeam& team);
-
-    /// Smooths out where the surface cuts itself, and from then on guards what is left of that. False if \p
-    /// progress asks to stop; then the network is as it was.
-    bool untangle_surface(Progress& progress);
-    /// Takes out the vertices whose removal costs least, some at a time, with moves in between, with a part
-    /// of the points. False if \p progress asks to stop or no more can go.
-    bool reduce_to(int vertices, Progress& progress);
-
-    /// Ties every fitted point to its nearest face, by a tree (\p exact) or from where it was last.
-    PointsByFace tie(const Surface& surface, bool exact);
-    /// Finds the points held back, exactly.
-    void find_held(const Surface& surface);
-    /// Measures from now on along the smoothed normals of \p surface.
-    void aim(const Surface& surface);
-    /// Root mean square distance of the points held back, along their directions. The nearest distance would
-    /// not do: under noise a crumpled surface is nearer to every point than the true one.
-    double held_error(const Surface& surface) const;
-
-    /// Solves for several bending weights, takes what brings the points held back closest: moves the vertices
-    /// of the network there, and \p surface, which is its surface, with them. \return the error of the points
-    /// held back
-    double move(const PointsByFace& ties, Surface& surface);
-    /// Moves vertices to where the error is. \return how many
-    int shift_vertices(const Surface& surface, const PointsByFace& ties);
-    /// Flips edges where that brings the points closer; new feet for \p ties first. \return how many
-    int flip(const Surface& surface, PointsByFace& ties);
-
-    /// The points held back with their directions: to judge two meshes by the same ones.
-    const TrackedPoints& held() const { return points_.held; }
-    /// Takes \p held for them and finds where they are on \p surface; their directions stay.
-    void find_again(TrackedPoints held, const Surface& surface);
-    /// For every slot the vertex beside which it was put in, or itself.
-    const std::vector<VertexId>& origin() const { return origin_; }
-    float variance() const { return noise_; }  ///< of the noise
+    /// The weights to try, none below \p least, which the noise demands. Starts a round.
+    std::vector<float> next_weights(float least);
+    /// \p weight was the best of them.
+    void choose(float weight) { chosen_ = weight; }
 
 private:
-    void wait_for_reduction();
-    template <class Change>
-    auto guarded(const Surface& surface, const Change& change);
-    float least_gain(const Surface& surface) const;
-    void move_on(const std::vector<VertexMoves::DoneCollapse>& merges);
-    void follow(const Surface& surface, PointsByFace& ties) const;
-
-    Network& network_;
-    Split points_;
-    std::vector<Vector3> waiting_;  ///< points for after the reduction
-    ThreadTeam& team_;
-    float outlier_ = 0;  ///< for the judgement: fixed from the start
-    float noise_ = 0;    ///< variance
-    float weight_ = 0;
-    int moves_ = 0;
-    std::vector<VertexId> origin_;
-    CrossingGuard guard_;  ///< of the current state
+    int rounds_ = 0;
+    float chosen_ = 0;
 };
 
-/// The origins where nothing has been put in: every vertex itself, -1 for free slots.
-std::vector<VertexId> own_places(const Network& network);
+/// A network and its state during the fit. fit_to_points() has the order of the steps.
+class Fitter {
+public:
+    /// Keeps references to \p network and \p team. Neither part of \p points is empty.
+    Fitter(Network& network, PointChoice points, ThreadTeam& team);
+
+    /// Removes self-crossings where smoothing can, and from then on lets no step add any. \return false if
+    /// \p progress asks to stop; then the network is unchanged.
+    bool untangle_surface(Progress& progress);
+    /// Removes the vertices whose removal costs least, in rounds with a least-squares solution in each, using
+    /// part of the points. \pre it has more than \p vertices. \return false if \p progress asks to stop or no
+    /// more vertices can go
+    bool reduce_to(int vertices, Progress& progress);
+
+    /// Assigns the fitted points to their nearest faces and finds the held-out points, all by exact search.
+    PointsByFace locate_points(const Surface& surface);
+    /// Assigns the fitted points to their nearest faces by walks from the last ones.
+    PointsByFace assign_faces(const Surface& surface);
+    /// From now on measures the error along the smoothed normals of \p surface.
+    void set_directions(const Surface& surface) { held_out_.set_directions(network_, surface, team_); }
+    /// Root mean square error at the held-out points.
+    double held_out_error(const Surface& surface) const { return error_at(held_out_, surface); }
+    /// The same at other held-out points, with their own directions.
+    double error_at(const HeldOut& held_out, const Surface& surface) const {
+        return held_out.rms_error(surface, outlier_distance_, team_);
+    }
+
+    /// Solves the least squares for several bending weights and moves the vertices to the solution with the
+    /// least error at the held-out points. Moves \p surface, that of the network, with them. \return the
+    /// error
+    double solve(const PointsByFace& points, Surface& surface);
+    /// Collapses vertices that matter little and inserts as many where the error is large. \return how many
+    int redistribute_vertices(const Surface& surface, const PointsByFace& points);
+    /// Flips edges where that brings the points closer; updates the feet of \p points before. \return how
+    /// many
+    int flip_edges(const Surface& surface, PointsByFace& points);
+
+    const HeldOut& held_out() const { return held_out_; }
+    /// For every slot of the network: itself, or for an inserted vertex one that was near it.
+    const PerVertex<VertexId>& sources() const { return sources_; }
+    float noise_variance() const { return noise_variance_; }
+
+private:
+    PointsByFace assign(const Surface& surface, const std::vector<Hit>& hits);
+    std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
+    float least_split_gain(const Surface& surface) const;
+    template <class Change>
+    auto guarded(const Surface& surface, const Change& change);
+    void redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses);
+    void set_points_aside();
+    bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count);
+
+    Network& network_;
+    ThreadTeam& team_;
+    TrackedPoints fitted_;
+    std::vector<Vector3> set_aside_;  ///< fitted points not used before the reduction is over
+    HeldOut held_out_;
+    float outlier_distance_ = 0;  ///< from the first assignment; fixed, so that errors stay comparable
+    float noise_variance_ = 0;    ///< from the last assignment
+    BendingSearch bending_;
+    PerVertex<VertexId> sources_;
+    CrossingGuard guard_;  ///< has accepted the present surface
+};
+
+/// The sources of a network without inserted vertices: every vertex itself, -1 for free slots.
+PerVertex<VertexId> own_sources(const Network& network);
 
 }  // namespace neuralmesh

@@ -1,103 +1,93 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// One round of least squares: where the vertices should go so that the points, each tied to its nearest face,
-// come closest.
+// One round of least squares: the displacements of the vertices that bring the points closest to the surface,
+// each point keeping its nearest face.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "vcg_core/base/thread_team.h"
+#include "vcg_core/fit/points_by_face.h"
+#include "vcg_core/fit/symmetric3.h"
 #include "vcg_core/mesh/surface.h"
 
 namespace neuralmesh {
 
-/// The points tied to each face.
-struct PointsByFace {
-    struct Tie {
-        Vector3 point;
-        float influence;  ///< 1, less for outliers
-        Foot foot;
-    };
-    std::vector<Tie> ties;   ///< face by face
-    std::vector<int> first;  ///< of face f: ties[first[f]] up to ties[first[f + 1] - 1]
-};
-
-/// A symmetric 3x3 matrix.
-struct Symmetric3 {
-    float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-
-    void add(const Symmetric3& b, float s) {
-        xx += s * b.xx;
-        xy += s * b.xy;
-        xz += s * b.xz;
-        yy += s * b.yy;
-        yz += s * b.yz;
-        zz += s * b.zz;
-    }
-    void add_identity(float s) {
-        xx += s;
-        yy += s;
-        zz += s;
-    }
-    Vector3 operator*(const Vector3& v) const {
-        return {xx * v[0] + xy * v[1] + xz * v[2], xy * v[0] + yy * v[1] + yz * v[2],
-                xz * v[0] + yz * v[1] + zz * v[2]};
-    }
-};
-
-/// The normal equations of one round for the displacements u of the vertices: minimise
+/// The normal equations of one round, (A + lambda B) u = f + lambda g, for the displacements u of the
+/// vertices. They minimise
 ///
-///   sum over ties  w ((n.e)^2 + kTangential |e_t|^2),  e = p - sum_k b_k (x_k + u_k), n the direction of e
-/// + sum over edges  lambda c_e |gap_e(x + u)|^2       bending, see below
-/// + sum over vertices  (tangential smoothing and damping, both weak)
-/// + sum over vertices  with a star that has far fewer points than its area should have: a pull to the ring's
-/// middle
+///   sum over points    w ((n.e)^2 + kTangential |e_t|^2)   e = p - sum_k b_k (x_k + u_k), e_t = e - (n.e) n
+/// + sum over edges     lambda c_e |gap_e(x + u)|^2         bending
+/// + sum over vertices  centring within the tangent plane, and damping, both weak
+/// + sum over vertices  a pull to the middle of the ring, for those that lack points
 ///
-/// To first order n.e is the distance of the point from the moved surface, whatever slides along it: this is
-/// what lets vertices find creases. gap is the vector between the points where the two diagonals of an edge's
-/// quad cross when the quad is unfolded into the plane: zero exactly where the surface is flat, for any shape
-/// of the triangles. c_e falls off where the gap is large among the mesh's gaps, so that creases are not
-/// rounded.
+/// where a point p has influence w and foot sum_k b_k x_k, and n is the normal of its face, or the direction
+/// of e if the foot is on the face's border. n.e is, to first order, the distance of the point from the moved
+/// surface, whatever slides along it; this lets vertices move onto creases.
+/// gap_e is the vector between the points where the two diagonals of the edge's quad cross when the quad is
+/// unfolded into the plane: 0 exactly where the surface is flat, whatever the shape of the triangles. c_e
+/// falls where the gap is large among the gaps of the mesh, so that creases are not rounded.
 class PointToPlaneSystem {
 public:
+    /// Keeps a reference to \p network. O(points + vertices).
     PointToPlaneSystem(const Network& network, const Surface& surface, const PointsByFace& points,
                        ThreadTeam& team);
 
-    /// The displacement of every slot for bending weight \p lambda (relative to the points per vertex), by
-    /// conjugate gradients preconditioned with the 3x3 diagonal blocks. O(vertices) per iteration.
-    std::vector<Vector3> solve(float lambda) const;
+    /// When solve() ends: at the residual \p tolerance relative to that of u = 0, in the norm of the
+    /// preconditioner, or after \p iterations. The defaults suit rounds that are repeated with new faces.
+    struct Accuracy {
+        double tolerance = 1e-2;
+        int iterations = 40;
+    };
+    /// The displacement of every slot for the bending weight \p lambda (1: a gap weighs as much as the points
+    /// of one vertex at that distance), by conjugate gradients preconditioned with the 3x3 diagonal blocks.
+    /// O(vertices) per iteration.
+    PerVertex<Vector3> solve(float lambda, Accuracy accuracy) const;
+    PerVertex<Vector3> solve(float lambda) const { return solve(lambda, Accuracy()); }
+
+    /// (A + lambda B) u, into \p result, of the same size. O(vertices).
+    void multiply(float lambda, const PerVertex<Vector3>& u, PerVertex<Vector3>& result) const;
+    /// f + lambda g.
+    PerVertex<Vector3> right_side(float lambda) const;
 
 private:
+    /// The bending term of an edge: gap = sum of coefficient x position over the corners.
     struct BendingTerm {
         std::array<VertexId, 4> corner;  ///< the edge's ends, then the two vertices opposite
         std::array<float, 4> coefficient;
+        Vector3 gap;
         float weight;  ///< c_e
     };
-    /// Blocks of a face's pairs of corners 00, 11, 22, 01, 12, 20 and right-hand sides of its corners.
+    /// The part of a face: blocks of the pairs of corners 00, 11, 22, 01, 12, 20, right sides of the corners.
     struct FaceSums {
         std::array<Symmetric3, 6> pair;
         std::array<Vector3, 3> force;
     };
 
     static FaceSums sum_over(const Surface& surface, const PointsByFace& points, int face);
-    void gather(const std::vector<FaceSums>& sums, const Surface& surface, VertexId v);
-    void regularise(const Surface& surface, VertexId v);
-    void measure_support(const Surface& surface, const PointsByFace& points);
-    void make_bending_terms(const Surface& surface);
-    void multiply(float lambda, const std::vector<Vector3>& u, std::vector<Vector3>& result) const;
+    void gather(const PerFace<FaceSums>& sums, const Surface& surface, VertexId v);
+    void regularise(const Surface& surface, float missing_points, VertexId v);
+    static bool make_bending_term(const Surface& surface, const std::array<VertexId, 4>& corner,
+                                  BendingTerm& term);
+    void add_bending(const Surface& surface);
+    Symmetric3* row(VertexId v) { return block_.data() + row_[v]; }
+    const Symmetric3* row(VertexId v) const { return block_.data() + row_[v]; }
+    PerVertex<Symmetric3> preconditioner(float lambda) const;
 
     const Network& network_;
-    float unit_ = 1;  ///< points per vertex
-    std::vector<float>
-        missing_;  ///< of slot v: points that its faces should have more, as the density around goes
-    std::vector<std::size_t> row_;  ///< of slot v: block_[row_[v]] + i belongs to ring position i
+    float points_per_vertex_;
+    // A by block rows, and f.
+    PerVertex<std::size_t> row_;  ///< row(v)[i] is the block of v and its neighbour at ring position i
     std::vector<Symmetric3> block_;
-    std::vector<Symmetric3> diagonal_;
-    std::vector<Vector3> force_;
+    PerVertex<Symmetric3> diagonal_;
+    PerVertex<Vector3> force_;
+    // B by terms, its diagonal, and g.
     std::vector<BendingTerm> bending_terms_;
-    std::vector<Vector3> bending_force_;
-    std::vector<float> bending_diagonal_;
+    PerVertex<float> bending_diagonal_;
+    PerVertex<Vector3> bending_force_;
 };
 
 }  // namespace neuralmesh

@@ -1,26 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Moves halved until no face turns over, folds, becomes a sliver or cuts another.
 #include "vcg_core/fit/move_limits.h"
+
+#include "vcg_core/fit/face_rules.h"
 
 namespace neuralmesh {
 
 namespace {
 
-constexpr float kLongestMove = 0.25F;   ///< in mean lengths of the vertex's edges
-constexpr float kLeastTurn = 0.3F;      ///< cosine between a face's normals before and after
-constexpr float kSharpestFold = -0.6F;  ///< cosine between the normals of neighbouring faces
-constexpr float kSliver = 0.06F;        ///< triangle_quality() below which a face may not fall
-constexpr int kHalvings = 5;            ///< before the vertices of an offending face stay where they are
+constexpr float kMaxMove = 0.25F;  ///< in mean lengths of the vertex's edges
+constexpr int kHalvings = 5;       ///< of a displacement before it is set to 0
 
-std::vector<Vector3> normals_of(const Surface& surface, const std::vector<Vector3>& at) {
-    std::vector<Vector3> result(surface.faces.size());
-    for (std::size_t i = 0; i < result.size(); ++i) {
-        const Triangle& f = surface.faces[i];
-        result[i] = area_vector(at[index(f[0])], at[index(f[1])], at[index(f[2])]).normalized();
-    }
+PerFace<Vector3> normals_of(const Surface& surface, const PerVertex<Vector3>& positions) {
+    PerFace<Vector3> result(surface.face_count(), Vector3::Zero());
+    for (int f = 0; f < result.size(); ++f) result[f] = area_vector(surface.faces[f], positions).normalized();
     return result;
+}
+
+float quality_of(const Surface& surface, int f, const PerVertex<Vector3>& positions) {
+    const Triangle& face = surface.faces[f];
+    return triangle_quality(positions[face[0]], positions[face[1]], positions[face[2]]);
+}
+
+bool share_edge(const Triangle& f, const Triangle& g) {
+    int shared = 0;
+    for (VertexId a : f)
+        for (VertexId b : g) shared += a == b ? 1 : 0;
+    return shared == 2;
 }
 
 }  // namespace
@@ -28,65 +35,64 @@ std::vector<Vector3> normals_of(const Surface& surface, const std::vector<Vector
 MoveLimits::MoveLimits(const Network& network, const Surface& surface)
     : network_(network),
       surface_(surface),
-      normals_(normals_of(surface, surface.at)),
-      folded_(normals_.size()),
-      longest_(surface.at.size()) {
-    for (std::size_t i = 0; i < normals_.size(); ++i) {
-        const Triangle& f = surface_.faces[i];
+      normals_(normals_of(surface, surface.positions)),
+      qualities_(normals_.size(), 0),
+      folded_(normals_.size(), 0),
+      max_move_(network.slot_count(), 0) {
+    for (int f = 0; f < normals_.size(); ++f) {
+        const Triangle& face = surface_.faces[f];
+        qualities_[f] = quality_of(surface_, f, surface_.positions);
         for (std::size_t k = 0; k < 3; ++k)
-            if (normals_[i].dot(normal_beyond(surface_, f[k], f[(k + 1) % 3])) < kSharpestFold)
-                folded_[i] = 1;
+            if (kMoveRules.is_folded(normals_[f].dot(normal_beyond(surface_, face[k], face[(k + 1) % 3]))))
+                folded_[f] = 1;
     }
-    for (VertexId v = 0; v < network.slot_count(); ++v) {
-        const Ring& ring = network.ring(v);
-        if (ring.valence == 0) continue;
+    for (VertexId v : network.vertices()) {
         float length = 0;
-        for (int i = 0; i < ring.valence; ++i)
-            length += (surface_.at[index(ring[i])] - surface_.at[index(v)]).norm();
-        longest_[index(v)] = kLongestMove * length / static_cast<float>(ring.valence);
+        for (VertexId u : network.ring(v)) length += (surface_.positions[u] - surface_.positions[v]).norm();
+        max_move_[v] = kMaxMove * length / static_cast<float>(network.ring(v).valence);
     }
 }
 
-/// One set of displacements, and what becomes of it within the limits.
-class MoveLimits::Mover {
+/// One set of displacements while it is shortened.
+class MoveLimits::Moves {
 public:
-    Mover(const MoveLimits& limits, const std::vector<Vector3>& u)
-        : limits_(limits), surface_(limits.surface_), move_(u), moved_(surface_.at) {
-        for (std::size_t v = 0; v < moved_.size(); ++v) {
-            const float bound = limits.longest_[v];
-            const float norm = move_[v].norm();
-            if (norm > bound) move_[v] *= bound / norm;
-            if (!(norm >= 0)) move_[v].setZero();
+    Moves(const MoveLimits& limits, const PerVertex<Vector3>& displacements)
+        : limits_(limits), surface_(limits.surface_), move_(displacements), moved_(surface_.positions) {
+        for (VertexId v = 0; v < moved_.size(); ++v) {
+            const float bound = limits.max_move_[v];
+            const float length = move_[v].norm();
+            if (length > bound) move_[v] *= bound / length;
+            if (!(length >= 0)) move_[v].setZero();  // not a number
             moved_[v] += move_[v];
         }
     }
 
-    // Every pass sets at least one more vertex to rest once the halvings are used up, and no move at all is
-    // always allowed; so these loops end.
-    std::vector<Vector3> run() {
+    // Once the halvings are used up, every pass sets at least one more displacement to 0, and the surface
+    // without any displacement breaks no limit; so these loops end.
+    PerVertex<Vector3> shorten_to_limits() {
         for (int pass = 0;; ++pass)
             if (!shorten(find_offending(), pass)) return std::move(moved_);
     }
 
-    std::vector<Vector3> run(CrossingGuard& guard, ThreadTeam& team) {
+    PerVertex<Vector3> shorten_to_limits(CrossingGuard& guard, ThreadTeam& team) {
         Surface now = surface_;
-        const std::vector<Crossing> at_start = guard.standing();
+        const std::vector<SelfCrossing> at_start = guard.accepted();
         int crossed = 0;
         for (int pass = 0;; ++pass) {
             if (shorten(find_offending(), pass)) continue;
-            now.at = moved_;
-            std::vector<char> offending(moved_.size(), 0);
-            for (const VertexId v : guard.objections(crossings_after(now, surface_, at_start, team)))
-                offending[index(v)] = 1;
+            now.positions = moved_;
+            PerVertex<char> offending(moved_.size(), 0);
+            for (VertexId v : guard.objections(update_self_crossings(now, surface_, at_start, team)))
+                offending[v] = 1;
             if (!shorten(offending, crossed++)) return std::move(moved_);
         }
     }
 
 private:
-    /// \return whether any of the \p offending vertices moved at all
-    bool shorten(const std::vector<char>& offending, int pass) {
+    /// \return whether any of the \p offending vertices had a displacement left
+    bool shorten(const PerVertex<char>& offending, int pass) {
         bool any = false;
-        for (std::size_t v = 0; v < moved_.size(); ++v) {
+        for (VertexId v = 0; v < moved_.size(); ++v) {
             if (offending[v] == 0 || move_[v] == Vector3(0, 0, 0)) continue;
             any = true;
             if (pass < kHalvings) {
@@ -94,68 +100,57 @@ private:
             } else {
                 move_[v].setZero();
             }
-            moved_[v] = surface_.at[v] + move_[v];
+            moved_[v] = surface_.positions[v] + move_[v];
         }
         return any;
     }
 
-    bool spoiled(std::size_t i, const std::vector<Vector3>& now) const {
-        if (limits_.normals_[i].dot(now[i]) < kLeastTurn && limits_.folded_[i] == 0) return true;
-        const Triangle& f = surface_.faces[i];
-        const auto quality = [&](const std::vector<Vector3>& at) {
-            return triangle_quality(at[index(f[0])], at[index(f[1])], at[index(f[2])]);
-        };
-        const float after = quality(moved_);
-        return after < kSliver && after < 0.9F * quality(surface_.at);
+    bool is_spoiled(int face, const PerFace<Vector3>& normals) const {
+        if (kMoveRules.turns_over(limits_.normals_[face], normals[face]) && limits_.folded_[face] == 0)
+            return true;
+        return kMoveRules.is_sliver(limits_.qualities_[face], quality_of(surface_, face, moved_));
     }
 
     /// Vertices of faces that turn over, become slivers, or fold onto a neighbour.
-    std::vector<char> find_offending() const {
-        const std::vector<Vector3> now = normals_of(surface_, moved_);
-        std::vector<char> offending(moved_.size(), 0);
-        const auto mark = [&](std::size_t face) {
-            for (const VertexId v : surface_.faces[face]) offending[index(v)] = 1;
+    PerVertex<char> find_offending() const {
+        const PerFace<Vector3> normals = normals_of(surface_, moved_);
+        PerVertex<char> offending(moved_.size(), 0);
+        const auto mark = [&](int face) {
+            for (VertexId v : surface_.faces[face]) offending[v] = 1;
         };
-        for (std::size_t i = 0; i < now.size(); ++i)
-            if (spoiled(i, now)) mark(i);
-        for (VertexId v = 0; v < limits_.network_.slot_count(); ++v) {
-            // The faces of a vertex that share an edge with it share that edge's other end.
-            for (int i = surface_.first_face[index(v)]; i < surface_.first_face[index(v) + 1]; ++i) {
-                const auto f = index(surface_.face_of[index(i)]);
-                for (int j = i + 1; j < surface_.first_face[index(v) + 1]; ++j) {
-                    const auto g = index(surface_.face_of[index(j)]);
-                    const float fold = now[f].dot(now[g]);
-                    if (fold >= kSharpestFold || fold >= limits_.normals_[f].dot(limits_.normals_[g]) ||
-                        !share_edge(f, g))
-                        continue;
-                    mark(f);
-                    mark(g);
-                }
-            }
+        for (int f = 0; f < normals.size(); ++f)
+            if (is_spoiled(f, normals)) mark(f);
+        for (VertexId v : limits_.network_.vertices()) {
+            const Span<const int> around = surface_.faces_around(v);
+            for (int i = 0; i < around.size(); ++i)
+                for (int j = i + 1; j < around.size(); ++j)
+                    if (fold(around[i], around[j], normals)) {
+                        mark(around[i]);
+                        mark(around[j]);
+                    }
         }
         return offending;
     }
 
-    bool share_edge(std::size_t f, std::size_t g) const {
-        int shared = 0;
-        for (const VertexId a : surface_.faces[f])
-            for (const VertexId b : surface_.faces[g]) shared += a == b ? 1 : 0;
-        return shared == 2;
+    /// Whether two faces around a vertex are neighbours and fold.
+    bool fold(int f, int g, const PerFace<Vector3>& normals) const {
+        return kMoveRules.folds(limits_.normals_[f].dot(limits_.normals_[g]), normals[f].dot(normals[g])) &&
+               share_edge(surface_.faces[f], surface_.faces[g]);
     }
 
     const MoveLimits& limits_;
     const Surface& surface_;
-    std::vector<Vector3> move_;
-    std::vector<Vector3> moved_;
+    PerVertex<Vector3> move_;
+    PerVertex<Vector3> moved_;
 };
 
-std::vector<Vector3> MoveLimits::bounded(const std::vector<Vector3>& u) const {
-    return Mover(*this, u).run();
+PerVertex<Vector3> MoveLimits::bounded(const PerVertex<Vector3>& displacements) const {
+    return Moves(*this, displacements).shorten_to_limits();
 }
 
-std::vector<Vector3> MoveLimits::uncrossed(const std::vector<Vector3>& u, CrossingGuard& guard,
-                                           ThreadTeam& team) const {
-    return Mover(*this, u).run(guard, team);
+PerVertex<Vector3> MoveLimits::without_crossings(const PerVertex<Vector3>& displacements,
+                                                 CrossingGuard& guard, ThreadTeam& team) const {
+    return Moves(*this, displacements).shorten_to_limits(guard, team);
 }
 
 }  // namespace neuralmesh

@@ -1,37 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What keeps a solution of the least squares from breaking the surface.
+// Limits displacements of vertices so that they do not break the surface.
 #pragma once
 
-#include <vector>
-
+#include "vcg_core/fit/crossing_guard.h"
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/mesh/self_crossings.h"
 
 namespace neuralmesh {
 
-/// How far the vertices of a surface may move. No face turns over, folds onto its neighbour or becomes a
-/// sliver, and no vertex moves further than a quarter of the way to its neighbours.
+/// How far the vertices of a surface may move: kMoveRules of face_rules.h hold for its faces, and no vertex
+/// moves further than a quarter of the mean length of its edges. Displacements that break a limit are halved
+/// up to five times, then set to 0.
 class MoveLimits {
 public:
-    /// References to the arguments are kept; they have to stay what they are. O(vertices)
+    /// Keeps references to the arguments; they must not change meanwhile. O(vertices).
     MoveLimits(const Network& network, const Surface& surface);
 
-    /// The positions by slot after the displacements \p u, shortened where they break a limit.
-    std::vector<Vector3> bounded(const std::vector<Vector3>& u) const;
-    /// The same, shortened on until \p guard, which stands for the surface, has no objections.
-    std::vector<Vector3> uncrossed(const std::vector<Vector3>& u, CrossingGuard& guard,
-                                   ThreadTeam& team) const;
+    /// The positions after the \p displacements, shortened where they break a limit. O(vertices) per halving.
+    PerVertex<Vector3> bounded(const PerVertex<Vector3>& displacements) const;
+    /// The same, shortened further until \p guard, which has accepted the surface, accepts the result.
+    PerVertex<Vector3> without_crossings(const PerVertex<Vector3>& displacements, CrossingGuard& guard,
+                                         ThreadTeam& team) const;
 
 private:
-    class Mover;
+    class Moves;
 
     const Network& network_;
     const Surface& surface_;
-    std::vector<Vector3> normals_;
-    std::vector<char> folded_;  ///< faces that lie folded back, so have to turn to come right
-    std::vector<float> longest_;
+    PerFace<Vector3> normals_;
+    PerFace<float> qualities_;
+    PerFace<char> folded_;  ///< 1: folded onto a neighbour before the move, so it must be free to turn
+    PerVertex<float> max_move_;
 };
 
 }  // namespace neuralmesh

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Points and their faces.
 #include "vcg_core/fit/points_by_face.h"
 
-#include <algorithm>
 #include <numeric>
 
 #include "vcg_core/base/parallel_for.h"
+#include "vcg_core/mesh/face_tree.h"
 
 namespace neuralmesh {
 
@@ -17,145 +16,54 @@ constexpr std::size_t kChunk = 512;
 
 }  // namespace
 
-Split choose_points(const TargetSpace& target, std::size_t wanted, Random& random) {
-    constexpr std::size_t kMostDrawn = 2000000;
-    constexpr std::size_t kHeldShare = 8;
-    constexpr std::size_t kMostHeld = 10000;
-    const auto& positions = target.positions();
-    wanted = target.has_faces() ? std::min(wanted, std::max(kMostDrawn, wanted / 10))
-                                : std::min(wanted, positions.size());
-    const std::size_t held = std::min(wanted / kHeldShare, kMostHeld);
-    Split split;
-    split.held.points.reserve(held);
-    split.fitted.points.reserve(wanted - held);
-    const auto take = [&](const vcg::Point3f& p) {
-        TrackedPoints& part = split.held.points.size() < held ? split.held : split.fitted;
-        part.points.push_back(to_eigen(p));
-    };
-    if (target.has_faces()) {
-        for (std::size_t i = 0; i < wanted; ++i) take(target.sample(random));
-        return split;
-    }
-    std::vector<std::uint32_t> order(positions.size());
-    std::iota(order.begin(), order.end(), 0U);
-    for (std::size_t i = 0; i < wanted; ++i) {
-        std::swap(order[i], order[i + random.below(static_cast<std::uint32_t>(order.size() - i))]);
-        take(positions[order[i]]);
-    }
-    return split;
-}
-
-float median(std::vector<float> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-float mean_edge(const Surface& surface) {
-    double sum = 0;
-    for (std::size_t f = 0; f < surface.faces.size(); ++f)
-        for (std::size_t k = 0; k < 3; ++k)
-            sum += static_cast<double>(
-                (surface.corner(static_cast<int>(f), k) - surface.corner(static_cast<int>(f), (k + 1) % 3))
-                    .norm());
-    return static_cast<float>(sum / (3 * static_cast<double>(surface.faces.size())));
-}
-
-std::vector<Hit> exact_hits(const Surface& surface, const TrackedPoints& followed, ThreadTeam& team) {
+std::vector<Hit> nearest_by_tree(const Surface& surface, const TrackedPoints& tracked, ThreadTeam& team) {
     const FaceTree tree(surface);
-    std::vector<Hit> hits(followed.points.size());
+    std::vector<Hit> hits(tracked.points.size());
     for_chunks(hits.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) hits[i] = tree.nearest(followed.points[i]);
+        for (std::size_t i = begin; i < end; ++i) hits[i] = tree.nearest(tracked.points[i]);
     });
     return hits;
 }
 
-std::vector<Hit> walked_hits(const Surface& surface, const TrackedPoints& followed, ThreadTeam& team) {
-    std::vector<Hit> hits(followed.points.size());
+std::vector<Hit> nearest_by_walk(const Surface& surface, const TrackedPoints& tracked, ThreadTeam& team) {
+    std::vector<Hit> hits(tracked.points.size());
     for_chunks(hits.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            hits[i] = walk_to_nearest(surface, followed.points[i], followed.near[i]);
+            hits[i] = walk_to_nearest(surface, tracked.points[i], tracked.last_hit[i]);
     });
     return hits;
 }
 
-PointsByFace by_face(const Surface& surface, TrackedPoints& followed, const std::vector<Hit>& hits) {
-    PointsByFace result;
-    result.first.assign(surface.faces.size() + 1, 0);
-    for (const Hit& hit : hits) ++result.first[index(hit.face) + 1];
-    std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
-    result.ties.resize(hits.size());
-    std::vector<int> next(result.first.begin(), result.first.end() - 1);
+// A counting sort by face.
+PointsByFace::PointsByFace(const Surface& surface, const std::vector<Vector3>& points,
+                           const std::vector<Hit>& hits)
+    : assignments_(hits.size()), first_(surface.face_count() + 1, 0) {
+    for (const Hit& hit : hits) ++first_[hit.face + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    PerFace<int> next = first_;
     for (std::size_t i = 0; i < hits.size(); ++i)
-        result.ties[index(next[index(hits[i].face)]++)] = {followed.points[i], 1, hits[i].foot};
-    followed.near.resize(hits.size());
-    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
-        for (auto i = index(result.first[f]); i < index(result.first[f + 1]); ++i) {
-            followed.points[i] = result.ties[i].point;
-            followed.near[i] = walk_start_of(surface, {static_cast<int>(f), result.ties[i].foot});
+        assignments_[static_cast<std::size_t>(next[hits[i].face]++)] = {points[i], 1, hits[i].foot};
+}
+
+void PointsByFace::update_feet(const Surface& surface, ThreadTeam& team) {
+    parallel_for(surface.face_count(), kChunk, team, [&](int face) {
+        for (Assignment& a : of(face))
+            a.foot = foot_on_triangle(a.point, surface.corner(face, 0), surface.corner(face, 1),
+                                      surface.corner(face, 2));
+    });
+}
+
+PointsByFace group_by_face(const Surface& surface, TrackedPoints& tracked, const std::vector<Hit>& hits) {
+    PointsByFace result(surface, tracked.points, hits);
+    tracked.last_hit.resize(hits.size());
+    std::size_t i = 0;
+    for (int face = 0; face < surface.face_count(); ++face)
+        for (const PointsByFace::Assignment& a : result.of(face)) {
+            tracked.points[i] = a.point;
+            tracked.last_hit[i] = walk_start_of(surface, {face, a.foot});
+            ++i;
         }
-    }
     return result;
-}
-
-float noise_variance(const Surface& surface, const PointsByFace& points) {
-    constexpr int kLeast = 4;
-    std::vector<float> variances;
-    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
-        const int count = points.first[f + 1] - points.first[f];
-        if (count < kLeast) continue;
-        const Vector3& a = surface.corner(static_cast<int>(f), 0);
-        const Vector3 normal = area_vector(surface, static_cast<int>(f)).normalized();
-        float sum = 0;
-        float squares = 0;
-        for (auto i = index(points.first[f]); i < index(points.first[f + 1]); ++i) {
-            const float height = normal.dot(points.ties[i].point - a);
-            sum += height;
-            squares += height * height;
-        }
-        const auto n = static_cast<float>(count);
-        variances.push_back(std::max(0.0F, squares - sum * sum / n) / (n - 1));
-    }
-    return variances.empty() ? 0.0F : median(std::move(variances));
-}
-
-Support::Support(const Network& network, const Surface& surface, const PointsByFace& points) {
-    constexpr int kSpreads = 4;
-    constexpr float kLikelyDistance = 0.25F;  // of such faces from the points, in mean edge lengths
-    value_ = kLikelyDistance * mean_edge(surface);
-    value_ *= value_;
-    struct Around {
-        float points = 0;
-        float area = 0;
-        void operator+=(const Around& other) {
-            points += other.points;
-            area += other.area;
-        }
-    };
-    std::vector<Around> sums(surface.at.size());
-    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
-        const float twice = area_vector(surface, static_cast<int>(f)).norm();
-        for (const VertexId v : surface.faces[f]) {
-            sums[index(v)].points += static_cast<float>(points.first[f + 1] - points.first[f]);
-            sums[index(v)].area += twice;
-        }
-    }
-    spread_over_rings(network, sums, kSpreads);
-    density_.resize(sums.size());
-    for (std::size_t v = 0; v < sums.size(); ++v)
-        density_[v] = sums[v].area > 0 ? sums[v].points / sums[v].area : 0.0F;
-}
-
-std::vector<Vector3> smoothed_normals(const Network& network, const Surface& surface) {
-    constexpr int kSpreads = 2;
-    std::vector<Vector3> normals(surface.at.size(), Vector3::Zero());
-    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
-        const Vector3 area = area_vector(surface, static_cast<int>(f));
-        for (const VertexId v : surface.faces[f]) normals[index(v)] += area;
-    }
-    spread_over_rings(network, normals, kSpreads);
-    for (Vector3& n : normals) n.normalize();
-    return normals;
 }
 
 }  // namespace neuralmesh

@@ -1,75 +1,62 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The points of a fit: which face each belongs to, and what they tell of the noise.
+// Points, and the face of the surface that each is nearest to.
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
-#include "vcg_core/base/random.h"
-#include "vcg_core/fit/least_squares.h"
-#include "vcg_core/target/target_space.h"
+#include "vcg_core/base/span.h"
+#include "vcg_core/base/thread_team.h"
+#include "vcg_core/mesh/face_walk.h"
+#include "vcg_core/mesh/surface.h"
 
 namespace neuralmesh {
 
-/// Points and for each where it was last found.
+/// Points, and for each where its nearest face was found last: the next search starts there.
 struct TrackedPoints {
     std::vector<Vector3> points;
-    std::vector<WalkStart> near;
-    std::vector<Vector3> directions;  ///< along which to measure; only of the points held back
+    std::vector<WalkStart> last_hit;  ///< empty before the first search
 };
 
-struct Split {
-    TrackedPoints fitted;
-    TrackedPoints held;
-};
+/// The nearest faces of the points, exact. O(points x log faces).
+std::vector<Hit> nearest_by_tree(const Surface& surface, const TrackedPoints& tracked, ThreadTeam& team);
+/// The nearest faces that walks from the last hits find. Expected O(points).
+std::vector<Hit> nearest_by_walk(const Surface& surface, const TrackedPoints& tracked, ThreadTeam& team);
 
-/// The points to fit to and some held back to judge by: \p wanted points of \p target, all of a cloud or a
-/// random choice; of faces at most 2 million or a tenth of those wanted, whichever is more. One in eight is
-/// held back, but at most 10,000.
-Split choose_points(const TargetSpace& target, std::size_t wanted, Random& random);
-
-/// The nearest faces of the points, exactly. O(points log faces)
-std::vector<Hit> exact_hits(const Surface& surface, const TrackedPoints& followed, ThreadTeam& team);
-/// The nearest faces of the points by walks from where they were last found. O(points)
-std::vector<Hit> walked_hits(const Surface& surface, const TrackedPoints& followed, ThreadTeam& team);
-
-/// Ties the points to the faces hit. Sorts them by their faces, which also brings neighbours together in
-/// memory, and notes where they are. Directions are not carried along.
-PointsByFace by_face(const Surface& surface, TrackedPoints& followed, const std::vector<Hit>& hits);
-
-/// Variance of the noise: the median over the faces of that of their points about a plane parallel to the
-/// face. What neighbouring points share is misfit, what they do not share is noise.
-float noise_variance(const Surface& surface, const PointsByFace& points);
-
-/// How many points belong to the surface and how many are missing from it.
-class Support {
+/// The points assigned to each face.
+class PointsByFace {
 public:
-    /// Takes the density of the points around every vertex from some rings. O(vertices)
-    Support(const Network& network, const Surface& surface, const PointsByFace& points);
+    struct Assignment {
+        Vector3 point;
+        float influence;  ///< weight of the point: 1, less for outliers
+        Foot foot;        ///< on the face
+    };
 
-    /// How many points a face should have more to be believed: webs and spikes are surface without points.
-    /// \param twice_area of the face \param points those it has
-    float missing(const Triangle& face, float twice_area, float points) const {
-        const float density = density_[index(face[0])] + density_[index(face[1])] + density_[index(face[2])];
-        return std::max(0.0F, kShare / 3 * density * twice_area - points - kPseudoPoints);
+    /// \p hits has one entry for each of the \p points. O(points + faces).
+    PointsByFace(const Surface& surface, const std::vector<Vector3>& points, const std::vector<Hit>& hits);
+
+    /// The points of \p face, in the order in which they were given.
+    Span<const Assignment> of(int face) const {
+        return {assignments_.data() + first_[face], assignments_.data() + first_[face + 1]};
     }
-    /// What one missing point counts, as a squared distance: the backward error of a face.
-    float value() const { return value_; }
+    Span<Assignment> of(int face) {
+        return {assignments_.data() + first_[face], assignments_.data() + first_[face + 1]};
+    }
+    /// The points of all faces, face by face.
+    std::vector<Assignment>& all() { return assignments_; }
+    const std::vector<Assignment>& all() const { return assignments_; }
+
+    /// Computes the feet again after the vertices have moved; every point keeps its face.
+    void update_feet(const Surface& surface, ThreadTeam& team);
 
 private:
-    static constexpr float kShare = 0.3F;      ///< of the points that its area should have, a face needs ...
-    static constexpr float kPseudoPoints = 2;  ///< ... but for so many
-
-    std::vector<float> density_;  ///< by slot, of points per twice the area
-    float value_ = 0;
+    std::vector<Assignment> assignments_;
+    PerFace<int> first_;  ///< where those of a face begin; one more entry at the end
 };
 
-/// Normals of the vertices, averaged over their rings twice: what noise leaves of them.
-std::vector<Vector3> smoothed_normals(const Network& network, const Surface& surface);
-
-float median(std::vector<float> values);
-float mean_edge(const Surface& surface);
+/// Assigns the \p tracked points to the faces hit. Reorders them by face, so that points near in space come
+/// near in memory, and records the hits.
+PointsByFace group_by_face(const Surface& surface, TrackedPoints& tracked, const std::vector<Hit>& hits);
 
 }  // namespace neuralmesh

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Takes crossings out of a mesh before it is fitted.
+// Removes self-crossings from a mesh before it is fitted.
 #pragma once
 
 #include <optional>
@@ -13,12 +13,12 @@
 
 namespace neuralmesh {
 
-/// Smooths \p network where its surface cuts itself, in widening surroundings, until it does so no more;
-/// places where that does not help within a few rounds are left as they were. Moves no other vertices, and no
-/// vertex further than a mean edge length. Leaves the network as it was where so many faces lie in each other
-/// that smoothing could not part them (by their boxes a hundred near each face), and if \p progress, which is
-/// asked before every round, wants it to stop. The same result for any \p team.
-/// \return the crossings left; nothing if it was stopped
-std::optional<std::vector<Crossing>> untangle(Network& network, ThreadTeam& team, Progress& progress);
+/// Laplacian smoothing of \p network around its self-crossings, over neighbourhoods that widen from round to
+/// round, at most ten rounds. Where crossings remain, the surface around them goes back to its old position.
+/// No other vertex moves, and none further than a mean edge length. Gives up, leaving the network unchanged,
+/// if more than 100 pairs of face boxes per face overlap. The result does not depend on the number of
+/// threads. \param progress asked before every round; if it asks to stop, the network stays unchanged \return
+/// the remaining crossings, sorted; nothing if stopped
+std::optional<std::vector<SelfCrossing>> untangle(Network& network, ThreadTeam& team, Progress& progress);
 
 }  // namespace neuralmesh

@@ -10,8 +10,9 @@
 #include <cstring>
 
 #include "tests/unit/support/shapes.h"
+#include "vcg_core/mesh/face_tree.h"
+#include "vcg_core/mesh/face_walk.h"
 #include "vcg_core/mesh/self_crossings.h"
-#include "vcg_core/mesh/surface.h"
 #include "vcg_core/rms_error.h"
 
 namespace neuralmesh {
@@ -75,7 +76,7 @@ TEST(Fit, BringsAnInflatedSphereToThePoints) {
     const double before = rms(target, network);
     const FitReport report = fit(network, target);
     EXPECT_TRUE(report.improved);
-    EXPECT_LT(report.rms_after, report.rms_before);
+    EXPECT_LT(report.rms_fitted, report.rms_unfitted);
     EXPECT_LT(rms(target, network), before / 20);
     EXPECT_EQ(network.validate(), "");
     EXPECT_EQ(network.vertex_count(), 642);
@@ -109,7 +110,7 @@ TEST(Fit, GivesTheSameBytesForAnyNumberOfThreads) {
     Network two = one;
     Network five = one;
     FitOptions options;
-    options.target_vertices = 500;
+    options.reduce_to = 500;
     fit(one, target, options, 1);
     fit(two, target, options, 2);
     fit(five, target, options, 5);
@@ -176,7 +177,7 @@ TEST(Fit, LeavesAMeshAloneThatIsRight) {
     Network network = network_of(sphere, target);
     const double before = rms(target, network);
     const FitReport report = fit(network, target);
-    EXPECT_LE(report.rms_after, report.rms_before);
+    EXPECT_LE(report.rms_fitted, report.rms_unfitted);
     EXPECT_LT(rms(target, network), before + 1e-5);
 }
 
@@ -204,10 +205,10 @@ TEST(Fit, SaysWhereEveryVertexComesFrom) {
     Network network = network_of(shapes::icosphere(3), target, 0.6);
     const Network before = network;
     const FitReport report = fit(network, target);
-    ASSERT_EQ(report.origin.size(), static_cast<std::size_t>(network.slot_count()));
+    ASSERT_EQ(report.sources.size(), network.slot_count());
     int moved = 0;
     for (VertexId v = 0; v < network.slot_count(); ++v) {
-        const VertexId from = report.origin[static_cast<std::size_t>(v)];
+        const VertexId from = report.sources[v];
         ASSERT_EQ(from >= 0, network.alive(v));
         EXPECT_TRUE(from < 0 || before.alive(from));
         moved += from == v ? 0 : 1;
@@ -224,7 +225,7 @@ TEST(Fit, TakesCountersFromWhereTheyWereLearned) {
     const FitReport report = fit(network, target);
     int taken_over = 0;
     for (VertexId v = 0; v < network.slot_count(); ++v) {
-        const VertexId from = report.origin[static_cast<std::size_t>(v)];
+        const VertexId from = report.sources[v];
         if (!network.alive(v) || from == v) continue;
         ++taken_over;
         const float distance = (before.position(from) - network.position(v)).Norm();
@@ -247,7 +248,7 @@ TEST(Fit, TakesOutTheVerticesItMissesLeast) {
     Network network = network_of(shapes::icosphere(3), target, 0.6);
     const int before = network.vertex_count();
     FitOptions options;
-    options.target_vertices = 60;
+    options.reduce_to = 60;
     const FitReport report = fit(network, target, options);
     EXPECT_LT(5 * 60, before) << "far fewer than the ids in use";
     EXPECT_EQ(network.vertex_count(), 60);
@@ -255,8 +256,7 @@ TEST(Fit, TakesOutTheVerticesItMissesLeast) {
     EXPECT_EQ(network.genus(), 0);
     EXPECT_TRUE(report.improved);
     EXPECT_LT(rms(target, network), 1e-3);
-    for (VertexId v = 0; v < network.slot_count(); ++v)
-        EXPECT_EQ(report.origin[static_cast<std::size_t>(v)] >= 0, network.alive(v));
+    for (VertexId v = 0; v < network.slot_count(); ++v) EXPECT_EQ(report.sources[v] >= 0, network.alive(v));
 }
 
 TEST(Fit, TakesOutNoMoreThanTheTopologyAllows) {
@@ -264,7 +264,7 @@ TEST(Fit, TakesOutNoMoreThanTheTopologyAllows) {
     const TargetSpace target = target_of(shapes::torus_cloud(8000, 0));
     Network network = network_of(shapes::torus_grid(20, 10), target);
     FitOptions options;
-    options.target_vertices = 4;
+    options.reduce_to = 4;
     fit(network, target, options);
     EXPECT_GT(network.vertex_count(), 4);
     EXPECT_EQ(network.validate(), "");
@@ -281,7 +281,7 @@ TEST(Fit, WalksToTheFaceThatTheTreeFinds) {
     for (const vcg::Point3f& p : target.positions()) {
         const Hit exact = tree.nearest(to_eigen(p));
         const WalkStart there = walk_start_of(surface, exact);
-        EXPECT_EQ(surface.face_of[index(surface.first_face[index(there.vertex)] + there.turn)], exact.face);
+        EXPECT_EQ(surface.faces_around(there.vertex)[there.turn], exact.face);
         for (const WalkStart start :
              {there, WalkStart{there.vertex, 99}, WalkStart{network.ring(there.vertex)[0], 1}}) {
             const Hit found = walk_to_nearest(surface, to_eigen(p), start);
@@ -307,10 +307,10 @@ TEST(Fit, StoppedAtOnceItLeavesATangledMeshAsItWas) {
     const TargetSpace target = target_of(shapes::sphere_cloud(5000));
     Network network = network_of(shapes::icosphere(3), target, 1.1, 0.05);
     ThreadTeam team(1);
-    ASSERT_FALSE(crossings_of(Surface(network), team).empty());
+    ASSERT_FALSE(self_crossings(Surface(network), team).empty());
     const Network before = network;
     FitOptions options;
-    options.target_vertices = 300;
+    options.reduce_to = 300;
     Stop stop;
     EXPECT_FALSE(fit_to_points(network, target, options, 1, 1, stop).improved);
     EXPECT_TRUE(same_bytes(before, network));
@@ -332,7 +332,7 @@ TEST(Fit, ReportsHowMuchOfItIsDone) {
     const TargetSpace target = target_of(shapes::sphere_cloud(5000));
     Network network = network_of(shapes::icosphere(3), target, 1.1, 0.05);
     FitOptions options;
-    options.target_vertices = 100;
+    options.reduce_to = 100;
     Watch progress;
     fit_to_points(network, target, options, 1, 1, progress);
     EXPECT_EQ(network.vertex_count(), 100);

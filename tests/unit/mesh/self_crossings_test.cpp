@@ -14,6 +14,7 @@
 #include <set>
 
 #include "tests/unit/support/shapes.h"
+#include "vcg_core/fit/crossing_guard.h"
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/fit/untangle.h"
 
@@ -30,18 +31,18 @@ class CutFace : public vcg::Face<CutTypes, vcg::face::VertexRef, vcg::face::Norm
                                  vcg::face::BitFlags> {};
 class CutMesh : public vcg::tri::TriMesh<std::vector<CutVertex>, std::vector<CutFace>> {};
 
-std::vector<Crossing> crossings(const Surface& surface, int threads) {
+std::vector<SelfCrossing> crossings(const Surface& surface, int threads) {
     ThreadTeam team(threads);
-    return crossings_of(surface, team);
+    return self_crossings(surface, team);
 }
 
-std::vector<Crossing> after(const Surface& surface, const Surface& before, const std::vector<Crossing>& known,
-                            int threads) {
+std::vector<SelfCrossing> after(const Surface& surface, const Surface& before,
+                                const std::vector<SelfCrossing>& known, int threads) {
     ThreadTeam team(threads);
-    return crossings_after(surface, before, known, team);
+    return update_self_crossings(surface, before, known, team);
 }
 
-std::vector<Crossing> smoothed_out(Network& network, int threads) {
+std::vector<SelfCrossing> smoothed_out(Network& network, int threads) {
     ThreadTeam team(threads);
     NoProgress progress;
     return *untangle(network, team, progress);
@@ -59,7 +60,7 @@ Network crumpled_sphere(double noise, std::uint64_t seed = 5) {
 
 std::set<Triangle> cut_faces(const Network& network) {
     std::set<Triangle> faces;
-    for (const Crossing& c : crossings(Surface(network), 1)) {
+    for (const SelfCrossing& c : crossings(Surface(network), 1)) {
         faces.insert({c[0], c[1], c[2]});
         faces.insert({c[3], c[4], c[5]});
     }
@@ -101,7 +102,7 @@ TEST(Crossings, AreThoseThatVcglibFinds) {
 
 TEST(Crossings, AreTheSameForAnyNumberOfThreads) {
     const Surface surface(crumpled_sphere(0.3));
-    const std::vector<Crossing> one = crossings(surface, 1);
+    const std::vector<SelfCrossing> one = crossings(surface, 1);
     EXPECT_TRUE(std::is_sorted(one.begin(), one.end()));
     EXPECT_EQ(one, crossings(surface, 2));
     EXPECT_EQ(one, crossings(surface, 5));
@@ -128,11 +129,11 @@ TEST(Crossings, FacesWithoutAreaHaveNoneAndCostNothing) {
     ThreadTeam team(1);
     std::int64_t pairs = 0;
     const Surface surface(network);
-    for (const Crossing& c : crossings_of(surface, team, &pairs))
+    for (const SelfCrossing& c : self_crossings(surface, team, &pairs))
         for (const std::size_t face : {0U, 3U}) {
-            const Vector3& a = surface.at[index(c[face])];
-            const Vector3& b = surface.at[index(c[face + 1])];
-            EXPECT_NE((b - a).cross(surface.at[index(c[face + 2])] - a), Vector3(0, 0, 0));
+            const Vector3& a = surface.positions[c[face]];
+            const Vector3& b = surface.positions[c[face + 1]];
+            EXPECT_NE((b - a).cross(surface.positions[c[face + 2]] - a), Vector3(0, 0, 0));
         }
     EXPECT_LT(pairs, 10 * network.face_count());
 }
@@ -146,7 +147,7 @@ TEST(Crossings, AreKnownAfterAChangeFromThoseBefore) {
     };
     for (int change = 0; change < 30; ++change) {
         const Surface before(network);
-        const std::vector<Crossing> known = crossings(before, 1);
+        const std::vector<SelfCrossing> known = crossings(before, 1);
         const VertexId v = some();
         if (network.alive(v)) network.set_position(v, network.position(v) * 0.9F);
         for (int i = 0; i < 5; ++i) {
@@ -162,7 +163,7 @@ TEST(Crossings, AreKnownAfterAChangeFromThoseBefore) {
         }
         ASSERT_EQ(network.validate(), "");
         const Surface surface(network);
-        const std::vector<Crossing> all = crossings(surface, 1);
+        const std::vector<SelfCrossing> all = crossings(surface, 1);
         EXPECT_FALSE(all.empty());
         EXPECT_EQ(after(surface, before, known, 1), all) << change;
         EXPECT_EQ(after(surface, before, known, 3), all) << change;
@@ -170,8 +171,8 @@ TEST(Crossings, AreKnownAfterAChangeFromThoseBefore) {
 }
 
 TEST(CrossingGuard, ObjectsToWhatIsNewBeyondWhatWasThere) {
-    const Crossing a{0, 1, 2, 3, 4, 5};
-    const Crossing b{6, 7, 8, 9, 10, 11};
+    const SelfCrossing a{0, 1, 2, 3, 4, 5};
+    const SelfCrossing b{6, 7, 8, 9, 10, 11};
     CrossingGuard strict;
     EXPECT_TRUE(strict.objections({}).empty());
     EXPECT_EQ(strict.objections({a}), std::vector<VertexId>(a.begin(), a.end()));

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The quadric error (Garland and Heckbert 1997) chooses what is worth measuring, the points measure it.
+#include "vcg_core/fit/collapse_costs.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "vcg_core/base/parallel_for.h"
+#include "vcg_core/fit/face_rules.h"
+#include "vcg_core/fit/support.h"
+
+namespace neuralmesh {
+
+namespace {
+
+constexpr int kChunk = 128;
+constexpr int kStarPoints = 64;         ///< about as many points of a star are measured
+constexpr float kExaminedShare = 0.4F;  ///< of the vertices
+constexpr int kTries = 3;               ///< neighbours to collapse into
+
+/// Measures the collapses of vertices.
+class CollapseCosts {
+public:
+    CollapseCosts(const Network& network, const Surface& surface, const PointsByFace& points,
+                  const Support& support)
+        : network_(network), surface_(surface), points_(points), support_(support) {}
+
+    Collapse cheapest(VertexId v) const {
+        Collapse best{Collapse::kForbidden, v, -1};
+        std::array<std::pair<float, VertexId>, Ring::kMaxValence> order;
+        std::size_t count = 0;
+        for (VertexId u : network_.ring(v))
+            if (network_.can_collapse(v, u)) order[count++] = {quadric(v, u), u};
+        std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
+        int tries = 0;
+        for (std::size_t i = 0; i < count && tries < kTries; ++i) {
+            const VertexId into = order[i].second;
+            if (!keeps_shape(v, into)) continue;
+            ++tries;
+            const float cost = cost_of(v, into, best.cost);
+            if (cost < best.cost) best = {cost, v, into};
+        }
+        return best;
+    }
+
+    /// About the least cost of removing \p v: the smallest quadric of its neighbours times the density of the
+    /// points. 0 where the star lacks points or has no area.
+    float estimate(VertexId v) const {
+        const Support::Patch around = star(v);
+        if (around.missing_points > 0 || network_.ring(v).valence == 0 || !(around.twice_area > 0)) return 0;
+        float least = Collapse::kForbidden;
+        for (VertexId u : network_.ring(v)) least = std::min(least, quadric(v, u));
+        return least * static_cast<float>(around.points) / around.twice_area;
+    }
+
+private:
+    const Vector3& at(VertexId v) const { return surface_.positions[v]; }
+
+    /// Squared distances of \p u from the planes of the faces around \p v, weighted with twice their areas.
+    float quadric(VertexId v, VertexId u) const {
+        float sum = 0;
+        for (int f : surface_.faces_around(v)) {
+            const Vector3 n = area_vector(surface_, f);
+            const float norm = n.norm();
+            const float height = n.dot(at(u) - at(v));
+            if (norm > 0) sum += height * height / norm;
+        }
+        return sum;
+    }
+
+    /// Calls \p visit(position, a, b) for the faces (v, a, b) of the star of \p v that become (u, a, b).
+    template <class Visit>
+    void for_new_faces(VertexId v, VertexId u, const Visit& visit) const {
+        const Ring& ring = network_.ring(v);
+        for (int i = 0; i < ring.face_count(); ++i) {
+            const VertexId a = ring[i];
+            const VertexId b = ring.next(i);
+            if (a != u && b != u) visit(i, a, b);
+        }
+    }
+
+    bool keeps_shape(VertexId v, VertexId u) const {
+        bool keeps = true;
+        for_new_faces(v, u, [&](int, VertexId a, VertexId b) {
+            if (!keeps) return;
+            const Vector3 before = unit_normal(at(v), at(a), at(b));
+            const Vector3 after = unit_normal(at(u), at(a), at(b));
+            const Vector3 outside = normal_beyond(surface_, a, b);
+            const float fold = before.dot(outside);
+            keeps = (!kCollapseRules.turns_over(before, after) || kCollapseRules.is_folded(fold)) &&
+                    !kCollapseRules.folds(fold, after.dot(outside)) &&
+                    !kCollapseRules.is_sliver(triangle_quality(at(v), at(a), at(b)),
+                                              triangle_quality(at(u), at(a), at(b)));
+        });
+        return keeps;
+    }
+
+    Support::Patch star(VertexId v) const {
+        Support::Patch result;
+        for (int f : surface_.faces_around(v))
+            support_.add(result, surface_.faces[f], area_vector(surface_, f).norm(), points_.of(f).size());
+        return result;
+    }
+
+    /// Rise of the sum of squared distances of the points around \p v when it goes into \p u; a value of at
+    /// least \p bound if it is not less, or if surface would stretch over where there are no points.
+    float cost_of(VertexId v, VertexId u, float bound) const {
+        const Support::Patch before = star(v);
+        const int step = std::max(1, before.points / kStarPoints);
+        std::array<int, Ring::kMaxValence> counts{};  // points of the new faces, by ring position
+        float sum = 0;
+        int next = 0;
+        for (int f : surface_.faces_around(v)) {
+            const Span<const PointsByFace::Assignment> of_face = points_.of(f);
+            for (; next < of_face.size(); next += step) {
+                float least = std::numeric_limits<float>::max();
+                std::size_t nearest = 0;
+                for_new_faces(v, u, [&](int i, VertexId a, VertexId b) {
+                    const float d =
+                        foot_on_triangle(of_face[next].point, at(u), at(a), at(b)).squared_distance;
+                    if (d < least) nearest = static_cast<std::size_t>(i);
+                    least = std::min(least, d);
+                });
+                counts[nearest] += step;
+                sum += of_face[next].influence * (least - of_face[next].foot.squared_distance) *
+                       static_cast<float>(step);
+            }
+            next -= of_face.size();
+            // A heuristic: the points of the remaining faces rarely lower the sum by half.
+            if (sum > 2 * bound) return sum;
+        }
+        Support::Patch after;
+        for_new_faces(v, u, [&](int i, VertexId a, VertexId b) {
+            support_.add(after, {u, a, b}, area_vector(at(u), at(a), at(b)).norm(),
+                         counts[static_cast<std::size_t>(i)]);
+        });
+        return std::max(sum, 0.0F) + support_.cost_of_change(before, after, step);
+    }
+
+    const Network& network_;
+    const Surface& surface_;
+    const PointsByFace& points_;
+    const Support& support_;
+};
+
+}  // namespace
+
+std::vector<Collapse> find_collapses(const Network& network, const Surface& surface,
+                                     const PointsByFace& points, ThreadTeam& team) {
+    const Support support(network, surface, points);
+    const CollapseCosts costs(network, surface, points, support);
+    PerVertex<float> estimates(network.slot_count());
+    parallel_for(estimates.size(), kChunk, team, [&](VertexId v) {
+        estimates[v] = network.alive(v) ? costs.estimate(v) : Collapse::kForbidden;
+    });
+    std::vector<float> sorted = estimates.vector();
+    const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(
+                                           kExaminedShare * static_cast<float>(network.vertex_count()));
+    std::nth_element(sorted.begin(), last, sorted.end());
+    std::vector<Collapse> collapses(sorted.size());
+    parallel_for(estimates.size(), kChunk, team, [&](VertexId v) {
+        collapses[static_cast<std::size_t>(v)] =
+            estimates[v] <= *last ? costs.cheapest(v) : Collapse{Collapse::kForbidden, v, -1};
+    });
+    std::stable_sort(collapses.begin(), collapses.end(),
+                     [](const Collapse& x, const Collapse& y) { return x.cost < y.cost; });
+    return collapses;
+}
+
+}  // namespace neuralmesh

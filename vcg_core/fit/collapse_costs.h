@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// What the removal of each vertex costs in distance to the points.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "vcg_core/base/thread_team.h"
+#include "vcg_core/fit/points_by_face.h"
+
+namespace neuralmesh {
+
+/// The cheapest half-edge collapse of a vertex.
+struct Collapse {
+    static constexpr float kForbidden = std::numeric_limits<float>::max();
+
+    float cost;  ///< rise of the sum of squared distances of the points
+    VertexId gone;
+    VertexId into;  ///< -1 and a cost of kForbidden: the vertex cannot go, or was not examined
+};
+
+/// The cheapest collapse of every slot, cheapest first. Examines two fifths of the vertices, those with the
+/// smallest quadric errors, and of each the three neighbours that the quadric prefers; each cost is measured
+/// on about 64 points of the star, each of which keeps to the faces the star leaves. kCollapseRules of
+/// face_rules.h hold. \p surface is that of the network. O(vertices log vertices). The result does not depend
+/// on the number of threads.
+std::vector<Collapse> find_collapses(const Network& network, const Surface& surface,
+                                     const PointsByFace& points, ThreadTeam& team);
+
+}  // namespace neuralmesh

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/fit/held_out.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vcg_core/base/parallel_for.h"
+
+namespace neuralmesh {
+
+namespace {
+
+constexpr std::size_t kChunk = 512;
+
+/// Vertex normals averaged twice over the rings, which takes out most of the noise.
+PerVertex<Vector3> smoothed_normals(const Network& network, const Surface& surface) {
+    constexpr int kSpreads = 2;
+    PerVertex<Vector3> normals(surface.positions.size(), Vector3::Zero());
+    for (int f = 0; f < surface.face_count(); ++f) {
+        const Vector3 area = area_vector(surface, f);
+        for (VertexId v : surface.faces[f]) normals[v] += area;
+    }
+    spread_over_rings(network, normals, kSpreads);
+    for (Vector3& n : normals) n.normalize();
+    return normals;
+}
+
+/// Signed distance from \p p to \p surface along the unit vector \p direction: the point of the line nearest
+/// to the surface point nearest to it, repeated, comes close to where the line meets the surface.
+float distance_along(const Vector3& direction, const Surface& surface, const Vector3& p, WalkStart near) {
+    constexpr int kSteps = 2;
+    float along = 0;
+    for (int step = 0; step < kSteps; ++step) {
+        const Vector3 from = p + along * direction;
+        const Hit hit = walk_to_nearest(surface, from, near);
+        near = walk_start_of(surface, hit);
+        Vector3 foot = Vector3::Zero();
+        for (int k = 0; k < 3; ++k)
+            foot += hit.foot.weights[static_cast<std::size_t>(k)] * surface.corner(hit.face, k);
+        along += (foot - from).dot(direction);
+    }
+    return along;
+}
+
+}  // namespace
+
+void HeldOut::locate(const Surface& surface, ThreadTeam& team) {
+    group_by_face(surface, tracked_, nearest_by_tree(surface, tracked_, team));
+}
+
+void HeldOut::relocate(const Surface& surface, ThreadTeam& team) {
+    const std::vector<Hit> hits = nearest_by_tree(surface, tracked_, team);
+    for (std::size_t i = 0; i < hits.size(); ++i) tracked_.last_hit[i] = walk_start_of(surface, hits[i]);
+}
+
+void HeldOut::set_directions(const Network& network, const Surface& surface, ThreadTeam& team) {
+    const PerVertex<Vector3> normals = smoothed_normals(network, surface);
+    directions_.resize(tracked_.points.size());
+    for_chunks(directions_.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Hit hit = walk_to_nearest(surface, tracked_.points[i], tracked_.last_hit[i]);
+            const Triangle& f = surface.faces[hit.face];
+            const auto& w = hit.foot.weights;
+            tracked_.last_hit[i] = walk_start_of(surface, hit);
+            directions_[i] =
+                (w[0] * normals[f[0]] + w[1] * normals[f[1]] + w[2] * normals[f[2]]).normalized();
+        }
+    });
+}
+
+double HeldOut::rms_error(const Surface& surface, float outlier_distance, ThreadTeam& team) const {
+    std::vector<float> squared(tracked_.points.size());
+    for_chunks(squared.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const float along =
+                distance_along(directions_[i], surface, tracked_.points[i], tracked_.last_hit[i]);
+            squared[i] = along * along;
+        }
+    });
+    double sum = 0;
+    for (float d : squared) sum += static_cast<double>(std::min(d, outlier_distance * outlier_distance));
+    return std::sqrt(sum / static_cast<double>(squared.size()));
+}
+
+}  // namespace neuralmesh

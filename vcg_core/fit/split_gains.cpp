@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The offset of a new vertex lowers a point's distance from its face by offset x phi, where phi is the new
+// vertex's hat function at the point's foot.
+#include "vcg_core/fit/split_gains.h"
+
+#include <algorithm>
+#include <array>
+
+#include "vcg_core/base/parallel_for.h"
+
+namespace neuralmesh {
+
+namespace {
+
+constexpr int kChunk = 128;
+constexpr float kMaxOffset = 0.3F;  ///< in edge lengths
+
+/// Sums over points for the least squares of one offset.
+struct HatSums {
+    float phi_residual = 0;
+    float phi_phi = 0;
+};
+/// Of the edges 0-1, 1-2, 2-0 of a face.
+using FaceHatSums = std::array<HatSums, 3>;
+
+FaceHatSums hat_sums(const Surface& surface, const PointsByFace& points, int face) {
+    FaceHatSums sums;
+    const Vector3& a = surface.corner(face, 0);
+    const Vector3 normal = unit_normal(surface, face);
+    for (const PointsByFace::Assignment& point : points.of(face)) {
+        const float residual = normal.dot(point.point - a);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const float phi = 2 * std::min(point.foot.weights[k], point.foot.weights[(k + 1) % 3]);
+            sums[k].phi_residual += point.influence * phi * residual;
+            sums[k].phi_phi += point.influence * phi * phi;
+        }
+    }
+    return sums;
+}
+
+/// The split of the inner edge a-b; its gain is negative if no point is near.
+EdgeSplit split_of(const Surface& surface, const PerFace<FaceHatSums>& sums, VertexId a, VertexId b) {
+    HatSums both;
+    Vector3 normal = Vector3::Zero();
+    for (int f : surface.faces_around(a)) {
+        const Triangle& face = surface.faces[f];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const VertexId x = face[k];
+            const VertexId y = face[(k + 1) % 3];
+            if (!((x == a && y == b) || (x == b && y == a))) continue;
+            both.phi_residual += sums[f][k].phi_residual;
+            both.phi_phi += sums[f][k].phi_phi;
+            normal += unit_normal(surface, f);
+        }
+    }
+    const Vector3& at_a = surface.positions[a];
+    const Vector3& at_b = surface.positions[b];
+    if (!(both.phi_phi > 0)) return {-1, a, b, 0.5F * (at_a + at_b)};
+    const float bound = kMaxOffset * (at_a - at_b).norm();
+    const float offset = std::min(std::max(both.phi_residual / both.phi_phi, -bound), bound);
+    const float gain = both.phi_residual * both.phi_residual / both.phi_phi;
+    return {gain, a, b, 0.5F * (at_a + at_b) + offset * normal.normalized()};
+}
+
+}  // namespace
+
+std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surface, const PointsByFace& points,
+                                   float least_gain, ThreadTeam& team) {
+    PerFace<FaceHatSums> sums(surface.face_count());
+    parallel_for(sums.size(), kChunk, team, [&](int f) { sums[f] = hat_sums(surface, points, f); });
+    std::vector<EdgeSplit> splits;
+    for (VertexId a : network.vertices()) {
+        const Ring& ring = network.ring(a);
+        for (int i = 0; i < ring.valence; ++i) {
+            const bool on_boundary = ring.open != 0 && (i == 0 || i + 1 == ring.valence);
+            if (ring[i] < a || on_boundary) continue;
+            const EdgeSplit split = split_of(surface, sums, a, ring[i]);
+            if (split.gain >= least_gain) splits.push_back(split);
+        }
+    }
+    std::stable_sort(splits.begin(), splits.end(),
+                     [](const EdgeSplit& x, const EdgeSplit& y) { return x.gain > y.gain; });
+    return splits;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Surface without points: webs and spikes have area, but lack the points that the density of the points
+// around them would give that area.
+#pragma once
+
+#include <limits>
+
+#include "vcg_core/fit/points_by_face.h"
+
+namespace neuralmesh {
+
+/// Judges whether a change of some faces makes or removes surface without points.
+class Support {
+public:
+    /// Takes the density of the points around every vertex, over four rings. O(vertices).
+    Support(const Network& network, const Surface& surface, const PointsByFace& points);
+
+    /// Some faces before or after a change, summed up by add().
+    struct Patch {
+        int points = 0;
+        float twice_area = 0;
+        float missing_points = 0;
+    };
+    /// \param points the number of those on \p face
+    void add(Patch& patch, const Triangle& face, float twice_area, int points) const {
+        patch.points += points;
+        patch.twice_area += twice_area;
+        patch.missing_points += missing_points(face, twice_area, static_cast<float>(points));
+    }
+
+    /// Cost of a change that must not be made.
+    static constexpr float kForbidden = std::numeric_limits<float>::max();
+    /// Cost, as a sum of squared distances, of a change of faces: negative if it removes surface without
+    /// points, 0 if it changes little, kForbidden if it makes such surface.
+    /// \param points_per_sample the \p after patch counts every sampled point this many times
+    float cost_of_change(const Patch& before, const Patch& after, int points_per_sample = 1) const;
+
+private:
+    float missing_points(const Triangle& face, float twice_area, float points) const;
+
+    PerVertex<float> density_;  ///< of points per twice the area
+    float value_ = 0;           ///< squared distance that one missing point counts for
+};
+
+/// For every vertex how many points its faces lack, each point weighted with the vertex's squared hat
+/// function: that looks at the tip of a spike, where Support looks at whole faces. O(points + vertices).
+PerVertex<float> missing_points_at_vertices(const Network& network, const Surface& surface,
+                                            const PointsByFace& points);
+
+}  // namespace neuralmesh

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// A bounding-volume hierarchy over the faces of a surface.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "vcg_core/mesh/surface.h"
+
+namespace neuralmesh {
+
+/// A binary tree of axis-aligned boxes, split at the median of the faces' centres along the longest side.
+/// Queries may run at the same time in several threads. vcglib's grids are slower here, where the sizes of
+/// faces differ by factors of hundreds.
+class FaceTree {
+public:
+    /// O(faces log faces).
+    explicit FaceTree(const Surface& surface);
+    /// Over the given \p faces of the surface only.
+    FaceTree(const Surface& surface, std::vector<int> faces);
+
+    /// The nearest face of \p p, the one of smallest index among equals; face -1 if the tree is empty. Exact
+    /// up to float rounding. O(log faces) expected near the surface.
+    Hit nearest(const Vector3& p) const;
+
+    /// Calls \p visit(f, g) for every face g whose bounding box touches that of f, where f is the \p i-th
+    /// face in the order of the tree and g comes after it in that order. Over all i this gives each pair
+    /// once.
+    template <class Visit>
+    void for_overlapping(int i, const Visit& visit) const {
+        for_overlapping(boxes_[i], i + 1, [&](int g) { visit(order_[i], g); });
+    }
+    /// Calls \p visit(g) for every face g of the tree whose bounding box touches that of \p face of \p
+    /// surface.
+    template <class Visit>
+    void for_overlapping(const Surface& surface, int face, const Visit& visit) const {
+        for_overlapping(box_of(surface, face), 0, visit);
+    }
+
+private:
+    using Box = Eigen::AlignedBox3f;
+
+    static constexpr int kLeafFaces = 4;
+    /// The tree is balanced, so this is more than its height.
+    static constexpr std::size_t kStack = 64;
+
+    struct Node {
+        Box box;
+        int begin, end;  ///< into order_
+        int right;       ///< the left child follows its parent; -1: a leaf
+        bool is_leaf() const { return right < 0; }
+    };
+    struct Corners {
+        Vector3 a, ab, ac;
+    };
+
+    static Box box_of(const Surface& surface, int face);
+    int build(const PerFace<Vector3>& centres, int begin, int end);
+    void set_boxes(const Surface& surface);
+    template <class Visit>
+    void for_overlapping(const Box& box, int first, const Visit& visit) const;
+
+    Indexed<int> order_;
+    Indexed<Corners> corners_;  ///< in order_
+    Indexed<Box> boxes_;        ///< in order_
+    Indexed<Node> nodes_;
+};
+
+/// Of the faces from the \p first in the order of the tree on.
+template <class Visit>
+void FaceTree::for_overlapping(const Box& box, int first, const Visit& visit) const {
+    std::array<int, kStack> stack;
+    std::size_t height = 0;
+    if (!nodes_.empty()) stack[height++] = 0;
+    while (height > 0) {
+        const int n = stack[--height];
+        const Node& node = nodes_[n];
+        if (node.end <= first || !box.intersects(node.box)) continue;
+        if (!node.is_leaf()) {
+            stack[height++] = node.right;
+            stack[height++] = n + 1;
+            continue;
+        }
+        for (int j = std::max(first, node.begin); j < node.end; ++j)
+            if (box.intersects(boxes_[j])) visit(order_[j]);
+    }
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Geometry of a single triangle: normals, shape, nearest point.
+#pragma once
+
+#include <vcg/space/point3.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <array>
+
+namespace neuralmesh {
+
+/// Positions and directions where much is computed with them: Eigen's, for its expression templates and
+/// boxes. The network itself stores vcglib's points.
+using Vector3 = Eigen::Vector3f;
+
+inline Vector3 to_eigen(const vcg::Point3f& p) { return {p[0], p[1], p[2]}; }
+inline vcg::Point3f to_vcg(const Vector3& p) { return {p[0], p[1], p[2]}; }
+
+/// Along the normal of the triangle a, b, c, on the side from which it appears counter-clockwise; its length
+/// is twice the area.
+inline Vector3 area_vector(const Vector3& a, const Vector3& b, const Vector3& c) {
+    return (b - a).cross(c - a);
+}
+
+/// area_vector() of length 1; 0 for a triangle without area.
+inline Vector3 unit_normal(const Vector3& a, const Vector3& b, const Vector3& c) {
+    return area_vector(a, b, c).normalized();
+}
+
+/// Shape of the triangle: 4 sqrt(3) area / (sum of the squared edges), from 0 (degenerate) to 1
+/// (equilateral). Bank and Smith, "Mesh smoothing using a posteriori error estimates" (1997).
+inline float triangle_quality(const Vector3& a, const Vector3& b, const Vector3& c) {
+    constexpr float kTwoSqrtThree = 3.4641016F;
+    const float edges = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
+    return edges > 0 ? kTwoSqrtThree * area_vector(a, b, c).norm() / edges : 0.0F;
+}
+
+/// The point of a triangle that is nearest to a given point.
+struct Foot {
+    float squared_distance;
+    std::array<float, 3> weights;  ///< barycentric; exactly 0 for the corners that have no part in it
+};
+
+namespace detail {
+
+inline float share_of(float part, float rest) { return part + rest > 0 ? part / (part + rest) : 0.0F; }
+
+inline Foot foot_with(const Vector3& ab, const Vector3& ac, const Vector3& ap, float b, float c) {
+    const Vector3 d = ap - b * ab - c * ac;
+    return {d.squaredNorm(), {1 - b - c, b, c}};
+}
+
+}  // namespace detail
+
+/// \p ab and \p ac are the triangle's edges from its corner a, \p ap leads from a to the point. Degenerate
+/// triangles are allowed. Source: Ericson, "Real-Time Collision Detection" (2005), 5.1.5.
+inline Foot foot_on_triangle(const Vector3& ab, const Vector3& ac, const Vector3& ap) {
+    const float d1 = ab.dot(ap);
+    const float d2 = ac.dot(ap);
+    if (d1 <= 0 && d2 <= 0) return {ap.squaredNorm(), {1, 0, 0}};
+    const float bb = ab.squaredNorm();
+    const float bc = ab.dot(ac);
+    const float cc = ac.squaredNorm();
+    const float d3 = d1 - bb;
+    const float d4 = d2 - bc;
+    if (d3 >= 0 && d4 <= d3) return {(ap - ab).squaredNorm(), {0, 1, 0}};
+    const float vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+        return detail::foot_with(ab, ac, ap, detail::share_of(d1, -d3), 0);
+    }
+    const float d5 = d1 - bc;
+    const float d6 = d2 - cc;
+    if (d6 >= 0 && d5 <= d6) return {(ap - ac).squaredNorm(), {0, 0, 1}};
+    const float vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return detail::foot_with(ab, ac, ap, 0, detail::share_of(d2, -d6));
+    const float va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        const float c = detail::share_of(d4 - d3, d5 - d6);
+        Foot foot = detail::foot_with(ab, ac, ap, 1 - c, c);
+        foot.weights[0] = 0;
+        return foot;
+    }
+    const float sum = va + vb + vc;
+    return detail::foot_with(ab, ac, ap, vb / sum, vc / sum);
+}
+
+/// The point of the triangle a, b, c that is nearest to \p p.
+inline Foot foot_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
+    return foot_on_triangle(b - a, c - a, p - a);
+}
+
+}  // namespace neuralmesh
