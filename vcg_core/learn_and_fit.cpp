@@ -48,7 +48,7 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
     // error is largest at the rim, and vertices inserted there stick out.
     options.redistribute = settings.utility_counter == kNormalCounter && task.encloses_space;
     return fit_to_points(network, task.target(), options, settings.threads,
-                         static_cast<std::uint64_t>(settings.random_seed) + 3, progress);
+                         stream_seed(settings.random_seed, Stream::fit), progress);
 }
 
 /// The counters of \p network's vertices. \p source: the learner's vertex that each takes its counter from;

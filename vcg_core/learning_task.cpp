@@ -35,7 +35,7 @@ StartMesh make_shell(const TargetSpace& target, const Settings& settings, Progre
     ShellOptions options;
     options.target_vertices = settings.target_vertices;
     options.threads = settings.threads;
-    Random random(static_cast<std::uint64_t>(settings.random_seed) + 2);
+    Random random(stream_seed(settings.random_seed, Stream::shell));
     return shell_of(target, options, random, progress);
 }
 

@@ -89,7 +89,7 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     write_counters(learned, settings, mesh);
     write_figures(learned, mesh.report);
     warn_of_growth(learned, mesh.report);
-    Random random(static_cast<std::uint64_t>(settings.random_seed) + 1);
+    Random random(stream_seed(settings.random_seed, Stream::rms_error));
     mesh.report.rms_error = 100 * rms_distance(task.target(), learned.network, kDistanceSamples, random);
     mesh.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return mesh;

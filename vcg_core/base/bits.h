@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The bit pattern of a value read as another type: std::bit_cast of C++20.
+// std::bit_cast of C++20.
 #pragma once
 
 #include <cstring>
@@ -9,8 +9,7 @@
 
 namespace neuralmesh {
 
-/// The value of type \p To that has the same bytes as \p from. Both types have the same size and can be
-/// copied as bytes. Compiles to at most one register move.
+/// The value of type \p To that has the same bytes as \p from. Compiles to at most one register move.
 template <class To, class From>
 To bit_cast(const From& from) noexcept {
     static_assert(sizeof(To) == sizeof(From), "bit_cast between types of different size");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Memory in pages of 2 MB for arrays that are visited all over: with the usual 4 KB a network of a million
-// vertices has more pages than the processor keeps addresses of.
+// Memory in pages of 2 MB for arrays with random access. In the usual pages of 4 KB, a network of a million
+// vertices exceeds the translation lookaside buffer (TLB).
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace neuralmesh {
 
-/// An allocator that asks for large pages where that pays and the system has them. Throws std::bad_alloc.
+/// Allocator that requests huge pages for blocks of at least two of them. Throws std::bad_alloc.
 template <class T>
 class HugePages {
 public:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// An array whose indices are signed ids, as those of vertices and faces are.
+// An array indexed by signed ids, such as those of vertices and faces.
 #pragma once
 
 #include <cassert>
@@ -13,7 +13,7 @@
 namespace neuralmesh {
 
 /// std::vector with int indices: values[v] instead of values[static_cast<std::size_t>(v)]. An index out of
-/// range is undefined behaviour; it is asserted where assertions are on.
+/// range is undefined behaviour, caught by assert().
 template <class T, class Allocator = std::allocator<T>>
 class Indexed {
 public:
@@ -54,7 +54,7 @@ public:
     const_iterator begin() const { return values_.begin(); }
     const_iterator end() const { return values_.end(); }
 
-    /// The same values, for what takes a std::vector.
+    /// The underlying vector.
     Vector& vector() { return values_; }
     const Vector& vector() const { return values_; }
 

@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// How a long run tells its caller where it is, and how the caller asks it to stop.
+// Progress reports and cancellation of long operations.
 #pragma once
 
 #include <algorithm>
 
 namespace neuralmesh {
 
-/// Passed by reference through every long operation and called on the calling thread only: every thousand
-/// signals of the learning or somewhat more, every round of the fit, every stage of the start mesh.
+/// Interface of progress reports. Long operations call it on the calling thread only: about every thousand
+/// signals of learning, in every round of the fit and at every stage of the start mesh.
 class Progress {
 public:
     virtual ~Progress() = default;
 
     /// \param fraction of the whole run done so far, in [0, 1], never decreasing
-    /// \param text     what is being done, with its numbers
-    /// \return false to ask for an early, orderly end with the valid mesh so far
+    /// \param text     current activity and its figures
+    /// \return false to cancel: the operation then ends early and returns the valid mesh it has
     virtual bool operator()(double fraction, const char* text) = 0;
 };
 
-/// Reports to nobody and never asks to stop.
+/// Ignores all reports and never cancels.
 class NoProgress : public Progress {
 public:
     bool operator()(double /*fraction*/, const char* /*text*/) override { return true; }
 };
 
-/// A part of a longer run, from one fraction of the whole to another.
+/// Maps the progress of a part, 0 to 1, to the range from .. to of the whole.
 class PartOf : public Progress {
 public:
     PartOf(Progress& whole, double from, double to) : whole_(whole), from_(from), to_(to) {}

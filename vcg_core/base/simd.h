@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Four and eight floats at once, and functions compiled for more than one instruction set. GCC's and clang's
-// vector extensions, so that the code says what happens and not which instruction does it.
+// Vectors of four and eight floats, and functions compiled for several instruction sets. Uses the vector
+// extensions of GCC (from 12 on) and clang, which compile for every processor.
 #pragma once
 
 #include <cmath>
@@ -24,34 +24,26 @@ using Eight = float __attribute__((vector_size(32), aligned(32)));
 using EightInts = std::int32_t __attribute__((vector_size(32), aligned(32)));
 using EightWords = std::uint32_t __attribute__((vector_size(32), aligned(32)));
 
-/// 16 aligned bytes as they are.
+/// Loads 16 bytes, aligned to 16, unchanged.
 inline Four load_raw(const void* from) {
     Four v;
     std::memcpy(&v, assume_aligned<16>(from), sizeof v);
     return v;
 }
 
-/// x, y and z of 16 aligned bytes whose last word is no float; 0 in its place.
+/// Loads x, y and z from 16 bytes, aligned to 16, whose last word is not a float; the fourth lane becomes 0.
 inline Four load_xyz(const void* from) {
-    FourInts bits;
-    std::memcpy(&bits, assume_aligned<16>(from), sizeof bits);
-    bits &= FourInts{-1, -1, -1, 0};
-    Four v;
-    std::memcpy(&v, &bits, sizeof v);
-    return v;
+    return bit_cast<Four>(bit_cast<FourInts>(load_raw(from)) & FourInts{-1, -1, -1, 0});
 }
 
-/// Stores x, y and z there; the last word keeps what it holds.
+/// Stores x, y and z to the first 12 of 16 bytes, aligned to 16; the last word keeps its value.
 inline void store_xyz(void* to, Four v) {
-    FourInts bits;
-    FourInts old;
-    std::memcpy(&bits, &v, sizeof bits);
-    std::memcpy(&old, assume_aligned<16>(to), sizeof old);
-    bits = (bits & FourInts{-1, -1, -1, 0}) | (old & FourInts{0, 0, 0, -1});
+    const FourInts bits = (bit_cast<FourInts>(v) & FourInts{-1, -1, -1, 0}) |
+                          (bit_cast<FourInts>(load_raw(to)) & FourInts{0, 0, 0, -1});
     std::memcpy(assume_aligned<16>(to), &bits, sizeof bits);
 }
 
-/// Bit i is set where word i of four equals v.
+/// A mask whose bit i is set if words[i] == v, i = 0..3.
 inline unsigned equal_mask(const std::int32_t* words, std::int32_t v) {
 #ifdef __SSE2__
     const __m128i four = _mm_loadu_si128(reinterpret_cast<const __m128i*>(words));
@@ -63,13 +55,13 @@ inline unsigned equal_mask(const std::int32_t* words, std::int32_t v) {
 #endif
 }
 
-/// Eight points or vectors side by side.
+/// Eight points or vectors, one per lane.
 struct alignas(32) EightVectors {
     Eight x, y, z;
 };
 
-// What follows is inlined into functions compiled for several instruction sets, so that no vector of eight
-// is ever handed over in registers that one of them does not have.
+// Inlined into functions that are compiled for several instruction sets. Results are passed by reference: the
+// registers for returning a vector of eight depend on the instruction set.
 
 NEURALMESH_ALWAYS_INLINE void add(EightVectors& a, const EightVectors& b) {
     a.x += b.x;
@@ -90,7 +82,7 @@ NEURALMESH_ALWAYS_INLINE void add_cross(EightVectors& sum, const EightVectors& a
     sum.z += a.x * b.y - a.y * b.x;
 }
 
-/// v where mask is -1, 0 where it is 0.
+/// Sets the lanes of v to 0 where mask is 0 and keeps them where it is -1.
 NEURALMESH_ALWAYS_INLINE void keep_where(const EightInts& mask, Eight& v) {
     EightInts bits;
     std::memcpy(&bits, &v, sizeof bits);
@@ -104,7 +96,7 @@ NEURALMESH_ALWAYS_INLINE void keep_where(const EightInts& mask, EightVectors& v)
     keep_where(mask, v.z);
 }
 
-/// v = a where mask is -1, b where it is 0.
+/// Lane by lane, v = a where mask is -1, v = b where it is 0.
 NEURALMESH_ALWAYS_INLINE void choose(const EightInts& mask, const EightVectors& a, const EightVectors& b,
                                      EightVectors& v) {
     v.x = mask ? a.x : b.x;
@@ -112,7 +104,7 @@ NEURALMESH_ALWAYS_INLINE void choose(const EightInts& mask, const EightVectors& 
     v.z = mask ? a.z : b.z;
 }
 
-/// The square root of every lane: a loop that compiles to one instruction.
+/// Replaces every lane by its square root; the loop compiles to one instruction.
 NEURALMESH_ALWAYS_INLINE void square_root(Eight& v) {
     float lanes[8];
     std::memcpy(lanes, &v, sizeof lanes);
@@ -139,7 +131,7 @@ NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v) {
     v.z = __builtin_shufflevector(z01, z23, 0, 1, 8, 9, 4, 5, 12, 13);
 }
 
-/// The same with the points' last words.
+/// As above; \p last_words receives the bits of the fourth floats.
 NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v, EightInts& last_words) {
     transpose(p, v);
     const auto last_of_pair = [](const Four& low, const Four& high, Eight& both) {
@@ -156,7 +148,7 @@ NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v, EightInt
     std::memcpy(&last_words, &w, sizeof last_words);
 }
 
-/// The way back: to[i] gets x, y, z of lane i, and 0.
+/// The inverse: to[i] = x, y and z of lane i, and 0.
 NEURALMESH_ALWAYS_INLINE void transpose(const EightVectors& v, Four* to) {
     const Eight zero = {0, 0, 0, 0, 0, 0, 0, 0};
     const Eight xy_low = __builtin_shufflevector(v.x, v.y, 0, 8, 1, 9, 4, 12, 5, 13);
@@ -175,9 +167,10 @@ NEURALMESH_ALWAYS_INLINE void transpose(const EightVectors& v, Four* to) {
 
 }  // namespace neuralmesh
 
-// A function so marked exists twice and the machine's best is chosen at load time. No fused multiply-add
-// (-ffp-contract=off), so both give the same bits. Sanitizers instrument the choice at load time and crash in
-// it. NEURALMESH_ONE_INSTRUCTION_SET makes the same instructions run on every machine, to count them.
+// NEURALMESH_MULTIVERSIONED compiles a function for AVX2 and for the baseline; the dynamic linker chooses.
+// Both versions give the same bits, as fused multiply-add is off (-ffp-contract=off). Programs built with
+// sanitizers crash in the resolver, which runs before the sanitizer is initialised, so they get the baseline
+// only. NEURALMESH_ONE_INSTRUCTION_SET also chooses the baseline, to count instructions on any machine.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define NEURALMESH_SANITIZED
 #elif defined(__has_feature)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Claims by the bits of one atomic word; spinning, then sleeping.
+// Members claim chunks by clearing bits of one atomic word.
 #include "vcg_core/base/thread_team.h"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace neuralmesh {
 
 namespace {
 
-/// Turns of the waiting loop before a helper goes to sleep: some 200 microseconds, longer than what the
-/// caller does between two loops.
+/// Turns of the waiting loop before a helper sleeps: about 200 microseconds, longer than the serial part
+/// between two loops of the learning.
 constexpr int kSpins = 16000;
 
 }  // namespace
@@ -26,7 +26,7 @@ ThreadTeam::ThreadTeam(int members) {
         try {
             helpers_.emplace_back(&ThreadTeam::help, this, i);
         } catch (const std::exception&) {
-            break;  // no memory or no thread left for one more: fewer do the same work
+            break;  // no thread or no memory for one: continue with a smaller team
         }
     }
 }
@@ -41,13 +41,13 @@ ThreadTeam::~ThreadTeam() {
 }
 
 void ThreadTeam::start(Call call, const void* body, int chunks) {
-    // The caller's own chunk is not up for claims, which would pass the word to and fro between the cores.
+    // Chunk 0 is not offered: claiming it would move the word's cache line to the caller and back.
     offer(call, body, (bit(chunks - 1) - 1) << 1);
     call(body, 0, 0);
     finish();
 }
 
-/// Puts the chunks whose bits are set up for claims.
+/// Lets members claim the chunks whose bits are set.
 void ThreadTeam::offer(Call call, const void* body, std::uint64_t chunks) {
     call_ = call;
     body_ = body;
@@ -59,7 +59,7 @@ void ThreadTeam::offer(Call call, const void* body, std::uint64_t chunks) {
     }
 }
 
-/// Does what nobody has claimed, and waits for the rest.
+/// Executes the chunks that no helper has claimed and waits for the others.
 void ThreadTeam::finish() {
     work(0);
     for (int turn = 0; open_.load(std::memory_order_acquire) > 0; ++turn) {
@@ -71,14 +71,15 @@ void ThreadTeam::finish() {
     }
 }
 
-/// Does chunks until there is none left, its own first. \return whether there was one.
+/// Claims and executes chunks, first the one of its own number, until none is left. \return false if it got
+/// none
 bool ThreadTeam::work(int member) {
     bool worked = false;
     for (;;) {
         const std::uint64_t seen = unclaimed_.load(std::memory_order_relaxed);
         if (seen == 0) return worked;
         const std::uint64_t wanted = (seen & bit(member)) != 0 ? bit(member) : seen & -seen;
-        // Whoever comes late may claim of the next round: what is called is read after the claim.
+        // call_ and body_ are read after the claim, which may already be one of the next loop.
         if ((unclaimed_.fetch_and(~wanted, std::memory_order_acq_rel) & wanted) == 0) continue;
         call_(body_, member, lowest_bit(wanted));
         open_.fetch_sub(1, std::memory_order_release);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// One bit per id.
 #include "vcg_core/mesh/free_ids.h"
 
 #include <algorithm>
@@ -12,7 +11,7 @@ namespace neuralmesh {
 
 namespace {
 
-/// The bit of \p word, which has one, that is nearest to \p bit; the higher of two.
+/// Position of the set bit of \p word nearest to \p bit; of two, the higher. \pre word != 0
 int nearest(std::uint64_t word, int bit) {
     const std::uint64_t above = word >> bit << bit;
     const std::uint64_t below = word ^ above;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The ids of vertices that are gone or have not come yet.
+// The free vertex ids of a network.
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,18 @@
 
 namespace neuralmesh {
 
-/// A set of ids from which one can be taken that is near another: where ids follow places, a new vertex comes
-/// to share the cache lines of its surroundings.
+/// A set of ids that can be searched for an id near a given one. If ids follow positions, a new vertex then
+/// shares cache lines with its neighbours.
 class FreeIds {
 public:
-    /// What take() looks through around an id, in words of 64 ids.
+    /// Words of 64 ids that take() searches on either side of the word of the given id.
     static constexpr std::size_t kWordsAround = 2;
 
     int count() const { return count_; }
-    /// \p id must not be in it. Amortised O(1).
+    /// Inserts \p id. Amortised O(1). \pre the set does not contain id
     void add(std::int32_t id);
-    /// Takes out one that shares a word with \p id or lies in a word near it; the smallest, if there is none.
-    /// Must not be empty. Amortised O(1).
+    /// Removes and returns the nearest id in the word of \p id, else one from the nearest word within
+    /// kWordsAround, else the smallest. Amortised O(1). \pre count() > 0
     std::int32_t take(std::int32_t id);
     std::size_t bytes() const { return words_.size() * sizeof(std::uint64_t); }
 
@@ -30,7 +30,7 @@ private:
     std::int32_t take_bit(std::size_t word, int bit);
 
     std::vector<std::uint64_t> words_;
-    std::size_t first_ = 0;  ///< words before it are empty
+    std::size_t first_ = 0;  ///< all words before this one are 0
     int count_ = 0;
 };
 

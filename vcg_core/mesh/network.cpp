@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Vertex split, half-edge collapse and edge flip on ordered one-rings.
+// Operations on ordered one-rings.
 #include "vcg_core/mesh/network.h"
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace {
 
 constexpr int kMax = Ring::kMaxValence;
 
-auto at(Ring& ring, int i) { return ring.neighbours.begin() + i; }
+VertexId* at(Ring& ring, int i) { return ring.begin() + i; }
 
 void insert(Ring& ring, int i, VertexId v) {
-    std::copy_backward(at(ring, i), at(ring, ring.valence), at(ring, ring.valence + 1));
-    *at(ring, i) = v;
+    std::copy_backward(at(ring, i), ring.end(), ring.end() + 1);
+    ring[i] = v;
     ++ring.valence;
     ring.pad_cyclically();
 }
@@ -27,42 +27,38 @@ void insert_after(Ring& ring, VertexId where, VertexId v) { insert(ring, ring.fi
 
 void erase(Ring& ring, VertexId v) {
     const int i = ring.find(v);
-    std::copy(at(ring, i + 1), at(ring, ring.valence), at(ring, i));
+    std::copy(at(ring, i + 1), ring.end(), at(ring, i));
     --ring.valence;
     ring.pad_cyclically();
 }
 
 void replace(Ring& ring, VertexId old, VertexId now) {
-    *at(ring, ring.find(old)) = now;
+    ring[ring.find(old)] = now;
     ring.pad_cyclically();
 }
 
+/// Replaces \p old by the \p count vertices from \p now on.
 void replace(Ring& ring, VertexId old, const VertexId* now, int count) {
     const int i = ring.find(old);
-    const int grown = ring.valence + count - 1;
     std::array<VertexId, kMax> tail;
-    const auto end = std::copy(at(ring, i + 1), at(ring, ring.valence), tail.begin());
-    std::copy(tail.begin(), end, std::copy(now, now + count, at(ring, i)));
-    ring.valence = static_cast<std::uint8_t>(grown);
+    const auto tail_end = std::copy(at(ring, i + 1), ring.end(), tail.begin());
+    std::copy(tail.begin(), tail_end, std::copy(now, now + count, at(ring, i)));
+    ring.valence = static_cast<std::uint8_t>(ring.valence + count - 1);
     ring.pad_cyclically();
 }
 
-/// Starts the cycle of a closed ring at position i.
+/// Makes position i of a closed ring its start.
 void rotate(Ring& ring, int i) {
-    std::rotate(at(ring, 0), at(ring, i), at(ring, ring.valence));
+    std::rotate(ring.begin(), at(ring, i), ring.end());
     ring.pad_cyclically();
 }
-
-int least_valence(const Ring& ring) { return ring.open != 0 ? 2 : 3; }
 
 int common_neighbours(const Ring& a, const Ring& b) {
-    int count = 0;
-    for (int i = 0; i < a.valence; ++i) count += b.find(a[i]) >= 0 ? 1 : 0;
-    return count;
+    return static_cast<int>(std::count_if(a.begin(), a.end(), [&](VertexId v) { return b.find(v) >= 0; }));
 }
 
-/// Position i of an open ring lies on one of the two boundary edges.
-bool at_end(const Ring& ring, int i) { return ring.open != 0 && (i == 0 || i + 1 == ring.valence); }
+/// True if the edge to the neighbour at position i is a boundary edge.
+bool on_boundary_edge(const Ring& ring, int i) { return ring.open != 0 && (i == 0 || i + 1 == ring.valence); }
 
 }  // namespace
 
@@ -86,8 +82,8 @@ VertexId Network::new_vertex(VertexId parent, const vcg::Point3f& where) {
         v = free_.back();
         free_.pop_back();
     } else {
-        // A slot that is there already is left from a time when there was no room for the ring.
-        slots_.resize(rings_.size() + 2, VertexRecord{0, 0, 0, -1});
+        // The new slot may exist: if an earlier push_back() below has thrown, it was left over.
+        slots_.resize(rings_.size() + 2, kFreeSlot);
         rings_.push_back(Ring{});
     }
     set_position(v, where);
@@ -134,17 +130,16 @@ VertexId Network::split(VertexId v, int first, int count, const vcg::Point3f& wh
     const VertexId e1 = ru[count - 1];
     insert(ru, takes_end ? 0 : count, v);
 
-    // What v keeps: all outside the fan, and the shared ends of the fan with u between them.
+    // v keeps the neighbours outside the fan and its shared ends, with u between them.
     const int keep_from = takes_start ? first : first + 1;
     const int keep_to = takes_end ? first + count : first + count - 1;
-    std::copy(at(rv, keep_to), at(rv, rv.valence), at(rv, keep_from));
+    std::copy(at(rv, keep_to), rv.end(), at(rv, keep_from));
     rv.valence = static_cast<std::uint8_t>(rv.valence - (keep_to - keep_from));
     insert(rv, keep_from, u);
 
     const bool shares_e2 = !takes_start || count == 1;
     const bool shares_e1 = !takes_end;
-    for (int i = 0; i < ru.valence; ++i) {
-        const VertexId t = ru[i];
+    for (const VertexId t : ru) {
         if (t == v) continue;
         if (t == e1 && shares_e1) {
             insert_after(ring_of(t), v, u);
@@ -162,14 +157,15 @@ bool Network::can_collapse(VertexId gone, VertexId kept) const {
     const Ring& rk = ring(kept);
     const int i = rg.find(kept);
     if (i < 0) return false;
-    const bool on_boundary = at_end(rg, i);
-    // A boundary vertex may only slide along its boundary, or the boundary would move or be pinched.
+    const bool on_boundary = on_boundary_edge(rg, i);
+    // A boundary vertex may move only along its boundary: else the boundary would change its shape or be
+    // pinched.
     if (rg.open != 0 && !on_boundary) return false;
     const int opposite = on_boundary ? 1 : 2;
     if (common_neighbours(rg, rk) != opposite) return false;
     const int valence = on_boundary ? rg.valence + rk.valence - 3 : rg.valence + rk.valence - 4;
-    if (valence < least_valence(rk) || valence > kMax) return false;
-    const auto can_lose_one = [&](VertexId w) { return ring(w).valence > least_valence(ring(w)); };
+    if (valence < rk.min_valence() || valence > kMax) return false;
+    const auto can_lose_one = [&](VertexId w) { return ring(w).valence > ring(w).min_valence(); };
     if (on_boundary) return can_lose_one(i == 0 ? rg[1] : rg[i - 1]);
     return can_lose_one(rg.next(i)) && can_lose_one(rg.previous(i));
 }
@@ -177,7 +173,7 @@ bool Network::can_collapse(VertexId gone, VertexId kept) const {
 void Network::collapse(VertexId gone, VertexId kept) {
     if (!can_collapse(gone, kept))
         throw TopologyError("This half-edge collapse would break the network; ask can_collapse() first.");
-    // Before the first change, as there may be no room for it.
+    // First, as it may throw std::bad_alloc.
     if (gaps_.count() > 0) {
         gaps_.add(gone);
     } else {
@@ -186,7 +182,7 @@ void Network::collapse(VertexId gone, VertexId kept) {
     Ring rg = ring(gone);
     const bool on_boundary = rg.open != 0;
     const int i = rg.find(kept);
-    // [from, to) of gone's ring is what kept takes over; the one or two vertices beside it lose an edge.
+    // kept takes over [from, to) of gone's ring; each vertex opposite the edge loses one edge.
     int from = 2;
     int to = rg.valence - 1;
     if (!on_boundary) {
@@ -211,10 +207,10 @@ bool Network::can_flip(VertexId a, VertexId b) const {
     const Ring& ra = ring(a);
     const Ring& rb = ring(b);
     const int i = ra.find(b);
-    if (i < 0 || at_end(ra, i)) return false;
+    if (i < 0 || on_boundary_edge(ra, i)) return false;
     const VertexId c = ra.next(i);
     const VertexId d = ra.previous(i);
-    return ra.valence > least_valence(ra) && rb.valence > least_valence(rb) && ring(c).valence < kMax &&
+    return ra.valence > ra.min_valence() && rb.valence > rb.min_valence() && ring(c).valence < kMax &&
            ring(d).valence < kMax && !adjacent(c, d);
 }
 
@@ -229,22 +225,23 @@ void Network::flip(VertexId a, VertexId b) {
     insert_after(ring_of(d), b, c);
 }
 
-std::vector<VertexId> Network::compact() {
+PerVertex<VertexId> Network::compact() {
     std::vector<VertexId> order;
-    for (VertexId v = 0; v < slot_count(); ++v)
-        if (alive(v)) order.push_back(v);
+    for (const VertexId v : vertices()) order.push_back(v);
     return renumber(order);
 }
 
-std::vector<VertexId> Network::renumber(const std::vector<VertexId>& order) {
-    std::vector<VertexId> moved(rings_.size(), -1);
+PerVertex<VertexId> Network::renumber(const std::vector<VertexId>& order) {
+    PerVertex<VertexId> moved(slot_count(), -1);
     FreeIds gaps;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        if (order[i] >= 0) {
-            moved[static_cast<std::size_t>(order[i])] = static_cast<VertexId>(i);
+    VertexId id = 0;
+    for (const VertexId old : order) {
+        if (old >= 0) {
+            moved[old] = id;
         } else {
-            gaps.add(static_cast<VertexId>(i));
+            gaps.add(id);
         }
+        ++id;
     }
     HugeVector<Ring> rings;
     HugeVector<VertexRecord> slots_in_order;
@@ -253,10 +250,9 @@ std::vector<VertexId> Network::renumber(const std::vector<VertexId>& order) {
     slots_in_order.push_back(kSentinel);
     for (const VertexId old : order) {
         rings.push_back(old < 0 ? Ring{} : ring(old));
-        slots_in_order.push_back(old < 0 ? VertexRecord{0, 0, 0, -1} : slots()[old]);
-        Ring& r = rings.back();
-        for (int i = 0; i < r.valence; ++i) *at(r, i) = moved[static_cast<std::size_t>(r[i])];
-        r.pad_cyclically();
+        slots_in_order.push_back(old < 0 ? kFreeSlot : slots()[old]);
+        for (VertexId& v : rings.back()) v = moved[v];
+        rings.back().pad_cyclically();
     }
     rings_.swap(rings);
     slots_.swap(slots_in_order);

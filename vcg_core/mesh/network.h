@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The neural mesh M itself: positions and connectivity of a growing, oriented 2-manifold, with or
-// without boundary. Knows nothing of learning.
+// The neural mesh M: positions and connectivity of a growing, oriented 2-manifold, with or without boundary.
 //
-// Connectivity is kept as one ordered one-ring per vertex, in a cache line of its own; faces and edges
-// are implied. vcglib has no vertex split and its adjacencies move on reallocation, so this is ours.
+// Connectivity is stored as one ordered one-ring per vertex; faces and edges are implicit. vcglib's mesh is
+// not used: it has no vertex split, and its adjacency pointers have to be updated whenever its vectors
+// reallocate.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -21,111 +21,113 @@
 
 namespace neuralmesh {
 
-/// 16 bytes, so that a position is one aligned load; the spare word belongs to the winner search.
+/// A vertex slot: 16 bytes, so a position is one aligned load.
 struct alignas(16) VertexRecord {
     float x, y, z;
-    VertexId link;
+    VertexId link;  ///< free for the owner of the network; the mesh does not use it
 
     vcg::Point3f point() const { return {x, y, z}; }
 };
 
-/// A simplicial, oriented 2-manifold with boundary. Vertex ids are stable; free ids, of removed vertices for
-/// one, are used again. Every operation below keeps the manifold or throws (TopologyError,
-/// std::bad_alloc) before it has changed anything.
+/// A simplicial, oriented 2-manifold with boundary. The id of a vertex stays the same until compact() or
+/// renumber(); the id of a removed vertex is reused. Every operation preserves the manifold conditions, or
+/// throws (TopologyError, std::bad_alloc) before it changes anything.
 class Network {
 public:
     Network() = default;
 
-    /// A network with the given vertices and faces.
-    /// \throws TopologyError: not an oriented manifold, a vertex without faces, or a valence above
-    /// Ring::kMaxValence. O(vertices + faces).
+    /// A network with the given vertices and faces. O(vertices + faces).
+    /// \throws TopologyError if the faces do not form an oriented manifold, or a vertex has no faces or a
+    /// valence above Ring::kMaxValence
     Network(const std::vector<vcg::Point3f>& positions, const std::vector<Triangle>& faces);
 
     int vertex_count() const { return vertex_count_; }
-    /// Ids run from 0 to slot_count() - 1; alive() tells the used ones.
+    /// Ids are in [0, slot_count()); those that are not alive() are free.
     int slot_count() const { return static_cast<int>(rings_.size()); }
     bool alive(VertexId v) const { return ring(v).valence != 0; }
-    /// The used ids in rising order: for (VertexId v : network.vertices()). Skips what is removed while it
-    /// runs; the network must not grow meanwhile.
+    /// The used ids in ascending order: for (VertexId v : network.vertices()). The loop may remove vertices
+    /// but must not add any.
     class Vertices;
     Vertices vertices() const;
     const Ring& ring(VertexId v) const { return rings_[static_cast<std::size_t>(v)]; }
+    bool adjacent(VertexId a, VertexId b) const { return ring(a).find(b) >= 0; }
     vcg::Point3f position(VertexId v) const { return slots()[v].point(); }
     void set_position(VertexId v, const vcg::Point3f& p);
-    /// Regions are for threads to share the work; a new vertex has that of the vertex it was split from.
+    /// Sets Ring::tag, 0 to 65535. A vertex created by split() inherits the tag of its parent.
     void set_tag(VertexId v, int tag) { ring_of(v).tag = static_cast<std::uint16_t>(tag); }
-    /// Raw slots for the hot loops. slots()[-1] is nobody's: far from everything, and last in any cell.
+    /// The vertex slots. slots()[-1] is a sentinel: infinitely far, and the end of every list of links.
     VertexRecord* slots() { return slots_.data() + 1; }
     const VertexRecord* slots() const { return slots_.data() + 1; }
     void reserve(int vertices);
-    /// Memory in use, without what is reserved for growth.
+    /// Memory in use, without reserved capacity.
     std::size_t bytes() const {
         return rings_.size() * sizeof(Ring) + slots_.size() * sizeof(VertexRecord) +
                free_.size() * sizeof(VertexId) + gaps_.bytes();
     }
 
-    bool adjacent(VertexId a, VertexId b) const { return ring(a).find(b) >= 0; }
-
-    /// Vertex split: the new vertex takes over the neighbours of \p v from ring position \p first on,
-    /// \p count of them (cyclically where the ring is closed), as a fan; v keeps the rest and shares the two
-    /// ends. Inverse of a half-edge collapse into v. The new vertex gets the position \p where.
-    /// \pre can_split(v, first, count)
+    /// Vertex split, the inverse of a half-edge collapse into \p v. The new vertex, at \p where, takes the
+    /// fan of \p count neighbours of v from ring position \p first on (cyclically if the ring is closed). v
+    /// keeps the other neighbours; both share the two ends of the fan. \pre can_split(v, first, count)
     /// \return the new vertex. Amortised O(1).
     VertexId split(VertexId v, int first, int count, const vcg::Point3f& where);
-    /// True if both halves keep a valence of at least 3 (2 on a boundary) and no valence grows beyond
-    /// Ring::kMaxValence.
+    /// True if the fan is valid, both vertices get a valence of at least 3 (2 on a boundary), and no valence
+    /// rises above Ring::kMaxValence.
     bool can_split(VertexId v, int first, int count) const;
 
-    /// Half-edge collapse: removes \p gone by moving it into its neighbour \p kept, which stays where it is.
-    /// \pre can_collapse(gone, kept). O(valence).
+    /// Half-edge collapse: moves \p gone into its neighbour \p kept and removes it. The position of kept
+    /// stays. \pre can_collapse(gone, kept). O(valence).
     void collapse(VertexId gone, VertexId kept);
-    /// The link condition (Dey et al. 1999: the common neighbours are exactly those opposite the edge), a
-    /// boundary vertex only along its boundary (or the boundary would move), no valence below 3 (2 on a
-    /// boundary) or above Ring::kMaxValence afterwards.
+    /// True if gone and kept are adjacent, their common neighbours are exactly the vertices opposite their
+    /// edge (the link condition, Dey et al. 1999), a boundary vertex moves along its boundary only, and all
+    /// valences stay between 3 (2 on a boundary) and Ring::kMaxValence.
     bool can_collapse(VertexId gone, VertexId kept) const;
 
     /// Edge flip: replaces the inner edge a-b by the edge between the two vertices opposite to it.
     /// \pre can_flip(a, b). O(valence).
     void flip(VertexId a, VertexId b);
-    /// True if a-b is an inner edge, the new edge does not exist yet and all valences stay in range.
+    /// True if a-b is an inner edge, the new edge does not exist yet, and all valences stay between 3 (2 on a
+    /// boundary) and Ring::kMaxValence.
     bool can_flip(VertexId a, VertexId b) const;
 
-    /// Gives new ids, so that the used ones are 0 .. vertex_count() - 1, in unchanged order. Whatever holds
-    /// ids, a WinnerSearch for one, must be made anew. \return for every old slot its new id, or -1.
-    std::vector<VertexId> compact();
-    /// The same in another order: \p order[i] is the old id of vertex i, every used id once, or -1 where i is
-    /// to be free. A new vertex takes a free id near that of the one it is split from. O(vertices).
-    std::vector<VertexId> renumber(const std::vector<VertexId>& order);
+    /// Renumbers the vertices to 0 .. vertex_count() - 1 and keeps their order. Invalidates all ids, for
+    /// example those in a WinnerSearch. \return per old slot the new id, or -1. O(vertices).
+    PerVertex<VertexId> compact();
+    /// Renumbers the vertices: order[i] is the old id of vertex i, or -1 to make id i free. Every used id
+    /// occurs once. Later splits take a free id near the id of the parent. \return as compact(). O(vertices).
+    PerVertex<VertexId> renumber(const std::vector<VertexId>& order);
 
     int face_count() const;
     int edge_count() const;
-    /// All faces, each once, starting from its smallest vertex, in order of that vertex. O(vertices).
+    /// All faces, each once, starting with its smallest vertex, ordered by that vertex. O(vertices).
     std::vector<Triangle> faces() const;
     /// V - E + F.
     int euler_characteristic() const { return vertex_count() - edge_count() + face_count(); }
     int component_count() const;
-    /// For every slot the number of its component, from 0 in order of the smallest vertex; -1 for free slots.
-    std::vector<int> components() const;
-    /// Turns every closed component that encloses a negative volume inside out, so that all faces are
+    /// Per slot the number of its component, in the order of their smallest vertices; -1 for free slots.
+    PerVertex<int> components() const;
+    /// Reverses the orientation of every closed component with a negative enclosed volume, so faces are
     /// counter-clockwise seen from outside. O(vertices).
     void orient_outward();
     int boundary_loop_count() const;
     /// Sum over the components, from the Euler characteristic: components - (euler + loops) / 2.
     int genus() const;
 
-    /// Full check of every promise above. Empty if all hold, else a sentence naming the first breach.
+    /// Checks the manifold conditions, the padding, the positions and the counts. \return a sentence about
+    /// the first violation, empty if there is none. O(vertices).
     std::string validate() const;
 
 private:
     Ring& ring_of(VertexId v) { return rings_[static_cast<std::size_t>(v)]; }
     VertexId new_vertex(VertexId parent, const vcg::Point3f& where);
+    std::string validate_edge(VertexId v, int i) const;
+
+    static constexpr VertexRecord kSentinel{1e18F, 1e18F, 1e18F, -1};
+    static constexpr VertexRecord kFreeSlot{0, 0, 0, -1};
 
     HugeVector<Ring> rings_;
-    static constexpr VertexRecord kSentinel{1e18F, 1e18F, 1e18F, -1};
-
-    HugeVector<VertexRecord> slots_{kSentinel};  ///< of vertex v at v + 1
-    std::vector<VertexId> free_;
-    FreeIds gaps_;  ///< those that are free in a network whose ids follow places
+    HugeVector<VertexRecord> slots_{kSentinel};  ///< slot v is element v + 1
+    std::vector<VertexId> free_;                 ///< removed ids while gaps_ is empty
+    FreeIds gaps_;                               ///< free ids of a network that renumber() left with gaps
     int vertex_count_ = 0;
 };
 

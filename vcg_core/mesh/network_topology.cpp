@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The network as a whole: built from faces, counted, listed and checked.
+// Operations on the whole network: construction from faces, counts, orientation, validation.
 #include <algorithm>
+#include <utility>
 
 #include "vcg_core/mesh/network.h"
 
@@ -10,10 +11,10 @@ namespace neuralmesh {
 
 namespace {
 
-/// Around one vertex: to each neighbour the one that follows it, from one face each.
+/// Pairs (b, c), one per face (v, b, c) of a vertex v: neighbour c follows b around v.
 using Links = std::vector<std::pair<VertexId, VertexId>>;
 
-/// Chains the links of one vertex to its ring; false if they do not form one cycle or one open fan.
+/// Chains the links of one vertex into its ring. \return false if they are not one cycle or one open fan
 bool chain(const Links& links, Ring& ring) {
     ring = Ring{};
     if (links.empty() || links.size() > Ring::kMaxValence) return false;
@@ -31,10 +32,9 @@ bool chain(const Links& links, Ring& ring) {
     VertexId v = start->first;
     const std::size_t valence = links.size() + (open ? 1 : 0);
     if (valence > Ring::kMaxValence) return false;
-    for (std::size_t i = 0; i < valence; ++i) {
+    while (ring.valence < valence) {
         if (ring.find(v) >= 0) return false;
-        ring.neighbours[i] = v;
-        ++ring.valence;
+        ring[ring.valence++] = v;
         const auto link = follows(v);
         if (link == links.end()) break;
         v = link->second;
@@ -44,7 +44,7 @@ bool chain(const Links& links, Ring& ring) {
     return ring.valence == valence && (open || v == ring[0]);
 }
 
-std::string at_vertex(VertexId v, const char* what) {
+std::string breach_at(VertexId v, const char* what) {
     return "The network is broken at vertex " + std::to_string(v) + ": " + what;
 }
 
@@ -53,22 +53,21 @@ bool finite(const vcg::Point3f& p) { return (p - p) == vcg::Point3f(0, 0, 0); }
 }  // namespace
 
 Network::Network(const std::vector<vcg::Point3f>& positions, const std::vector<Triangle>& faces) {
-    std::vector<Links> links(positions.size());
+    vertex_count_ = static_cast<int>(positions.size());
+    PerVertex<Links> links(vertex_count_);
     for (const Triangle& f : faces) {
         for (std::size_t k = 0; k < 3; ++k) {
-            if (f[k] < 0 || static_cast<std::size_t>(f[k]) >= positions.size())
+            if (f[k] < 0 || f[k] >= vertex_count_)
                 throw TopologyError("A face of the start mesh names a vertex that does not exist.");
-            links[static_cast<std::size_t>(f[k])].emplace_back(f[(k + 1) % 3], f[(k + 2) % 3]);
+            links[f[k]].emplace_back(f[(k + 1) % 3], f[(k + 2) % 3]);
         }
     }
     rings_.resize(positions.size());
-    slots_.resize(positions.size() + 1, VertexRecord{0, 0, 0, -1});
-    vertex_count_ = static_cast<int>(positions.size());
-    for (std::size_t v = 0; v < positions.size(); ++v) {
-        set_position(static_cast<VertexId>(v), positions[v]);
-        if (!chain(links[v], rings_[v]))
-            throw TopologyError(at_vertex(static_cast<VertexId>(v),
-                                          "its faces form no single fan of at most 15 neighbours."));
+    slots_.resize(positions.size() + 1, kFreeSlot);
+    for (VertexId v = 0; v < vertex_count_; ++v) {
+        set_position(v, positions[static_cast<std::size_t>(v)]);
+        if (!chain(links[v], ring_of(v)))
+            throw TopologyError(breach_at(v, "its faces form no single fan of at most 15 neighbours."));
     }
     const std::string breach = validate();
     if (!breach.empty()) throw TopologyError(breach);
@@ -89,29 +88,29 @@ int Network::edge_count() const {
 std::vector<Triangle> Network::faces() const {
     std::vector<Triangle> result;
     result.reserve(static_cast<std::size_t>(face_count()));
-    for (VertexId v = 0; v < slot_count(); ++v) {
+    for (const VertexId v : vertices()) {
         const Ring& r = ring(v);
-        for (int i = 0; r.valence != 0 && i < r.face_count(); ++i)
+        for (int i = 0; i < r.face_count(); ++i)
             if (v < r[i] && v < r.next(i)) result.push_back({v, r[i], r.next(i)});
     }
     return result;
 }
 
-std::vector<int> Network::components() const {
-    std::vector<int> component(rings_.size(), -1);
+PerVertex<int> Network::components() const {
+    PerVertex<int> component(slot_count(), -1);
     std::vector<VertexId> stack;
     int count = 0;
-    for (VertexId start = 0; start < slot_count(); ++start) {
-        if (!alive(start) || component[static_cast<std::size_t>(start)] >= 0) continue;
-        component[static_cast<std::size_t>(start)] = count;
+    for (const VertexId start : vertices()) {
+        if (component[start] >= 0) continue;
+        component[start] = count;
         stack.push_back(start);
         while (!stack.empty()) {
-            const Ring& r = ring(stack.back());
+            const VertexId v = stack.back();
             stack.pop_back();
-            for (int i = 0; i < r.valence; ++i) {
-                if (component[static_cast<std::size_t>(r[i])] >= 0) continue;
-                component[static_cast<std::size_t>(r[i])] = count;
-                stack.push_back(r[i]);
+            for (const VertexId w : ring(v)) {
+                if (component[w] >= 0) continue;
+                component[w] = count;
+                stack.push_back(w);
             }
         }
         ++count;
@@ -120,38 +119,35 @@ std::vector<int> Network::components() const {
 }
 
 int Network::component_count() const {
-    const std::vector<int> component = components();
+    const PerVertex<int> component = components();
     return component.empty() ? 0 : *std::max_element(component.begin(), component.end()) + 1;
 }
 
 void Network::orient_outward() {
-    const std::vector<int> component = components();
-    std::vector<double> volume(component.size() + 1, 0.0);
-    std::vector<char> open(component.size() + 1, 0);
+    const PerVertex<int> component = components();
+    Indexed<double> volume(slot_count(), 0.0);  // of each component, times 6
+    Indexed<char> open(slot_count(), 0);
     for (const Triangle& f : faces()) {
         const auto p = [&](std::size_t k) { return vcg::Point3d::Construct(position(f[k])); };
-        volume[static_cast<std::size_t>(component[static_cast<std::size_t>(f[0])])] += p(0) * (p(1) ^ p(2));
+        volume[component[f[0]]] += p(0) * (p(1) ^ p(2));
     }
-    for (std::size_t v = 0; v < rings_.size(); ++v)
-        if (rings_[v].open != 0) open[static_cast<std::size_t>(component[v])] = 1;
-    for (std::size_t v = 0; v < rings_.size(); ++v) {
-        Ring& r = rings_[v];
-        if (r.valence == 0) continue;
-        const auto c = static_cast<std::size_t>(component[v]);
-        if (volume[c] >= 0 || open[c] != 0) continue;
-        std::reverse(r.neighbours.begin(), r.neighbours.begin() + r.valence);
+    for (const VertexId v : vertices())
+        if (ring(v).open != 0) open[component[v]] = 1;
+    for (const VertexId v : vertices()) {
+        if (volume[component[v]] >= 0 || open[component[v]] != 0) continue;
+        Ring& r = ring_of(v);
+        std::reverse(r.begin(), r.end());
         r.pad_cyclically();
     }
 }
 
 int Network::boundary_loop_count() const {
-    std::vector<char> seen(rings_.size(), 0);
+    PerVertex<char> seen(slot_count(), 0);
     int loops = 0;
-    for (VertexId start = 0; start < slot_count(); ++start) {
-        if (ring(start).open == 0 || seen[static_cast<std::size_t>(start)] != 0) continue;
+    for (const VertexId start : vertices()) {
+        if (ring(start).open == 0 || seen[start] != 0) continue;
         ++loops;
-        for (VertexId v = start; seen[static_cast<std::size_t>(v)] == 0; v = ring(v)[0])
-            seen[static_cast<std::size_t>(v)] = 1;
+        for (VertexId v = start; seen[v] == 0; v = ring(v)[0]) seen[v] = 1;
     }
     return loops;
 }
@@ -162,35 +158,17 @@ int Network::genus() const {
 
 std::string Network::validate() const {
     int count = 0;
-    for (VertexId v = 0; v < slot_count(); ++v) {
+    for (const VertexId v : vertices()) {
         const Ring& r = ring(v);
-        if (r.valence == 0) continue;
         ++count;
-        if (!finite(position(v))) return at_vertex(v, "its position is not finite.");
-        if (r.valence < (r.open != 0 ? 2 : 3) || r.valence > Ring::kMaxValence)
-            return at_vertex(v, "its valence is out of range.");
+        if (!finite(position(v))) return breach_at(v, "its position is not finite.");
+        if (r.valence < r.min_valence() || r.valence > Ring::kMaxValence)
+            return breach_at(v, "its valence is out of range.");
         for (int i = r.valence; i < Ring::kMaxValence; ++i)
-            if (r[i] != r[i - r.valence]) return at_vertex(v, "its ring does not repeat.");
+            if (r[i] != r[i - r.valence]) return breach_at(v, "its ring is not padded cyclically.");
         for (int i = 0; i < r.valence; ++i) {
-            const VertexId w = r[i];
-            if (w < 0 || w >= slot_count() || !alive(w) || w == v)
-                return at_vertex(v, "a neighbour does not exist.");
-            if (r.find(w) != i) return at_vertex(v, "a neighbour appears twice.");
-            const int back = ring(w).find(v);
-            if (back < 0) return at_vertex(v, "a neighbour does not know it.");
-            const bool last = r.open != 0 && i + 1 == r.valence;
-            if (last) {
-                if (ring(w).open == 0 || back != 0)
-                    return at_vertex(v, "its last boundary edge has two faces.");
-                continue;
-            }
-            if (r.open != 0 && i == 0 && (ring(w).open == 0 || back + 1 != ring(w).valence))
-                return at_vertex(v, "its first boundary edge has two faces.");
-            // The face (v, w, x) must be seen from w as x followed by v.
-            const int x = ring(w).find(r.next(i));
-            const bool wraps = x >= 0 && ring(w).open != 0 && x + 1 == ring(w).valence;
-            if (x < 0 || wraps || ring(w).next(x) != v)
-                return at_vertex(v, "a face is not seen alike from its corners.");
+            const std::string breach = validate_edge(v, i);
+            if (!breach.empty()) return breach;
         }
     }
     if (count != vertex_count_)
@@ -198,6 +176,27 @@ std::string Network::validate() const {
                std::to_string(count) + ".";
     if (count + static_cast<int>(free_.size()) + gaps_.count() != slot_count())
         return "The network is broken: free and used slots do not add up.";
+    return {};
+}
+
+/// validate() for the edge from v to the neighbour at ring position i and the face after it.
+std::string Network::validate_edge(VertexId v, int i) const {
+    const Ring& r = ring(v);
+    const VertexId w = r[i];
+    if (w < 0 || w >= slot_count() || !alive(w) || w == v) return breach_at(v, "a neighbour does not exist.");
+    if (r.find(w) != i) return breach_at(v, "a neighbour appears twice.");
+    const Ring& rw = ring(w);
+    const int back = rw.find(v);
+    if (back < 0) return breach_at(v, "it is missing from the ring of a neighbour.");
+    if (r.open != 0 && i + 1 == r.valence)
+        return rw.open != 0 && back == 0 ? "" : breach_at(v, "its last boundary edge has two faces.");
+    if (r.open != 0 && i == 0 && (rw.open == 0 || back + 1 != rw.valence))
+        return breach_at(v, "its first boundary edge has two faces.");
+    // The face (v, w, x): in the ring of w, v follows x.
+    const int x = rw.find(r.next(i));
+    const bool wraps = x >= 0 && rw.open != 0 && x + 1 == rw.valence;
+    if (x < 0 || wraps || rw.next(x) != v)
+        return breach_at(v, "a face differs between the rings of its corners.");
     return {};
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The one-ring of a vertex, in a cache line of its own.
+// The one-ring of a vertex, stored in one cache line.
 #pragma once
 
 #include <array>
@@ -24,42 +24,50 @@ using PerVertex = Indexed<T>;
 template <class T>
 using PerFace = Indexed<T>;
 
-/// The neighbours of a vertex, counter-clockwise seen from outside. Closed: a cycle, which may start
-/// anywhere. Open (the vertex lies on a boundary): from the first boundary edge to the last.
+/// The neighbours of a vertex in counter-clockwise order, seen from outside. The ring of an inner vertex is
+/// closed: a cycle with any start. The ring of a boundary vertex is open: it begins and ends with the
+/// neighbours along the boundary.
 struct alignas(64) Ring {
     static constexpr int kMaxValence = 15;
 
     /// Padded cyclically: neighbours[i] == neighbours[i - valence], so loops need no wrap-around test.
     std::array<VertexId, kMaxValence> neighbours;
-    std::uint8_t valence;  ///< 0: the slot is free
-    std::uint8_t open;     ///< 1: boundary vertex
-    std::uint16_t tag;     ///< for the owner of the network, by Network::set_tag(); no part of the mesh
+    std::uint8_t valence;  ///< number of neighbours; 0 in a free slot
+    std::uint8_t open;     ///< 1 for a boundary vertex, else 0
+    std::uint16_t tag;     ///< free for the owner of the network; the mesh does not use it
+
+    VertexId operator[](int i) const { return neighbours[static_cast<std::size_t>(i)]; }
+    VertexId& operator[](int i) { return neighbours[static_cast<std::size_t>(i)]; }
+    const VertexId* begin() const { return neighbours.data(); }
+    const VertexId* end() const { return neighbours.data() + valence; }
+    VertexId* begin() { return neighbours.data(); }
+    VertexId* end() { return neighbours.data() + valence; }
 
     /// The position of \p v, or -1.
     int find(VertexId v) const {
         for (int i = 0; i < valence; ++i)
-            if (neighbours[static_cast<std::size_t>(i)] == v) return i;
+            if ((*this)[i] == v) return i;
         return -1;
     }
-    /// find() of a neighbour that is there, without a branch that cannot be predicted.
+    /// As find(), for a \p v that is in the ring; without unpredictable branches.
     int find_existing(VertexId v) const {
-        // Entries beyond the valence repeat the ring, so the first hit counts.
+        // The padding repeats the ring, so the first hit is the position.
         unsigned hits = equal_mask(neighbours.data(), v) | equal_mask(neighbours.data() + 4, v) << 4;
         if (hits == 0)
             hits = equal_mask(neighbours.data() + 8, v) << 8 | equal_mask(neighbours.data() + 11, v) << 11;
         return lowest_bit(hits);
     }
-    VertexId operator[](int i) const { return neighbours[static_cast<std::size_t>(i)]; }
-    const VertexId* begin() const { return neighbours.data(); }
-    const VertexId* end() const { return neighbours.data() + valence; }
-    /// The neighbour after / before position i, cyclically.
+    /// The neighbour after position i, cyclically.
     VertexId next(int i) const { return (*this)[i + 1 == valence ? 0 : i + 1]; }
+    /// The neighbour before position i, cyclically.
     VertexId previous(int i) const { return (*this)[i == 0 ? valence - 1 : i - 1]; }
+    /// Number of faces at the vertex.
     int face_count() const { return valence - open; }
-    /// Fills the entries beyond the valence; to be called after every change.
+    /// The least valence that keeps the mesh a manifold.
+    int min_valence() const { return open != 0 ? 2 : 3; }
+    /// Restores the padding; required after every change of neighbours or valence.
     void pad_cyclically() {
-        for (std::size_t i = valence; i < neighbours.size() && valence > 0; ++i)
-            neighbours[i] = neighbours[i - valence];
+        for (int i = valence; i < kMaxValence && valence > 0; ++i) (*this)[i] = (*this)[i - valence];
     }
 };
 static_assert(sizeof(Ring) == 64);

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A closed mesh made small and even, its topology kept: for the start mesh, which has thousands of vertices
-// too many.
+// Decimation of a closed mesh to evenly sized triangles. Used to reduce the shell, which has thousands of
+// vertices more than a start mesh needs.
 #pragma once
 
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
 
-/// Collapses the shortest edges of the closed mesh \p network first, until it has at most \p vertices, or
-/// nothing can go without changing the topology or folding the surface; then evens it by edge flips and
-/// tangential smoothing. All valences end between 3 and 12. O(n log n).
+/// Reduces the closed mesh \p network to at most \p vertices vertices by half-edge collapses, the shortest
+/// edges first, and evens it by edge flips and tangential smoothing. Preserves the topology; stops above \p
+/// vertices if no further collapse does. No valence rises above 12. O(n log n).
 void simplify(Network& network, int vertices);
 
 }  // namespace neuralmesh

@@ -17,9 +17,9 @@ struct FlipNormals {
     vcg::Point3f after[2];
 };
 
-/// Which flips are allowed beyond those that Network::can_flip() forbids.
+/// Conditions on a flip beyond those of Network::can_flip().
 struct FlipRule {
-    bool (*is_flat)(const FlipNormals& normals);  ///< true if the flip leaves the surface flat enough
+    bool (*is_flat)(const FlipNormals& normals);  ///< true if the flip changes the surface little enough
     int max_valence = Ring::kMaxValence;          ///< no flip raises a valence above it
 };
 

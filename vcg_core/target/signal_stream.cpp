@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A buffer from whose front is taken and at whose end is drawn.
 #include "vcg_core/target/signal_stream.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The signals of the learning, in the order in which they are drawn from the target space.
+// The sequence of signals of a learning run.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -14,25 +14,25 @@
 
 namespace neuralmesh {
 
-/// A stream of signals. How far it is drawn ahead does not change what comes out of it.
+/// Signals drawn from a target space. Drawing ahead does not change the sequence.
 class SignalStream {
 public:
-    /// At most \p most signals are taken, or drawn ahead, at a time. A reference to \p target is kept.
+    /// \p most is the upper limit of the counts below. Keeps a reference to \p target.
     SignalStream(const TargetSpace& target, int random_seed, int most)
         : target_(target),
-          random_(static_cast<std::uint64_t>(random_seed)),
+          random_(stream_seed(random_seed, Stream::learning)),
           drawn_(2 * static_cast<std::size_t>(most)) {}
 
-    /// The next \p count signals, valid until the next call of a member.
+    /// The next \p count signals. The pointer is valid until the next call of a member function.
     const vcg::Point3f* take(int count);
-    /// Sees to it that take(\p count) finds its signals drawn. Does not throw.
+    /// Draws the signals that the next take(\p count) will return, possibly in another thread.
     void draw_ahead(int count) noexcept;
 
 private:
     const TargetSpace& target_;
     Random random_;
     std::vector<vcg::Point3f> drawn_;
-    std::size_t begin_ = 0;  ///< of those that are drawn and not taken
+    std::size_t begin_ = 0;  ///< [begin_, end_): drawn but not yet taken
     std::size_t end_ = 0;
 };
 

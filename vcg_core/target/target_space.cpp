@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Drawing signals, and refusing clouds that span nothing.
 #include "vcg_core/target/target_space.h"
+
+#include <vcg/space/line3.h>
 
 #include <algorithm>
 #include <string>
@@ -15,22 +16,20 @@ namespace neuralmesh {
 
 namespace {
 
-constexpr double kSmallPart = 1e-3;              ///< of the box, where most points are
-constexpr double kManyRepeats = 0.1;             ///< of the points
-constexpr std::size_t kEnoughForShare = 100000;  ///< points, to estimate that share
-constexpr double kCollinear = 1e-6;  ///< distance from the line, in diagonals, below which points lie on it
-
-double squared_distance_to_line(const vcg::Point3f& p, const vcg::Point3f& a, const vcg::Point3f& direction) {
-    const vcg::Point3f d = p - a;
-    const float along = d * direction / direction.SquaredNorm();
-    return static_cast<double>((d - direction * along).SquaredNorm());
-}
+/// If the box of most points has a smaller share of the diagonal, the frame is centred on it.
+constexpr double kSmallShare = 1e-3;
+/// If a larger share of the points are duplicates, they are removed.
+constexpr double kMaxDuplicates = 0.1;
+/// Size of the samples that estimate this share.
+constexpr std::size_t kSampleSize = 100000;
+/// Points closer to a line, in diagonals, count as on it.
+constexpr float kCollinear = 1e-6F;
 
 bool by_coordinates(const vcg::Point3f& p, const vcg::Point3f& q) {
     return std::tie(p[0], p[1], p[2]) < std::tie(q[0], q[1], q[2]);
 }
 
-/// Equal for equal points, 0 and -0 included.
+/// Hash of a point; 0 and -0 are equal.
 std::uint32_t hash_of(const vcg::Point3f& p) {
     std::uint64_t hash = 0;
     for (int k = 0; k < 3; ++k) {
@@ -40,31 +39,31 @@ std::uint32_t hash_of(const vcg::Point3f& p) {
     return static_cast<std::uint32_t>(hash >> 32);
 }
 
-/// Sorts \p points and leaves each place once.
-void keep_each_once(std::vector<vcg::Point3f>& points) {
+/// Sorts \p points and removes duplicates.
+void remove_duplicates(std::vector<vcg::Point3f>& points) {
     std::sort(points.begin(), points.end(), by_coordinates);
     points.erase(std::unique(points.begin(), points.end()), points.end());
 }
 
-/// The share of \p points that repeat others of them.
-double share_of_repeats(std::vector<vcg::Point3f> points) {
+double share_of_duplicates(std::vector<vcg::Point3f> points) {
     const auto all = static_cast<double>(points.size());
-    keep_each_once(points);
+    remove_duplicates(points);
     return all > 0 ? 1 - static_cast<double>(points.size()) / all : 0;
 }
 
-/// Places that hold few points each show where all points of some places are taken, those that hold many
-/// where some points of all places are.
-double estimated_share_of_repeats(const std::vector<vcg::Point3f>& points) {
-    const std::size_t stride = points.size() / kEnoughForShare + 1;
-    if (stride == 1) return share_of_repeats(points);
-    std::vector<vcg::Point3f> of_some_places;
-    std::vector<vcg::Point3f> some_of_all;
+/// Takes two samples of points: all duplicates of random places show places with few duplicates each, random
+/// points show places with many.
+double estimated_share_of_duplicates(const std::vector<vcg::Point3f>& points) {
+    const std::size_t stride = points.size() / kSampleSize + 1;
+    if (stride == 1) return share_of_duplicates(points);
+    std::vector<vcg::Point3f> of_random_places;
+    std::vector<vcg::Point3f> random_points;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (hash_of(points[i]) % stride == 0) of_some_places.push_back(points[i]);
-        if (i % stride == 0) some_of_all.push_back(points[i]);
+        if (hash_of(points[i]) % stride == 0) of_random_places.push_back(points[i]);
+        if (i % stride == 0) random_points.push_back(points[i]);
     }
-    return std::max(share_of_repeats(std::move(of_some_places)), share_of_repeats(std::move(some_of_all)));
+    return std::max(share_of_duplicates(std::move(of_random_places)),
+                    share_of_duplicates(std::move(random_points)));
 }
 
 }  // namespace
@@ -84,7 +83,7 @@ void TargetSpace::set_frame(const vcg::Box3d& box, std::size_t not_finite, std::
     if (not_finite > 0)
         throw InputError(std::to_string(not_finite) + " of the " + std::to_string(count) +
                          " points have coordinates that are not finite (NaN or infinite): remove them.");
-    frame_.centre = box.min / 2 + box.max / 2;  // the sum of both may be beyond double
+    frame_.centre = box.min / 2 + box.max / 2;  // the sum of both could overflow
     frame_.diagonal = (box.max - box.min).Norm();
     if (box.min == box.max)
         throw InputError("All points of the layer are equal: a surface needs at least 4 distinct points.");
@@ -95,7 +94,7 @@ void TargetSpace::set_frame(const vcg::Box3d& box, std::size_t not_finite, std::
 
 void TargetSpace::centre_on(const vcg::Box3d& most) {
     const double diagonal = (most.max - most.min).Norm();
-    off_centre_ = diagonal > 0 && diagonal < kSmallPart * frame_.diagonal;
+    off_centre_ = diagonal > 0 && diagonal < kSmallShare * frame_.diagonal;
     if (off_centre_) frame_.centre = most.min / 2 + most.max / 2;
 }
 
@@ -104,13 +103,13 @@ std::string TargetSpace::lack_of_spread() const {
     const auto far = std::max_element(
         positions_.begin(), positions_.end(),
         [&](const auto& p, const auto& q) { return (p - a).SquaredNorm() < (q - a).SquaredNorm(); });
-    const vcg::Point3f direction = *far - a;
+    const vcg::Line3f line(a, *far - a);
     std::vector<vcg::Point3f> distinct;
     bool collinear = true;
     for (const vcg::Point3f& p : positions_) {
         if (distinct.size() < 4 && std::find(distinct.begin(), distinct.end(), p) == distinct.end())
             distinct.push_back(p);
-        collinear = collinear && squared_distance_to_line(p, a, direction) < kCollinear * kCollinear;
+        collinear = collinear && vcg::Distance(line, p) < kCollinear;
         if (!collinear && distinct.size() == 4) return "";
     }
     if (distinct.size() < 4)
@@ -158,11 +157,11 @@ std::optional<TargetSpace> TargetSpace::without(const std::vector<std::uint8_t>&
 }
 
 std::optional<TargetSpace> TargetSpace::each_place_once() const {
-    if (has_faces() || estimated_share_of_repeats(positions_) <= kManyRepeats) return std::nullopt;
+    if (has_faces() || estimated_share_of_duplicates(positions_) <= kMaxDuplicates) return std::nullopt;
     TargetSpace once;
     once.frame_ = frame_;
     once.positions_ = positions_;
-    keep_each_once(once.positions_);
+    remove_duplicates(once.positions_);
     return once;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The target space Omega of the paper: what signals are drawn from, in the core's own frame.
+// The target space Omega of the paper: the points or faces from which signals are drawn.
 #pragma once
 
 #include <vcg/space/box3.h>
@@ -19,46 +19,50 @@
 
 namespace neuralmesh {
 
-/// The core's frame: the bounding box centred on the origin, its diagonal of length 1. Computed in double,
-/// so that learning in float is indifferent to where and how large the cloud is. (Where all but a few points
-/// lie in a thousandth of the box, these are centred: near the origin float tells most places apart.)
+/// The frame of the core: the centre of the bounding box is the origin, its diagonal has length 1. Converted
+/// in double, so the precision of learning in float does not depend on the position and the size of the
+/// cloud. If nearly all points lie in less than a thousandth of the box, their centre is the origin, as float
+/// resolves most there.
 struct Frame {
     vcg::Point3d centre{0, 0, 0};
     double diagonal = 1;
 
+    /// From the frame of the input to this one.
     vcg::Point3f inside(const vcg::Point3d& p) const;
+    /// From this frame to that of the input.
     vcg::Point3d outside(const vcg::Point3f& p) const;
 };
 
-/// Points, or triangles weighted by their area, with a uniform random sample(), O(1) for points and O(log n)
-/// for triangles. Memory: 12 bytes per point; 12 bytes per corner and 8 per triangle.
+/// Points, or triangles weighted by area. Memory: 12 bytes per point, or 44 bytes per triangle.
 class TargetSpace {
 public:
-    /// A cloud. \p point_at(i), i in [0, count), gives a point as vcg::Point3d; called more than once per
-    /// point. \throws InputError: no points, not finite, fewer than 4 distinct, all on a line
+    /// A cloud. \p point_at(i), i in [0, count), returns point i as vcg::Point3d; it is called more than once
+    /// per point. \throws InputError if there are no points, coordinates are not finite, fewer than 4 points
+    /// are distinct, or all lie on a line
     template <class PointAt>
     static TargetSpace points(std::size_t count, const PointAt& point_at);
 
-    /// Triangles, drawn from in proportion to their areas. \p corner_at(i, k), i in [0, count), k in 0..2.
-    /// \throws InputError as points(), and if the total area is zero
+    /// Triangles; a signal is uniform over their area. \p corner_at(i, k), i in [0, count), k in 0..2,
+    /// returns corner k of triangle i. \throws InputError as points(), and if the total area is 0
     template <class CornerAt>
     static TargetSpace triangles(std::size_t count, const CornerAt& corner_at);
 
-    /// One random point of the target space, in the core's frame.
+    /// A random point, uniform over the points or the area, in the frame of the core. O(1) for points, O(log
+    /// n) for n triangles.
     vcg::Point3f sample(Random& random) const;
 
-    /// The cloud without the points where \p left_out is not 0, in the frame of what remains; nothing if that
-    /// spans no surface. O(points).
+    /// The cloud without the points i with left_out[i] != 0, in a frame of its own; nothing if the remaining
+    /// points span no surface. O(points).
     std::optional<TargetSpace> without(const std::vector<std::uint8_t>& left_out) const;
 
-    /// The cloud with every place once, in the same frame, if more than a tenth of its points repeat others
-    /// to the bit; nothing otherwise, or if the target has faces. That share is estimated from 100,000 points
-    /// and places, exact for fewer points. O(points), O(points log points) if there is something to do.
+    /// The cloud without duplicate points, in the same frame, if more than a tenth of the points are exact
+    /// duplicates; nothing otherwise, or for triangles. The share is estimated from samples of about 100,000
+    /// points and exact for smaller clouds. O(points), or O(points log points) if duplicates are removed.
     std::optional<TargetSpace> each_place_once() const;
 
     const Frame& frame() const { return frame_; }
     bool has_faces() const { return !cumulative_area_.empty(); }
-    /// The points, or the corners of the triangles three by three, in the core's frame.
+    /// The points, or three corners per triangle, in the frame of the core.
     const std::vector<vcg::Point3f>& positions() const { return positions_; }
 
 private:
@@ -68,13 +72,13 @@ private:
     static vcg::Box3d box_of_most(std::size_t count, const PointAt& point_at);
     void centre_on(const vcg::Box3d& most);
     void set_frame(const vcg::Box3d& box, std::size_t not_finite, std::size_t count);
-    /// Why the points cannot be learned, as a sentence; empty if they can.
+    /// A sentence if the points span no surface, empty if they do.
     std::string lack_of_spread() const;
     void check_spread() const;
     void accumulate_areas();
 
     Frame frame_;
-    bool off_centre_ = false;  ///< the frame is centred on most of the points, not on their box
+    bool off_centre_ = false;  ///< the origin is the centre of most points, not of the box
     std::vector<vcg::Point3f> positions_;
     std::vector<double> cumulative_area_;
 };
@@ -102,8 +106,8 @@ void TargetSpace::take(std::size_t count, const PointAt& point_at) {
     std::size_t not_finite = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const vcg::Point3d p = point_at(i);
-        // p - p is 0 for finite p only; a sum would overflow for coordinates near the end of the range.
-        if (((p - p) == vcg::Point3d(0, 0, 0))) {
+        // p - p is 0 for finite p only; a sum of finite coordinates could overflow.
+        if ((p - p) == vcg::Point3d(0, 0, 0)) {
             box.Add(p);
         } else {
             ++not_finite;
@@ -115,19 +119,19 @@ void TargetSpace::take(std::size_t count, const PointAt& point_at) {
     for (std::size_t i = 0; i < count; ++i) positions_.push_back(frame_.inside(point_at(i)));
 }
 
-/// The box, along each axis, of the middle nine tenths of a thousand of the points.
+/// The box between the 5th and the 95th percentile of each coordinate, estimated from about 1000 points.
 template <class PointAt>
 vcg::Box3d TargetSpace::box_of_most(std::size_t count, const PointAt& point_at) {
-    constexpr std::size_t kLooked = 1000;
-    const std::size_t stride = count / kLooked + 1;
+    constexpr std::size_t kSampled = 1000;
+    const std::size_t stride = count / kSampled + 1;
     vcg::Box3d box;
     for (int k = 0; k < 3; ++k) {
         std::vector<double> along;
         for (std::size_t i = 0; i < count; i += stride) along.push_back(vcg::Point3d(point_at(i))[k]);
         std::sort(along.begin(), along.end());
-        const std::size_t end = along.size() / 20;
-        box.min[k] = along[end];
-        box.max[k] = along[along.size() - 1 - end];
+        const std::size_t outside = along.size() / 20;
+        box.min[k] = along[outside];
+        box.max[k] = along[along.size() - 1 - outside];
     }
     return box;
 }
