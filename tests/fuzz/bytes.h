@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What the fuzz targets share: numbers out of an input's bytes, and the end of the process with a sentence.
+// Shared by the fuzz targets: numbers from the bytes of an input, and failed expectations.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace neuralmesh::fuzz {
 
-/// Reads an input from its start; 0 once it is used up.
+/// Reads an input from its start; returns 0 behind its end.
 class Bytes {
 public:
     Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -24,7 +24,7 @@ public:
     /// In [0, n); n from 1 to 256.
     int below(int n) { return byte() % n; }
     bool flag() { return (byte() & 1) != 0; }
-    /// Any bit pattern: NaN, infinite, denormal, too.
+    /// Arbitrary bits, including NaN, infinity and denormal numbers.
     template <class T>
     T raw() {
         std::uint8_t bits[sizeof(T)];
@@ -40,7 +40,7 @@ private:
     std::size_t next_ = 0;
 };
 
-/// A promise does not hold: says which and aborts, so that the fuzzer keeps the input.
+/// Prints the sentence and aborts, so the fuzzer keeps the input.
 [[noreturn]] inline void fail(const std::string& sentence) {
     std::fprintf(stderr, "%s\n", sentence.c_str());
     std::abort();
@@ -50,13 +50,13 @@ inline void expect(bool holds, const char* sentence) {
     if (!holds) fail(sentence);
 }
 
-/// What an error of the core says must be fit for a user's eyes.
+/// Errors of the core must be sentences for the user.
 inline void expect_sentence(const std::string& what) {
     expect(what.size() > 20 && (what.back() == '.' || what.back() == ')'), "an error is no sentence");
 }
 
 }  // namespace neuralmesh::fuzz
 
-/// What libFuzzer, or replay.cpp in its place, calls with every input.
+/// Called by libFuzzer, or by replay.cpp, with every input.
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer names it
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

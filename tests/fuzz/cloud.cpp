@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Any bytes as the coordinates of a few points or triangles: the run throws an Error that is a sentence, or
-// hands over a finite manifold of exactly so many vertices, with shell and fit as without.
+// Arbitrary bytes as coordinates of a few points or triangles and as settings: the run throws an Error with a
+// sentence, or returns a finite manifold of exactly target_vertices vertices.
 #include <cmath>
 
 #include "bytes.h"
@@ -26,8 +26,8 @@ Settings settings_of(Bytes& bytes) {
     settings.draw_from_faces = (flags & 4) != 0;
     settings.utility_counter = (flags & 8) != 0 ? kSignalCounter : kNormalCounter;
     settings.feature_measure = (flags & 16) != 0 ? kCreaseMeasure : kFeatureCounter;
-    // Settling costs at least 60,000 signals, faces are sampled 200,000 times for the shell and 50,000 times
-    // for the fit: now and then only.
+    // One input in eight has the costly combinations: settling takes at least 60,000 signals, and faces are
+    // sampled 200,000 times for the shell and 50,000 times for the fit.
     const bool costly = (flags & 0xe0) == 0xe0;
     settings.settling_signals_per_vertex = costly ? 1 : 0;
     if (settings.draw_from_faces && !costly) {
@@ -41,7 +41,8 @@ Settings settings_of(Bytes& bytes) {
     return settings;
 }
 
-/// One number: of the whole range of double, of float, or a small grid, on which points coincide and align.
+/// A number from the whole range of double or float, or from a small grid, on which points coincide and
+/// align.
 double coordinate(Bytes& bytes, int format) {
     switch (format) {
         case 0: return bytes.raw<double>();
@@ -70,11 +71,11 @@ TargetSpace target_of(const std::vector<vcg::Point3d>& points, bool faces) {
 
 void check(const NeuralMesh& mesh, const Settings& settings) {
     const referee::Census census = referee::census(mesh.faces);
-    if (!census.breach.empty()) fail("the referee says: " + census.breach);
+    if (!census.breach.empty()) fail("the faces are no manifold: " + census.breach);
     expect(census.loops == 0 && census.vertices == static_cast<int>(mesh.positions.size()), "not closed");
     expect(
         mesh.report.stop_reason != StopReason::target_reached || census.vertices == settings.target_vertices,
-        "another number of vertices than asked for");
+        "not target_vertices vertices");
     expect(mesh.report.components == census.components &&
                2 * (mesh.report.components - mesh.report.genus) == census.euler(),
            "the topology is misreported");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Any sequence of splits, collapses and flips, asked for with any arguments: an operation either keeps the
-// manifold and its topology or is refused and changes nothing; can_...() foretells which.
+// Arbitrary sequences of splits, collapses and flips with arbitrary arguments: if can_...() is true, the
+// operation preserves the manifold and its topology, else it throws and changes nothing.
 #include "vcg_core/mesh/network.h"
 
 #include "bytes.h"
@@ -36,23 +36,23 @@ shapes::Shape start_of(int choice) {
     return two;
 }
 
-/// Calls \p operation, which \p allowed says will succeed; it must do as foretold.
+/// Calls \p operation, which must succeed if and only if \p allowed.
 template <class Operation>
 void attempt(Network& network, bool allowed, const Operation& operation) {
     const auto before = network.faces();
     try {
         operation();
-        expect(allowed, "an operation succeeded that was foretold to be refused");
+        expect(allowed, "an operation succeeded although can_...() was false");
     } catch (const TopologyError& error) {
         fuzz::expect_sentence(error.what());
-        expect(!allowed, "an operation was refused that was foretold to succeed");
-        expect(network.faces() == before, "a refused operation changed the network");
+        expect(!allowed, "an operation threw although can_...() was true");
+        expect(network.faces() == before, "an operation that threw changed the network");
     }
 }
 
 void operate(Network& network, Bytes& bytes) {
     const int kind = bytes.below(8);
-    // Free slots may be asked for, too: they must be refused like all else.
+    // May be a free slot, for which every operation must throw.
     const VertexId v = bytes.below(network.slot_count());
     const Ring ring = network.ring(v);
     const int choice = bytes.byte();
@@ -87,7 +87,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (!breach.empty()) fail(breach);
     }
     const referee::Census census = referee::census(network.faces());
-    if (!census.breach.empty()) fail("the referee says: " + census.breach);
+    if (!census.breach.empty()) fail("the faces are no manifold: " + census.breach);
     expect(census.same_topology(topology), "the topology has changed");
     expect(network.euler_characteristic() == topology.euler(), "the Euler characteristic is miscounted");
     expect(network.component_count() == topology.components, "the components are miscounted");

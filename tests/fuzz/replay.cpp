@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The main program of a fuzz target where there is no libFuzzer: replays the inputs of text files, one in
-// hexadecimal per line ('#' starts a comment), so that the kept corpus is a test on any compiler.
+// Main program of a fuzz target without libFuzzer: replays the inputs in text files, one per line in
+// hexadecimal
+// ('#' starts a comment), so the corpus is a test with any compiler.
 #include <fstream>
 #include <iostream>
 #include <string>
@@ -38,6 +39,6 @@ int main(int count, char** files) {
         }
     }
     std::cout << inputs << " inputs replayed\n";
-    // An empty corpus would test nothing.
+    // An empty corpus tests nothing.
     return inputs > 0 ? 0 : 2;
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Any values for all parameters: check() throws SettingError, or the learning ends as it promises, at the
-// target, within signal_bound(), or when it is told to.
+// Arbitrary values of all parameters: check() throws SettingError, or the learning ends with the target
+// reached, within signal_bound(), or when it is cancelled.
 #include "vcg_core/settings.h"
 
 #include <cmath>
 
 #include "bytes.h"
-#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/targets.h"
 #include "vcg_core/learning/learner.h"
 #include "vcg_core/options_from_settings.h"
 
@@ -18,13 +18,13 @@ using namespace neuralmesh;
 using fuzz::Bytes;
 using fuzz::expect;
 
-constexpr int kMostReports = 12;  ///< a thousand signals each; then the run is told to stop
-/// But runs whose seed this divides may go on to the end of a bound that is no more than this, to see that it
-/// holds.
+constexpr int kMostReports = 12;  ///< of about a thousand signals each; then the run is cancelled
+/// Runs whose seed is a multiple of kPatientSeeds continue to signal_bound(), if that is at most
+/// kPatientBound.
 constexpr int kPatientSeeds = 16;
 constexpr std::int64_t kPatientBound = 150000;
 constexpr int kPatientSweeps = 10;
-/// Vertices are allocated ahead, so the run itself is kept from asking for gigabytes.
+/// Limits the memory of a run, which is allocated for target_vertices at its start.
 constexpr int kMostVertices = 20000;
 constexpr int kLargestWindow = 5000;
 
@@ -41,7 +41,7 @@ double value_for(const SettingInfo& info, Bytes& bytes) {
     }
 }
 
-/// True if \p value is one the table allows for \p info; what is stored is rounded first where it is whole.
+/// True if the table allows \p value, rounded for integer parameters.
 bool in_range(const SettingInfo& info, double value) {
     if (info.kind == SettingInfo::Kind::boolean) return true;
     const double stored = info.kind == SettingInfo::Kind::real ? value : std::round(value);
@@ -60,7 +60,7 @@ Settings settings_of(Bytes& bytes, bool& sound) {
             setting_table()[static_cast<std::size_t>(bytes.below(static_cast<int>(setting_table().size())))];
         const double value = value_for(info, bytes);
         info.store(settings, value);
-        // A bad value is not mended by a later good one, so that the verdict below is simple.
+        // Stops here, as a later value could replace this bad one.
         if (in_range(info, value)) continue;
         sound = false;
         break;
@@ -73,7 +73,7 @@ public:
     explicit Impatient(bool ever) : ever_(ever) {}
     bool operator()(double fraction, const char* text) override {
         expect(fraction >= 0 && fraction <= 1 && text != nullptr, "progress is no fraction");
-        expect(!stopped, "progress was asked again after it had said stop");
+        expect(!stopped, "progress was reported after the run had been cancelled");
         stopped = ever_ && ++reports_ >= kMostReports;
         return !stopped;
     }
@@ -90,10 +90,7 @@ bool waits_for_the_bound(const Settings& settings, std::int64_t bound) {
 }
 
 void run(const Settings& settings) {
-    static const TargetSpace target = [] {
-        const shapes::Cloud cloud = shapes::sphere_cloud(300, 0.02);
-        return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
-    }();
+    static const TargetSpace target = targets::target_of(shapes::sphere_cloud(300, 0.02));
     constexpr float kA = 0.1F;
     Learner learner(target, learner_options_from(settings),
                     Network({{kA, kA, kA}, {-kA, -kA, kA}, {-kA, kA, -kA}, {kA, -kA, -kA}},
@@ -103,18 +100,18 @@ void run(const Settings& settings) {
     const Network& network = learner.network();
     const std::string breach = network.validate();
     if (!breach.empty()) fuzz::fail(breach);
-    expect((reason == StopReason::cancelled) == progress.stopped, "stopped for another reason than told");
+    expect((reason == StopReason::cancelled) == progress.stopped, "stop reason and cancellation disagree");
     expect(reason != StopReason::target_reached || network.vertex_count() == settings.target_vertices,
-           "another number of vertices than asked for");
+           "not target_vertices vertices");
     expect(reason != StopReason::converged || settings.stop_below_mean_counter > 0, "converged to nothing");
-    expect(network.vertex_count() <= settings.target_vertices, "more vertices than asked for");
+    expect(network.vertex_count() <= settings.target_vertices, "more than target_vertices vertices");
     const std::int64_t settling = settings.settling_signals_per_vertex == 0 ? 0 : 60000;
     expect(learner.signals() <=
                learner.signal_bound() + settling +
                    std::int64_t{settings.settling_signals_per_vertex} * settings.target_vertices,
            "more signals than the bound");
-    for (VertexId v = 0; v < network.slot_count(); ++v)
-        expect(!network.alive(v) || learner.feature_counters().value(v) >= 0, "a counter is below 0 or NaN");
+    for (const VertexId v : network.vertices())
+        expect(learner.feature_counters().value(v) >= 0, "a counter is below 0 or NaN");
 }
 
 }  // namespace

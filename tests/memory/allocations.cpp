@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The replaced allocation functions. malloc, realloc, calloc and free are those of the linker's --wrap: it
-// hands the calls of our own objects over to here, those of the C library and its neighbours stay as they
-// are.
+// Replacements of the allocation functions. The linker option --wrap redirects the calls of malloc, calloc,
+// realloc and free in our own objects to them, but not those within libraries.
 #include "allocations.h"
 
 #include <atomic>
@@ -18,7 +17,7 @@ std::atomic<long long> alive{0};
 std::atomic<long long> failing{-1};
 std::atomic<bool> all_after{false};
 
-/// Counts one allocation; true if it is to fail.
+/// Counts one allocation. \return true if it has to fail
 bool denied() {
     const long long nth = made++;
     const long long bound = failing;
@@ -59,7 +58,7 @@ void __wrap_free(void* block) {
 }
 // NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)
 
-// The aligned and the plain forms may share memory functions, as free() takes back what aligned_alloc() gave.
+// free() accepts blocks of aligned_alloc(), so the aligned and the plain forms share it.
 void* operator new(std::size_t size) {
     void* block = denied() ? nullptr : __real_malloc(size == 0 ? 1 : size);
     if (block == nullptr) throw std::bad_alloc();

@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Control over all allocations of this program's own code: operator new, and the malloc that Eigen calls.
+// Counts allocations of this program's own code, and makes them fail: operator new, and the malloc of Eigen.
 #pragma once
 
-#pragma GCC visibility push(default)  // a program lends them to the libraries it loads
+#pragma GCC visibility push(default)  // libraries that a program loads use its functions
 
 namespace neuralmesh::allocations {
 
 /// How a machine runs out of memory.
 enum class Failure {
     once,         ///< one large request fails, later ones succeed
-    from_then_on  ///< nothing is left any more
+    from_then_on  ///< that request and all later ones fail
 };
 
-/// From now on, over all threads, the \p nth allocation fails (counted from 0; -1: none does). Resets
-/// count().
+/// Makes the \p nth allocation from now on fail, counted from 0 over all threads; -1: none. Resets count().
 void fail_at(long long nth, Failure failure = Failure::once);
 /// Allocations since the last call of fail_at().
 long long count();
-/// Blocks allocated and not given back since the program started.
+/// Blocks allocated since the start of the program and not yet freed.
 long long living();
 
 }  // namespace neuralmesh::allocations

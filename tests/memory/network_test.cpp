@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Changes of the network for which there is no room are not begun.
+// Operations that run out of memory leave the network unchanged.
 #include "vcg_core/mesh/network.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@
 namespace neuralmesh {
 namespace {
 
-/// Tries \p change on \p network with ever later allocations failing until it succeeds. \return how many
-/// failed
+/// Tries \p change on \p network with the first, the second, ... allocation failing, until it succeeds.
+/// \return the number of failures
 template <class Change>
 int failures_before(Network& network, const Change& change) {
     const int vertices = network.vertex_count();
@@ -52,20 +52,20 @@ TEST(OutOfMemory, ASplitThatHasNoRoomIsNotBegun) {
 }
 
 TEST(OutOfMemory, ACollapseThatHasNoRoomIsNotBegun) {
-    for (const bool interleave_free : {false, true}) {
+    for (const bool with_gaps : {false, true}) {
         Network network = referee::network_of(shapes::icosphere(1));
-        if (interleave_free) {
+        if (with_gaps) {
             std::vector<VertexId> order = morton_order(network);
             order.insert(order.begin(), -1);
             network.renumber(order);
         }
         int failures = 0;
-        for (VertexId v = 1; v < network.slot_count(); ++v) {
-            if (!network.alive(v) || !network.can_collapse(v, network.ring(v)[0])) continue;
+        for (const VertexId v : network.vertices()) {
+            if (!network.can_collapse(v, network.ring(v)[0])) continue;
             failures += failures_before(network, [&] { network.collapse(v, network.ring(v)[0]); });
             ASSERT_EQ(network.validate(), "");
         }
-        EXPECT_EQ(failures > 0, !interleave_free) << "one word holds all these gaps";
+        EXPECT_EQ(failures > 0, !with_gaps) << "one word holds all these gaps";
     }
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// No memory at sampled moments of a run: the caller gets the sentence about memory and finds all as it was,
-// nothing leaks, and the next run gives the bytes it always gives. NEURALMESH_MEMORY_TRIES=1000 samples more
-// allocations than every test run has the time for.
+// Allocations of a run that fail: the caller gets the message about memory, the input is unchanged, nothing
+// leaks, and the next run gives its usual bytes. Only a sample of the allocations is tried;
+// NEURALMESH_MEMORY_TRIES=1000 enlarges it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,8 +45,8 @@ vcg::Matrix44f identity() {
     return matrix;
 }
 
-/// What the filter does with a layer, but for the host's own part: learn it, write the result.
-/// \return the sentence, empty if all went well
+/// Learns a layer and writes the result, as the filter does. \return the error message, empty if there is
+/// none
 std::string filter(const Mesh& layer, const Settings& settings, Mesh& out) {
     try {
         const NeuralMesh result = run(layer, identity(), settings, nullptr);
@@ -58,7 +58,7 @@ std::string filter(const Mesh& layer, const Settings& settings, Mesh& out) {
     }
 }
 
-/// Small and quick, and through every part of a run.
+/// Settings of short runs that together pass through all parts of the core.
 std::vector<Settings> variants() {
     Settings shell;
     shell.target_vertices = 60;
@@ -72,9 +72,8 @@ std::vector<Settings> variants() {
     return {shell, to_the_paper};
 }
 
-/// The first hundred of \p all allocations, and one out of each of \p tries equal parts of the others. Where
-/// in its part differs from part to part and with \p salt, as a loop that allocates at a steady pace would
-/// otherwise fail at the same line every time.
+/// The first hundred of \p all allocations, and a random one, which depends on \p salt, out of each of \p
+/// tries equal parts of the others: a loop with regular allocations then fails at different lines.
 std::vector<long long> sampled(long long all, int tries, std::uint64_t salt) {
     constexpr long long kFirst = 100;
     std::vector<long long> result(kFirst);
@@ -113,7 +112,7 @@ void expect_the_sentence_where_it_fails(const Settings& settings, Failure failur
             allocations::fail_at(nth, failure);
             const std::string sentence = filter(layer, settings, out);
             allocations::fail_at(-1);
-            // A thread that could not be had is done without; all else is a refusal.
+            // A failure to start a thread is tolerated, every other one is reported.
             if (!sentence.empty()) {
                 ++refused;
                 EXPECT_NE(sentence.find(words), std::string::npos) << sentence;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Many runs in one process: no block is left behind, the process does not grow, and runs at the same time in
-// two threads give the bytes they give alone.
+// Many runs in one process: no block leaks, the process does not grow, and simultaneous runs in two threads
+// give the same bytes as single ones.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -17,7 +17,7 @@
 namespace neuralmesh {
 namespace {
 
-/// The same mesh gives the same text, another one most likely another.
+/// A text that is equal for equal results, and different for different ones.
 std::string bytes_of(const NeuralMesh& mesh) {
     const auto raw = [](const auto& numbers) {
         return std::string(reinterpret_cast<const char*>(numbers.data()),
@@ -32,7 +32,7 @@ std::string learn(const shapes::Cloud& cloud, const Settings& settings) {
     return bytes_of(reconstruct(soundness::target_of(cloud), settings, progress));
 }
 
-/// Pages of this process that lie in memory now, in bytes.
+/// Resident memory of this process.
 long long resident_bytes() {
     long long size = 0;
     long long resident = 0;
@@ -61,8 +61,8 @@ TEST(RepeatedRuns, HundredRunsLeaveNothingBehind) {
     EXPECT_EQ(allocations::living(), living);
     const long long grown = resident_bytes() - before;
     RecordProperty("grown_bytes", std::to_string(grown));
-    // What the C library's heap may keep for itself: ten kilobytes a run. Blocks of ours are counted above
-    // one by one; this would show what is not allocated by us, threads' stacks say.
+    // The heap of the C library may keep ten kilobytes per run. Blocks of our own are counted above; this
+    // finds other memory, such as the stacks of threads.
     EXPECT_LT(grown, 1 << 20) << "bytes in 100 runs";
 }
 

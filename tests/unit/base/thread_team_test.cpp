@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Every chunk once, by one member at a time, whoever is awake.
 #include "vcg_core/base/thread_team.h"
 
 #include <gtest/gtest.h>

@@ -12,14 +12,12 @@
 
 #include "tests/unit/reference/reference_learner.h"
 #include "tests/unit/support/referee.h"
-#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/targets.h"
 
 namespace neuralmesh {
 namespace {
 
-TargetSpace target_of(const shapes::Cloud& cloud) {
-    return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
-}
+using targets::target_of;
 
 Network start_of(shapes::Shape shape, double scale) {
     for (vcg::Point3d& p : shape.positions) p *= scale;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What is taken was there, and is near where it can be.
 #include "vcg_core/mesh/free_ids.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Split, collapse and flip against a referee that edits plain lists of faces: every single operation on small
-// meshes, and random sequences of many.
+// Split, collapse and flip against the same operations on plain lists of faces: all possible ones on small
+// meshes, and long random sequences.
 #include "vcg_core/mesh/network.h"
 
 #include <gtest/gtest.h>
@@ -27,11 +27,39 @@ using referee::census;
 using referee::enclosed_volume;
 using referee::network_of;
 
-bool acceptable(const Census& now, const Census& before) {
-    return now.breach.empty() && now.same_topology(before) && now.greatest_valence() <= Ring::kMaxValence;
+/// True if \p faces are a manifold of the topology and the number of vertices given, with allowed valences.
+bool acceptable(const std::vector<Triangle>& faces, const Census& topology, int vertices) {
+    const Census now = census(faces);
+    return now.breach.empty() && now.same_topology(topology) && now.vertices == vertices &&
+           now.greatest_valence() <= Ring::kMaxValence;
 }
 
-/// The faces after a split, by the words of the contract: \p u takes over part of the fan of \p v.
+/// How many operations of a test were carried out and how many refused.
+struct Tally {
+    int done = 0;
+    int refused = 0;
+};
+
+/// Applies \p operation to a copy of \p before. If legal, the result must have the faces \p expected, else
+/// the operation must throw and change nothing. \return the network after the operation
+template <class Operation>
+Network attempt(const Network& before, bool legal, const std::vector<Triangle>& expected, Tally& tally,
+                const Operation& operation) {
+    Network network = before;
+    ++(legal ? tally.done : tally.refused);
+    if (legal) {
+        operation(network);
+        EXPECT_EQ(canonical(network.faces()), expected);
+        expect_sound(network, census(before.faces()));
+    } else {
+        EXPECT_THROW(operation(network), TopologyError);
+        EXPECT_EQ(network.faces(), before.faces());
+        EXPECT_EQ(network.validate(), "");
+    }
+    return network;
+}
+
+/// The faces after a split: \p u takes over part of the fan of \p v.
 std::vector<Triangle> split_by_hand(const Network& network, VertexId v, int first, int count, VertexId u) {
     const Ring& ring = network.ring(v);
     const int k = ring.valence;
@@ -72,139 +100,115 @@ bool on_boundary_edge(const Network& network, VertexId a, VertexId b) {
     return ring.open != 0 && (ring[0] == b || ring[ring.valence - 1] == b);
 }
 
+void try_split(const Network& before, VertexId v, int first, int count, Tally& tally) {
+    const int k = before.ring(v).valence;
+    SCOPED_TRACE(testing::Message() << "v " << v << " of valence " << k << ", first " << first << ", count "
+                                    << count);
+    const bool in_range = first >= 0 && first < k && count >= 1 && count <= k &&
+                          (before.ring(v).open == 0 || first + count <= k);
+    std::vector<Triangle> expected;
+    if (in_range) expected = split_by_hand(before, v, first, count, before.slot_count());
+    const bool legal = in_range && acceptable(expected, census(before.faces()), before.vertex_count() + 1);
+    ASSERT_EQ(before.can_split(v, first, count), legal);
+    const vcg::Point3f where(0.5F, 0.25F, 0.125F);
+    Network network =
+        attempt(before, legal, expected, tally, [&](Network& net) { net.split(v, first, count, where); });
+    if (!legal) return;
+    const VertexId u = before.slot_count();
+    ASSERT_TRUE(network.alive(u));
+    EXPECT_EQ(network.position(u), where);
+    ASSERT_TRUE(network.can_collapse(u, v));
+    network.collapse(u, v);
+    EXPECT_EQ(canonical(network.faces()), canonical(before.faces()));
+    expect_sound(network, census(before.faces()));
+}
+
 TEST(Network, EverySplitDoesWhatItSaysOrRefuses) {
-    int done = 0;
-    int refused = 0;
+    Tally tally;
     for (const Start& start : starts()) {
         SCOPED_TRACE(start.name);
-        const Network before = network_of(start.shape);
-        const Census topology = census(before.faces());
-        for (VertexId v = 0; v < before.slot_count(); ++v) {
-            const int k = before.ring(v).valence;
-            for (int first = -1; first <= k; ++first) {
+        const Network network = network_of(start.shape);
+        for (const VertexId v : network.vertices()) {
+            const int k = network.ring(v).valence;
+            for (int first = -1; first <= k; ++first)
                 for (int count = -1; count <= k + 1; ++count) {
-                    SCOPED_TRACE(testing::Message() << "v " << v << " of valence " << k << ", first " << first
-                                                    << ", count " << count);
-                    const bool in_range = first >= 0 && first < k && count >= 1 && count <= k &&
-                                          (before.ring(v).open == 0 || first + count <= k);
-                    const std::vector<Triangle> expected =
-                        in_range ? split_by_hand(before, v, first, count, before.slot_count())
-                                 : std::vector<Triangle>();
-                    const bool legal = in_range && acceptable(census(expected), topology) &&
-                                       census(expected).vertices == before.vertex_count() + 1;
-                    ASSERT_EQ(before.can_split(v, first, count), legal);
-                    Network network = before;
-                    if (!legal) {
-                        ++refused;
-                        EXPECT_THROW(network.split(v, first, count, {0, 0, 0}), TopologyError);
-                        EXPECT_EQ(network.faces(), before.faces());
-                        expect_sound(network, topology);
-                        continue;
-                    }
-                    ++done;
-                    const VertexId u = network.split(v, first, count, {0.5F, 0.25F, 0.125F});
-                    EXPECT_EQ(u, before.slot_count());
-                    EXPECT_EQ(network.position(u), vcg::Point3f(0.5F, 0.25F, 0.125F));
-                    EXPECT_EQ(canonical(network.faces()), expected);
-                    expect_sound(network, topology);
-                    ASSERT_TRUE(network.can_collapse(u, v));
-                    network.collapse(u, v);
-                    EXPECT_EQ(canonical(network.faces()), canonical(before.faces()));
-                    expect_sound(network, topology);
+                    try_split(network, v, first, count, tally);
                     if (HasFatalFailure()) return;
                 }
-            }
         }
     }
-    EXPECT_GT(done, 2000);
-    EXPECT_GT(refused, 1000);
+    EXPECT_GT(tally.done, 2000);
+    EXPECT_GT(tally.refused, 1000);
+}
+
+void try_collapse(const Network& before, VertexId gone, VertexId kept, Tally& tally) {
+    SCOPED_TRACE(testing::Message() << gone << " into " << kept);
+    const std::vector<Triangle> expected = collapse_by_hand(before, gone, kept);
+    const bool legal = gone != kept && before.adjacent(gone, kept) &&
+                       (before.ring(gone).open == 0 || on_boundary_edge(before, gone, kept)) &&
+                       acceptable(expected, census(before.faces()), before.vertex_count() - 1);
+    ASSERT_EQ(before.can_collapse(gone, kept), legal);
+    const Network network =
+        attempt(before, legal, expected, tally, [&](Network& net) { net.collapse(gone, kept); });
+    EXPECT_EQ(network.alive(gone), !legal);
+    EXPECT_EQ(network.position(kept), before.position(kept));
+}
+
+void try_flip(const Network& before, VertexId a, VertexId b, Tally& tally) {
+    SCOPED_TRACE(testing::Message() << "edge " << a << ", " << b);
+    const auto flip = [&](Network& net) { net.flip(a, b); };
+    if (a == b || !before.adjacent(a, b) || on_boundary_edge(before, a, b)) {
+        ASSERT_FALSE(before.can_flip(a, b));
+        attempt(before, false, {}, tally, flip);
+        return;
+    }
+    const int i = before.ring(a).find(b);
+    const VertexId c = before.ring(a).next(i);
+    const VertexId d = before.ring(a).previous(i);
+    const std::vector<Triangle> expected = flip_by_hand(before, a, b, c, d);
+    const bool legal =
+        !before.adjacent(c, d) && acceptable(expected, census(before.faces()), before.vertex_count());
+    ASSERT_EQ(before.can_flip(a, b), legal);
+    Network network = attempt(before, legal, expected, tally, flip);
+    if (!legal) return;
+    ASSERT_TRUE(network.can_flip(c, d));
+    network.flip(c, d);
+    EXPECT_EQ(canonical(network.faces()), canonical(before.faces()));
+}
+
+/// Calls \p operation for every pair of vertices of every start.
+template <class Operation>
+Tally try_all_pairs(const Operation& operation) {
+    Tally tally;
+    for (const Start& start : starts()) {
+        SCOPED_TRACE(start.name);
+        const Network network = network_of(start.shape);
+        for (const VertexId a : network.vertices())
+            for (const VertexId b : network.vertices()) {
+                operation(network, a, b, tally);
+                if (testing::Test::HasFatalFailure()) return tally;
+            }
+    }
+    return tally;
 }
 
 TEST(Network, EveryCollapseKeepsTheTopologyOrRefuses) {
-    int done = 0;
-    int refused = 0;
-    for (const Start& start : starts()) {
-        SCOPED_TRACE(start.name);
-        const Network before = network_of(start.shape);
-        const Census topology = census(before.faces());
-        for (VertexId gone = 0; gone < before.slot_count(); ++gone) {
-            for (VertexId kept = 0; kept < before.slot_count(); ++kept) {
-                SCOPED_TRACE(testing::Message() << gone << " into " << kept);
-                bool legal = gone != kept && before.adjacent(gone, kept) &&
-                             (before.ring(gone).open == 0 || on_boundary_edge(before, gone, kept));
-                const std::vector<Triangle> expected = collapse_by_hand(before, gone, kept);
-                legal = legal && acceptable(census(expected), topology) &&
-                        census(expected).vertices == before.vertex_count() - 1;
-                ASSERT_EQ(before.can_collapse(gone, kept), legal);
-                Network network = before;
-                if (!legal) {
-                    ++refused;
-                    EXPECT_THROW(network.collapse(gone, kept), TopologyError);
-                    EXPECT_EQ(network.faces(), before.faces());
-                    continue;
-                }
-                ++done;
-                network.collapse(gone, kept);
-                EXPECT_FALSE(network.alive(gone));
-                EXPECT_EQ(network.position(kept), before.position(kept));
-                EXPECT_EQ(canonical(network.faces()), expected);
-                expect_sound(network, topology);
-                if (HasFatalFailure()) return;
-            }
-        }
-    }
-    EXPECT_GT(done, 300);
-    EXPECT_GT(refused, 1000);
+    const Tally tally = try_all_pairs(try_collapse);
+    EXPECT_GT(tally.done, 300);
+    EXPECT_GT(tally.refused, 1000);
 }
 
 TEST(Network, EveryFlipSwapsOneEdgeOrRefuses) {
-    int done = 0;
-    int refused = 0;
-    for (const Start& start : starts()) {
-        SCOPED_TRACE(start.name);
-        const Network before = network_of(start.shape);
-        const Census topology = census(before.faces());
-        for (VertexId a = 0; a < before.slot_count(); ++a) {
-            for (VertexId b = 0; b < before.slot_count(); ++b) {
-                SCOPED_TRACE(testing::Message() << "edge " << a << ", " << b);
-                Network network = before;
-                if (a == b || !before.adjacent(a, b) || on_boundary_edge(before, a, b)) {
-                    ASSERT_FALSE(before.can_flip(a, b));
-                    EXPECT_THROW(network.flip(a, b), TopologyError);
-                    continue;
-                }
-                const int i = before.ring(a).find(b);
-                const VertexId c = before.ring(a).next(i);
-                const VertexId d = before.ring(a).previous(i);
-                const std::vector<Triangle> expected = flip_by_hand(before, a, b, c, d);
-                const bool legal = !before.adjacent(c, d) && acceptable(census(expected), topology);
-                ASSERT_EQ(before.can_flip(a, b), legal);
-                if (!legal) {
-                    ++refused;
-                    EXPECT_THROW(network.flip(a, b), TopologyError);
-                    EXPECT_EQ(network.faces(), before.faces());
-                    continue;
-                }
-                ++done;
-                network.flip(a, b);
-                EXPECT_EQ(canonical(network.faces()), expected);
-                expect_sound(network, topology);
-                ASSERT_TRUE(network.can_flip(c, d));
-                network.flip(c, d);
-                EXPECT_EQ(canonical(network.faces()), canonical(before.faces()));
-                if (HasFatalFailure()) return;
-            }
-        }
-    }
-    EXPECT_GT(done, 300);
-    EXPECT_GT(refused, 30);
+    const Tally tally = try_all_pairs(try_flip);
+    EXPECT_GT(tally.done, 300);
+    EXPECT_GT(tally.refused, 1000);
 }
 
 TEST(Network, OperationsOnASphereKeepItOutwards) {
     const Network before = network_of(shapes::icosphere(2));
     const double volume = enclosed_volume(before);
     ASSERT_GT(volume, 0);
-    for (VertexId v = 0; v < before.slot_count(); ++v) {
+    for (const VertexId v : before.vertices()) {
         for (int i = 0; i < before.ring(v).valence; ++i) {
             Network split = before;
             split.split(v, i, 3, (before.position(v) + before.position(before.ring(v).next(i))) / 2);

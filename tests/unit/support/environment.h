@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// How much a test is to try, as the environment says.
+// Numbers of tries from environment variables.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@
 
 namespace neuralmesh::environment {
 
-/// The whole number in the variable \p name of the environment, or \p otherwise where there is none; a word
-/// or a number below \p low is a failure, for the test would pass having tried nothing.
+/// The integer in the environment variable \p name, or \p otherwise if it is not set. Any other value, or a
+/// number below \p low, fails the test, which would else pass without having tried anything.
 inline int number_of(const char* name, int otherwise, int low) {
     const char* text = std::getenv(name);
     if (text == nullptr) return otherwise;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A mesh with the components that a host's layer has for us, in single precision.
+// A mesh with the vertex and face components that the filter uses of a host's layer, in single precision.
 #pragma once
 
 #include <vcg/complex/complex.h>
@@ -21,7 +21,7 @@ class Vertex : public vcg::Vertex<Types, vcg::vertex::Coord3f, vcg::vertex::Qual
 class Face : public vcg::Face<Types, vcg::face::VertexRef, vcg::face::BitFlags> {};
 class Mesh : public vcg::tri::TriMesh<std::vector<Vertex>, std::vector<Face>> {};
 
-/// Adds the vertices of \p shape to \p mesh, which has none, and if asked for its faces.
+/// Adds the vertices of \p shape, and if \p with_faces its faces, to the empty \p mesh.
 inline void fill(Mesh& mesh, const shapes::Shape& shape, bool with_faces) {
     for (const vcg::Point3d& p : shape.positions)
         vcg::tri::Allocator<Mesh>::AddVertex(mesh, vcg::Point3f::Construct(p));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Small networks of every topology, random operations on them, and the referee's view of a network.
+// Small networks of several topologies, random operations on them, and checks against the referee.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ inline shapes::Shape together(shapes::Shape a, const shapes::Shape& b, const vcg
     return a;
 }
 
-/// A network to try things on, and its topology.
+/// A mesh and its topology.
 struct Start {
     const char* name;
     shapes::Shape shape;
@@ -48,7 +48,7 @@ inline std::vector<Start> starts() {
     };
 }
 
-/// All of the network's own counts against the referee's.
+/// The network is valid, has the expected topology, and its counts are those of the referee.
 inline void expect_sound(const Network& network, const referee::Census& expected_topology) {
     ASSERT_EQ(network.validate(), "");
     const referee::Census now = referee::census(network.faces());
@@ -63,7 +63,7 @@ inline void expect_sound(const Network& network, const referee::Census& expected
     for (const auto& entry : now.valence) EXPECT_EQ(entry.second, network.ring(entry.first).valence);
 }
 
-/// One random operation, legal or not; illegal ones must throw and change nothing that validate() can see.
+/// A random operation, if it is legal. Below \p least vertices a split, above \p most a collapse.
 inline void random_operation(Network& network, Random& random, int least, int most) {
     VertexId v = 0;
     do v = static_cast<VertexId>(random.below(static_cast<std::uint32_t>(network.slot_count())));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A slow, obvious judge of meshes, which looks at nothing but their list of faces.
+// Slow and simple checks of meshes, from their lists of faces alone.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -25,14 +25,14 @@ inline Network network_of(const shapes::Shape& shape) {
     return {positions, shape.faces};
 }
 
-/// Every face turned to start with its smallest vertex, sorted: equal for equal meshes.
+/// The sorted faces, each rotated to start with its smallest vertex: equal for equal meshes.
 inline std::vector<Triangle> canonical(std::vector<Triangle> faces) {
     for (Triangle& f : faces) std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
     std::sort(faces.begin(), faces.end());
     return faces;
 }
 
-/// What a list of faces amounts to, found by counting.
+/// Counts and topology of a list of faces.
 struct Census {
     std::string breach;  ///< empty if the faces form an oriented 2-manifold with or without boundary
     int vertices = 0;
@@ -53,7 +53,7 @@ struct Census {
     }
 };
 
-/// Groups the keys of \p graph into connected parts; \return how many.
+/// The number of connected components of \p graph.
 inline int connected_parts(const std::map<VertexId, std::set<VertexId>>& graph) {
     std::set<VertexId> seen;
     int parts = 0;

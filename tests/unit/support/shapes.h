@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Shapes of known topology, made in code, for tests that need no data.
+// Meshes and clouds of known shape and topology, generated in code.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -174,15 +174,15 @@ inline Shape tube(int m, int n) {
     return shape;
 }
 
-// Clouds; equal bytes on every machine where no angle is involved.
+// Clouds. Those without trigonometric functions have the same bytes on every machine.
 
 using Cloud = std::vector<vcg::Point3d>;
 
 /// Uniform in [-1, 1).
 inline double signed_unit(Random& random) { return 2 * static_cast<double>(random.unit()) - 1; }
 
-/// Uniform in [-1, 1)^3. One number after the other: in which order arguments are evaluated is the compiler's
-/// choice.
+/// Uniform in [-1, 1)^3. Draws the numbers in separate statements, as the order in which arguments are
+/// evaluated depends on the compiler.
 inline vcg::Point3d in_cube(Random& random) {
     const double z = signed_unit(random);
     const double y = signed_unit(random);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Solids of known topology with links, gaps and thin walls, and clouds drawn from them, for the start mesh.
+// Solids of known topology with links, gaps and thin walls, and clouds sampled from them, for tests of the
+// shell.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -125,7 +126,7 @@ inline std::vector<vcg::Point3d> sample(const Shape& shape, std::size_t count, R
     return points;
 }
 
-/// Takes the points away for which \p gone says so.
+/// Removes the points for which \p gone returns true.
 template <class Predicate>
 void cut_off(std::vector<vcg::Point3d>& points, const Predicate& gone) {
     points.erase(std::remove_if(points.begin(), points.end(), gone), points.end());

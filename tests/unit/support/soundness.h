@@ -11,14 +11,12 @@
 #include <vector>
 
 #include "tests/unit/support/referee.h"
-#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/targets.h"
 #include "vcg_core/reconstruct.h"
 
 namespace neuralmesh::soundness {
 
-inline TargetSpace target_of(const shapes::Cloud& cloud) {
-    return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
-}
+using targets::target_of;
 
 /// The mesh is a closed, oriented manifold with the figures of its report, and all numbers are finite.
 inline void expect_sound(const NeuralMesh& mesh) {

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The stream is what the target space gives, however far it is drawn ahead.
 #include "vcg_core/target/signal_stream.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/targets.h"
 
 namespace neuralmesh {
 namespace {
 
 TEST(SignalStream, ComeInTheOrderOfTheRandomNumbers) {
-    const shapes::Cloud cloud = shapes::sphere_cloud(500);
-    const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+    const TargetSpace target = targets::target_of(shapes::sphere_cloud(500));
     constexpr int kMost = 64;
     SignalStream signals(target, 7, kMost);
     Random same(7);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What can be learned, what cannot and how the user is told, and that samples are uniform.
+// Accepted and refused inputs, the frame, and the distribution of the samples.
 #include "vcg_core/target/target_space.h"
 
 #include <gtest/gtest.h>
@@ -9,28 +9,19 @@
 #include <limits>
 #include <string>
 
-#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/targets.h"
 
 namespace neuralmesh {
 namespace {
 
 using shapes::Cloud;
+using targets::target_of;
 using vcg::Point3d;
 
-TargetSpace cloud_target(const Cloud& cloud) {
-    return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
-}
-
-TargetSpace face_target(const shapes::Shape& shape) {
-    return TargetSpace::triangles(shape.faces.size(), [&](std::size_t i, int k) {
-        return shape.positions[static_cast<std::size_t>(shape.faces[i][static_cast<std::size_t>(k)])];
-    });
-}
-
-/// The message the cloud is refused with; empty if it is taken.
+/// The message of the error that the cloud causes, empty if it causes none.
 std::string complaint(const Cloud& cloud) {
     try {
-        cloud_target(cloud);
+        target_of(cloud);
     } catch (const InputError& error) {
         return error.what();
     }
@@ -66,22 +57,23 @@ TEST(TargetSpace, RefusesFewerThanFourDistinctPoints) {
     EXPECT_EQ(complaint(cloud), "");
 }
 
-/// Where and how large a cloud may be, exact in double at least to the precision of the core.
-struct WalkStart {
+/// Positions and sizes of a cloud that double resolves at least as well as float resolves the frame of the
+/// core.
+struct Placement {
     Point3d offset;
     double scale;
 };
-const WalkStart kPlaces[] = {{{0, 0, 0}, 1},         {{1e7, -1e7, 1e7}, 1},   {{0, 0, 0}, 1e-9},
-                             {{0, 0, 0}, 1e9},       {{1e9, 1e9, -1e9}, 1e9}, {{1, 1, 1}, 1e-6},
-                             {{5e6, 4e5, 100}, 200}, {{0, 0, 0}, 1e100},      {{0, 0, 0}, 1e-100}};
+const Placement kPlacements[] = {{{0, 0, 0}, 1},         {{1e7, -1e7, 1e7}, 1},   {{0, 0, 0}, 1e-9},
+                                 {{0, 0, 0}, 1e9},       {{1e9, 1e9, -1e9}, 1e9}, {{1, 1, 1}, 1e-6},
+                                 {{5e6, 4e5, 100}, 200}, {{0, 0, 0}, 1e100},      {{0, 0, 0}, 1e-100}};
 
-Cloud placed(Cloud cloud, const WalkStart& place) {
+Cloud placed(Cloud cloud, const Placement& place) {
     for (Point3d& p : cloud) p = p * place.scale + place.offset;
     return cloud;
 }
 
 TEST(TargetSpace, RefusesPointsOnALineWhereverItIs) {
-    for (const WalkStart& place : kPlaces) {
+    for (const Placement& place : kPlacements) {
         SCOPED_TRACE(testing::Message() << place.offset[0] << " scale " << place.scale);
         for (const Point3d& direction :
              {Point3d(1, 0, 0), Point3d(0, 0, 1), Point3d(1, 2, 3), Point3d(-3, 1e-3, 2)}) {
@@ -94,7 +86,7 @@ TEST(TargetSpace, RefusesPointsOnALineWhereverItIs) {
 }
 
 TEST(TargetSpace, TakesAnythingThatIsNoLine) {
-    for (const WalkStart& place : kPlaces) {
+    for (const Placement& place : kPlacements) {
         SCOPED_TRACE(testing::Message() << place.offset[0] << " scale " << place.scale);
         EXPECT_EQ(complaint(placed(shapes::sphere_cloud(100), place)), "");
         EXPECT_EQ(complaint(placed(shapes::plane_cloud(100), place)), "");
@@ -113,15 +105,15 @@ TEST(TargetSpace, RefusesABoxBeyondDoublePrecision) {
 
 TEST(TargetSpace, TakesAPlaneNearTheEndOfDouble) {
     const double far = 1.7e308;
-    const TargetSpace target = cloud_target({{far, 0, 0}, {far, 1, 0}, {far, 0, 1}, {far, 1, 1}});
+    const TargetSpace target = target_of({{far, 0, 0}, {far, 1, 0}, {far, 0, 1}, {far, 1, 1}});
     EXPECT_EQ(target.frame().centre, Point3d(far, 0.5, 0.5));
     for (const vcg::Point3f& p : target.positions()) EXPECT_EQ(p[0], 0);
 }
 
 TEST(TargetSpace, FrameIsCentredWithDiagonalOne) {
-    for (const WalkStart& place : kPlaces) {
+    for (const Placement& place : kPlacements) {
         const Cloud cloud = placed(shapes::box_cloud(2000, {1, 2, 3}), place);
-        const TargetSpace target = cloud_target(cloud);
+        const TargetSpace target = target_of(cloud);
         vcg::Box3d box;
         for (const vcg::Point3f& p : target.positions()) box.Add(Point3d::Construct(p));
         EXPECT_NEAR((box.max - box.min).Norm(), 1, 1e-5);
@@ -136,9 +128,9 @@ TEST(TargetSpace, FrameIsCentredWithDiagonalOne) {
 }
 
 TEST(TargetSpace, ReadsPointsAndTrianglesAsTheyAre) {
-    const TargetSpace points = cloud_target(shapes::sphere_cloud(10));
+    const TargetSpace points = target_of(shapes::sphere_cloud(10));
     EXPECT_FALSE(points.has_faces());
-    const TargetSpace faces = face_target(shapes::cube());
+    const TargetSpace faces = target_of(shapes::cube());
     EXPECT_TRUE(faces.has_faces());
     EXPECT_EQ(faces.positions().size(), 36U);
 }
@@ -151,7 +143,8 @@ double chi_square(const std::vector<int>& seen, const std::vector<double>& expec
     return sum;
 }
 
-/// Exceeded by a uniform sample in one of ten thousand cases (Wilson and Hilferty's approximation).
+/// The chi-square value that a uniform sample exceeds in one of ten thousand cases (approximation of Wilson
+/// and Hilferty).
 double limit(int degrees) {
     const double a = 2.0 / (9.0 * degrees);
     return degrees * std::pow(1 - a + 3.719 * std::sqrt(a), 3);
@@ -159,7 +152,7 @@ double limit(int degrees) {
 
 TEST(TargetSpace, DrawsEveryPointEquallyOften) {
     const int n = 500;
-    const TargetSpace target = cloud_target(shapes::sphere_cloud(n));
+    const TargetSpace target = target_of(shapes::sphere_cloud(n));
     std::map<std::array<float, 3>, int> seen;
     Random random(1);
     for (int i = 0; i < 100 * n; ++i) {
@@ -184,7 +177,7 @@ TEST(TargetSpace, DrawsFromFacesInProportionToArea) {
         strip.faces.push_back({a, a + 1, a + 2});
         area.push_back(height);
     }
-    const TargetSpace target = face_target(strip);
+    const TargetSpace target = target_of(strip);
     double whole = 0;
     for (const double a : area) whole += a;
     std::vector<int> seen(60, 0);
@@ -207,7 +200,7 @@ TEST(TargetSpace, DrawsFromFacesInProportionToArea) {
 
 TEST(TargetSpace, DrawsUniformlyWithinATriangle) {
     const shapes::Shape triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}}};
-    const TargetSpace target = face_target(triangle);
+    const TargetSpace target = target_of(triangle);
     const int cells = 10;
     std::vector<int> seen(std::size_t{cells} * cells, 0);
     const int n = 100000;
@@ -229,7 +222,7 @@ TEST(TargetSpace, DrawsUniformlyWithinATriangle) {
 TEST(TargetSpace, RefusesFacesWithoutArea) {
     shapes::Shape flat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 1}, {2, 3, 3}}};
     try {
-        face_target(flat);
+        target_of(flat);
         FAIL() << "taken";
     } catch (const InputError& error) {
         EXPECT_NE(std::string(error.what()).find("no area"), std::string::npos) << error.what();
@@ -240,7 +233,7 @@ TEST(TargetSpace, LeavesPointsOut) {
     const Cloud cloud = shapes::sphere_cloud(100);
     std::vector<std::uint8_t> left_out(100, 0);
     left_out[0] = left_out[7] = left_out[99] = 1;
-    const std::optional<TargetSpace> rest = cloud_target(cloud).without(left_out);
+    const std::optional<TargetSpace> rest = target_of(cloud).without(left_out);
     ASSERT_TRUE(rest.has_value());
     ASSERT_EQ(rest->positions().size(), 97U);
     const auto outside = [&](std::size_t i) { return rest->frame().outside(rest->positions()[i]); };
@@ -249,14 +242,14 @@ TEST(TargetSpace, LeavesPointsOut) {
     EXPECT_LT((outside(96) - cloud[98]).Norm(), 1e-6);
 }
 
-/// The frame that is left is as good as if the far point had never been there.
+/// The new frame equals that of the cloud without the far point.
 TEST(TargetSpace, LeavesAFarPointOutWithoutATrace) {
     Cloud cloud = shapes::sphere_cloud(1000);
-    const TargetSpace alone = cloud_target(cloud);
+    const TargetSpace alone = target_of(cloud);
     cloud.emplace_back(3e5, -1e5, 7e5);
     std::vector<std::uint8_t> left_out(1001, 0);
     left_out.back() = 1;
-    const std::optional<TargetSpace> rest = cloud_target(cloud).without(left_out);
+    const std::optional<TargetSpace> rest = target_of(cloud).without(left_out);
     ASSERT_TRUE(rest.has_value());
     EXPECT_NEAR(rest->frame().diagonal, alone.frame().diagonal, 1e-6);
     for (std::size_t i = 0; i < 1000; ++i)
@@ -275,13 +268,13 @@ TEST(TargetSpace, LeavesNothingOutIfNoSurfaceRemains) {
     line.emplace_back(15, 10, 0);
     std::vector<std::uint8_t> left_out(31, 0);
     left_out[30] = 1;
-    EXPECT_FALSE(cloud_target(line).without(left_out).has_value());
-    EXPECT_FALSE(cloud_target(line).without(std::vector<std::uint8_t>(31, 1)).has_value());
+    EXPECT_FALSE(target_of(line).without(left_out).has_value());
+    EXPECT_FALSE(target_of(line).without(std::vector<std::uint8_t>(31, 1)).has_value());
 }
 
-/// The places of the cloud, sorted; empty if it is to be taken as it is.
+/// The positions of each_place_once(), empty if it returns nothing.
 std::vector<vcg::Point3f> places_once(const Cloud& cloud) {
-    const std::optional<TargetSpace> once = cloud_target(cloud).each_place_once();
+    const std::optional<TargetSpace> once = target_of(cloud).each_place_once();
     return once ? once->positions() : std::vector<vcg::Point3f>();
 }
 
@@ -299,7 +292,7 @@ TEST(TargetSpace, TakesEveryPlaceOnceWhereManyRepeat) {
     EXPECT_EQ(places_once(cloud).size(), 1000U);
 }
 
-/// Where the share of repeats is an estimate: a few places that hold many points, and many that hold two.
+/// Clouds whose share of duplicates is estimated: many duplicates of one point, and one each of many.
 TEST(TargetSpace, SeesRepeatsInLargeClouds) {
     Cloud heavy = shapes::sphere_cloud(300000);
     heavy.insert(heavy.end(), 200000, heavy[5]);
@@ -311,7 +304,7 @@ TEST(TargetSpace, SeesRepeatsInLargeClouds) {
 
 TEST(TargetSpace, FacesAreNeverRepeats) {
     shapes::Shape shape = shapes::cube();
-    EXPECT_FALSE(face_target(shape).each_place_once().has_value());
+    EXPECT_FALSE(target_of(shape).each_place_once().has_value());
 }
 
 }  // namespace

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/mesh/valence_flips.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "tests/unit/support/network_starts.h"
+#include "tests/unit/support/referee.h"
+
+namespace neuralmesh {
+namespace {
+
+using network_starts::expect_sound;
+using network_starts::Start;
+using network_starts::starts;
+
+bool always(const FlipNormals& /*normals*/) { return true; }
+bool never(const FlipNormals& /*normals*/) { return false; }
+
+int irregularity(const Network& network) {
+    int sum = 0;
+    for (const VertexId v : network.vertices()) sum += valence_irregularity(network.ring(v).valence);
+    return sum;
+}
+
+int highest_valence(const Network& network) {
+    int highest = 0;
+    for (const VertexId v : network.vertices()) highest = std::max<int>(highest, network.ring(v).valence);
+    return highest;
+}
+
+/// Flips random edges, so that valences are irregular. Positions stay.
+Network with_random_flips(Network network, int flips, std::uint64_t seed = 8) {
+    Random random(seed);
+    for (int i = 0; i < flips; ++i) {
+        const auto v = static_cast<VertexId>(random.below(static_cast<std::uint32_t>(network.slot_count())));
+        const VertexId w = network.ring(v)[static_cast<int>(random.below(network.ring(v).valence))];
+        if (network.can_flip(v, w)) network.flip(v, w);
+    }
+    return network;
+}
+
+/// The least irregularity that one flip reaches, by trying them all; \p max_valence is not exceeded.
+int best_of_all_flips(const Network& network, int max_valence) {
+    int best = irregularity(network);
+    for (const VertexId v : network.vertices())
+        for (const VertexId w : network.ring(v)) {
+            if (!network.can_flip(v, w)) continue;
+            Network flipped = network;
+            flipped.flip(v, w);
+            if (highest_valence(flipped) <= std::max(max_valence, highest_valence(network)))
+                best = std::min(best, irregularity(flipped));
+        }
+    return best;
+}
+
+std::vector<vcg::Point3f> positions_of(const Network& network) {
+    std::vector<vcg::Point3f> positions;
+    for (const VertexId v : network.vertices()) positions.push_back(network.position(v));
+    return positions;
+}
+
+TEST(ValenceFlips, LowerTheIrregularityUntilNoFlipDoes) {
+    int flips = 0;
+    for (const Start& start : starts()) {
+        SCOPED_TRACE(start.name);
+        Network network = with_random_flips(referee::network_of(start.shape), 200);
+        const referee::Census topology = referee::census(network.faces());
+        const auto positions = positions_of(network);
+        for (int done = 1; done > 0; flips += done) {
+            const int before = irregularity(network);
+            done = flip_edges_for_valence(network, {always});
+            EXPECT_LE(irregularity(network), before - 2 * done) << "every flip lowers it, and it stays even";
+            expect_sound(network, topology);
+            if (HasFatalFailure()) return;
+        }
+        EXPECT_EQ(best_of_all_flips(network, Ring::kMaxValence), irregularity(network));
+        EXPECT_EQ(positions_of(network), positions);
+    }
+    EXPECT_GT(flips, 50);
+}
+
+TEST(ValenceFlips, OfOneVertexFlipItsEdgesOnly) {
+    const Network before = with_random_flips(referee::network_of(shapes::icosphere(2)), 400);
+    int flips = 0;
+    for (const VertexId v : before.vertices()) {
+        Network network = before;
+        const int done = flip_edges_for_valence(network, v, {always});
+        EXPECT_EQ(network.ring(v).valence, before.ring(v).valence - done);
+        EXPECT_EQ(network.validate(), "");
+        flips += done;
+    }
+    EXPECT_GT(flips, 50);
+}
+
+TEST(ValenceFlips, KeepTheHighestValenceAllowed) {
+    Network network = with_random_flips(referee::network_of(shapes::torus_grid(12, 10)), 600);
+    const PerVertex<int> before = [&] {
+        PerVertex<int> valences(network.slot_count());
+        for (const VertexId v : network.vertices()) valences[v] = network.ring(v).valence;
+        return valences;
+    }();
+    ASSERT_GT(flip_edges_for_valence(network, {always, 6}), 0);
+    for (const VertexId v : network.vertices()) EXPECT_LE(network.ring(v).valence, std::max(6, before[v]));
+}
+
+TEST(ValenceFlips, AskTheRule) {
+    Network network = with_random_flips(referee::network_of(shapes::icosphere(2)), 400);
+    const auto faces = network.faces();
+    EXPECT_EQ(flip_edges_for_valence(network, {never}), 0);
+    EXPECT_EQ(network.faces(), faces);
+}
+
+/// The area vector of the quadrilateral around an edge does not depend on its diagonal.
+bool sums_agree(const FlipNormals& normals) {
+    const vcg::Point3f before = normals.before[0] + normals.before[1];
+    const vcg::Point3f after = normals.after[0] + normals.after[1];
+    return before.Norm() > 0 && (before - after).Norm() < 1e-5F;
+}
+
+TEST(ValenceFlips, PassAreaVectorsOfTheSameSum) {
+    const Network before = with_random_flips(referee::network_of(shapes::icosphere(3)), 300);
+    Network any = before;
+    Network agreeing = before;
+    const int flips = flip_edges_for_valence(any, {always});
+    ASSERT_GT(flips, 50);
+    EXPECT_EQ(flip_edges_for_valence(agreeing, {sums_agree}), flips);
+}
+
+bool stay_upright(const FlipNormals& normals) {
+    return normals.after[0][2] > 1e-6F && normals.after[1][2] > 1e-6F;
+}
+
+/// True if all faces of a flat network are counter-clockwise seen from above.
+bool upright(const Network& network) {
+    const std::vector<Triangle> faces = network.faces();
+    return std::all_of(faces.begin(), faces.end(), [&](const Triangle& f) {
+        const vcg::Point3f a = network.position(f[0]);
+        return ((network.position(f[1]) - a) ^ (network.position(f[2]) - a))[2] > 1e-6F;
+    });
+}
+
+TEST(ValenceFlips, TurnNoFaceOverIfTheRuleForbidsIt) {
+    Network network = referee::network_of(shapes::grid(14, 14));
+    for (int i = 0; i < 600; ++i) {
+        const Network flipped = with_random_flips(network, 1, static_cast<std::uint64_t>(i));
+        if (upright(flipped)) network = flipped;
+    }
+    Network careless = network;
+    ASSERT_GT(flip_edges_for_valence(network, {stay_upright}), 10);
+    EXPECT_TRUE(upright(network));
+    flip_edges_for_valence(careless, {always});
+    EXPECT_FALSE(upright(careless)) << "the test needs flips that the rule has to forbid";
+}
+
+}  // namespace
+}  // namespace neuralmesh
