@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "vcg_core/base/random.h"
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/learning/learner.h"
 #include "vcg_core/mesh/simplify.h"

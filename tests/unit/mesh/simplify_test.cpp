@@ -31,8 +31,8 @@ void expect_simplified(const shapes::Shape& shape, const std::vector<int>& count
         EXPECT_TRUE(now.same_topology(topology));
         EXPECT_EQ(network.vertex_count(), std::min(vertices, before.vertex_count()));
         EXPECT_LE(now.greatest_valence(), 12);
-        // Simplification shrinks a convex shape, the more the fewer vertices remain.
-        if (vertices >= 100) EXPECT_NEAR(referee::enclosed_volume(network), volume, 0.2 * volume);
+        if (vertices < 100) continue;
+        EXPECT_NEAR(referee::enclosed_volume(network), volume, 0.2 * volume);
     }
 }
 
