@@ -139,17 +139,23 @@ VertexId Network::split(VertexId v, int first, int count, const vcg::Point3f& wh
 
     const bool shares_e2 = !takes_start || count == 1;
     const bool shares_e1 = !takes_end;
-    for (const VertexId t : ru) {
+    enter_fan(v, u, shares_e2 ? e2 : -1, shares_e1 ? e1 : -1);
+    return u;
+}
+
+/// Enters the new vertex u into the rings of its neighbours other than v: at the shared ends of its fan
+/// beside v, else in place of v. An end that is not shared is -1.
+void Network::enter_fan(VertexId v, VertexId u, VertexId shared_begin, VertexId shared_end) {
+    for (const VertexId t : ring(u)) {
         if (t == v) continue;
-        if (t == e1 && shares_e1) {
+        if (t == shared_end) {
             insert_after(ring_of(t), v, u);
-        } else if (t == e2 && shares_e2) {
+        } else if (t == shared_begin) {
             insert_before(ring_of(t), v, u);
         } else {
             replace(ring_of(t), v, u);
         }
     }
-    return u;
 }
 
 bool Network::can_collapse(VertexId gone, VertexId kept) const {

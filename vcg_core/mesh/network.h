@@ -119,6 +119,7 @@ public:
 private:
     Ring& ring_of(VertexId v) { return rings_[static_cast<std::size_t>(v)]; }
     VertexId new_vertex(VertexId parent, const vcg::Point3f& where);
+    void enter_fan(VertexId v, VertexId u, VertexId shared_begin, VertexId shared_end);
     std::string validate_edge(VertexId v, int i) const;
 
     static constexpr VertexRecord kSentinel{1e18F, 1e18F, 1e18F, -1};

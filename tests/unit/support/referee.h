@@ -71,6 +71,18 @@ inline int connected_parts(const std::map<VertexId, std::set<VertexId>>& graph) 
     return parts;
 }
 
+/// The graph of the edges that only one face contains, given all directed edges of the faces.
+inline std::map<VertexId, std::set<VertexId>> boundary_of(
+    const std::set<std::pair<VertexId, VertexId>>& directed) {
+    std::map<VertexId, std::set<VertexId>> boundary;
+    for (const auto& [from, to] : directed) {
+        if (directed.count({to, from}) != 0) continue;
+        boundary[from].insert(to);
+        boundary[to].insert(from);
+    }
+    return boundary;
+}
+
 inline Census census(const std::vector<Triangle>& faces) {
     Census result;
     std::set<std::pair<VertexId, VertexId>> directed;
@@ -90,21 +102,15 @@ inline Census census(const std::vector<Triangle>& faces) {
             links[a][c].insert(b);
         }
     }
-    std::map<VertexId, std::set<VertexId>> boundary;
+    const auto boundary = boundary_of(directed);
     int ends = 0;
-    for (const auto& entry : neighbours) {
-        ends += static_cast<int>(entry.second.size());
-        result.valence[entry.first] = static_cast<int>(entry.second.size());
-        if (connected_parts(links[entry.first]) != 1)
-            result.breach = "the faces at a vertex form no single fan";
+    for (const auto& [v, around] : neighbours) {
+        const auto valence = static_cast<int>(around.size());
+        ends += valence;
+        result.valence[v] = valence;
+        if (connected_parts(links[v]) != 1) result.breach = "the faces at a vertex form no single fan";
+        if (valence < (boundary.count(v) != 0 ? 2 : 3)) result.breach = "a valence is too low";
     }
-    for (const auto& edge : directed) {
-        if (directed.count({edge.second, edge.first}) != 0) continue;
-        boundary[edge.first].insert(edge.second);
-        boundary[edge.second].insert(edge.first);
-    }
-    for (const auto& entry : result.valence)
-        if (entry.second < (boundary.count(entry.first) != 0 ? 2 : 3)) result.breach = "a valence is too low";
     result.vertices = static_cast<int>(neighbours.size());
     result.edges = ends / 2;
     result.faces = static_cast<int>(faces.size());
