@@ -4,11 +4,11 @@
 
 # Everything from a bare Debian 12 in one command:
 #   ./run.sh build                         the plugins for all MeshLabs, in build/plugins/
-#   ./run.sh demo [CLOUD [VERTICES [OUT]]] a neural mesh of a cloud, with a picture; default: the Stanford bunny
+#   ./run.sh demo [CLOUD [VERTICES [OUT]]] a neural mesh of a point cloud, with a picture; default: the Stanford bunny
 #   ./run.sh test                          all tests
 #   ./run.sh bench                         the performance tables
 #   ./run.sh figures                       the tables, figures and screenshots of the documentation
-# Missing packages are installed with apt (asking sudo when not root); what is there is left alone.
+# Missing packages are installed with apt, through sudo unless run by root. Installed packages are not changed.
 set -euo pipefail
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 called_from="$PWD"
@@ -20,9 +20,10 @@ compile_packages="ca-certificates cmake g++ libeigen3-dev libglew-dev libqt5open
     qtbase5-dev xz-utils"
 venv_packages="python3-venv"
 demo_packages="glmark2-data libgl1-mesa-dri python3-numpy python3-pil xauth xdotool xvfb"
-bench_packages="libcgal-dev"  # CGAL, to time it beside ours
+bench_packages="libcgal-dev"  # CGAL's surface reconstruction is timed beside ours
 test_packages="binutils libbenchmark-dev libgtest-dev parallel valgrind"
 python=/usr/bin/python3
+stage_jobs=$((($(nproc) + 1) / 2))  # of each of the two stages that run at a time
 
 say() { printf '== %s\n' "$*"; }
 
@@ -35,30 +36,32 @@ as_root() {
     if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
 }
 
-# must_be_debian_12: ends with a sentence elsewhere, where packages have other names and MeshLab is another.
+# must_be_debian_12: ends with an error on other systems, whose packages and MeshLab differ.
 must_be_debian_12() {
     local system="an unknown system"
     [ ! -r /etc/os-release ] || system="$(. /etc/os-release && echo "${ID:-linux} ${VERSION_ID:-}")"
     [ "$system" = "debian 12" ] && command -v dpkg-query > /dev/null || fail "This script is for Debian 12, and this is" \
-        "$system. Build with 'cmake -S . -B build/own -DMESHLAB_SOURCE_DIR=DIR && cmake --build build/own', the sources" \
-        "of your MeshLab being in DIR."
+        "$system. Build with 'cmake -S . -B build/own -DMESHLAB_SOURCE_DIR=DIR && cmake --build build/own', where DIR" \
+        "contains the sources of your MeshLab."
 }
 
-# must_be_root REASON COMMAND: ends with a sentence where nobody can be asked to run COMMAND as root.
+# must_be_root REASON COMMAND: ends with an error that names COMMAND if neither root rights nor sudo are available.
 must_be_root() {
     [ "$(id -u)" = 0 ] || command -v sudo > /dev/null ||
-        fail "$1, and there is no sudo here. Run this as root, then start again:"$'\n'"  $2"
+        fail "$1, and sudo is not installed. Run this command as root, then start again:"$'\n'"  $2"
 }
 
+# missing_of PACKAGE...: prints the packages that are not installed.
 missing_of() {
     local package
-    # One line for each architecture that the package is there for.
+    # dpkg-query prints one line for each architecture of the package.
     for package in "$@"; do
         dpkg-query --show --showformat='${db:Status-Status}\n' "$package" 2> /dev/null | grep -q '^installed$' ||
             echo "$package"
     done
 }
 
+# need PACKAGE...: installs the missing packages.
 need() {
     must_be_debian_12
     local missing
@@ -68,20 +71,20 @@ need() {
         "apt-get update && apt-get install --no-install-recommends ${missing[*]}"
     say "Installing ${missing[*]}"
     install_packages "${missing[@]}" > "$build/install.log" 2>&1 ||
-        { tail -n 20 "$build/install.log" >&2; fail "The packages could not be installed; $build/install.log has it all."; }
+        { tail -n 20 "$build/install.log" >&2; fail "The packages could not be installed; see $build/install.log."; }
 }
 
-# Waits for another apt to finish, and takes up what an interrupted one has left half installed.
+# Waits while another apt is running, and first completes an interrupted installation.
 install_packages() {
     local apt="env DEBIAN_FRONTEND=noninteractive apt-get -q -q -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0"
-    as_root dpkg --configure -a || true  # what lacks its dependencies yet is mended by apt-get below
+    as_root dpkg --configure -a || true  # missing dependencies are installed by apt-get below
     as_root $apt update && as_root $apt install --fix-broken --yes --no-install-recommends "$@"
 }
 
 need_sources() {
     if [ -z "$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Origin: Debian')" ] &&
         ! [ -e "${XDG_CACHE_HOME:-$HOME/.cache}/neural-mesh/meshlab-2025.07/ML_VERSION" ]; then
-        must_be_root "apt does not know its mirrors' packages" "apt-get update"
+        must_be_root "apt has no package lists" "apt-get update"
         as_root apt-get -q -q update
     fi
     filter_neuralmesh/sources/fetch_meshlab.sh
@@ -99,17 +102,17 @@ need_venv() {
     echo "$wanted" > "$venv/complete"
 }
 
-# kept NAME: what cmake has kept as NAME in the build folder.
-kept() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
+# cached NAME: the value of NAME in the CMake cache of the build folder.
+cached() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
 
-# compile TARGET...: configures where needed, and compiles. What another configuration has left in the build folder,
-# by another generator, of another place or for a MeshLab of one's own, is configured anew.
+# compile TARGET...: configures and builds. A cache made with another generator, in another place or for a MeshLab in
+# MESHLAB_SOURCE_DIR is discarded.
 compile() {
     need_sources
     say "Compiling"
     local fresh=()
-    if [ -e "$build/CMakeCache.txt" ] && ! { [ "$(kept CMAKE_GENERATOR)" = Ninja ] &&
-        [ "$(kept CMAKE_HOME_DIRECTORY)" = "$here" ] && [ -z "$(kept MESHLAB_SOURCE_DIR)" ]; }; then
+    if [ -e "$build/CMakeCache.txt" ] && ! { [ "$(cached CMAKE_GENERATOR)" = Ninja ] &&
+        [ "$(cached CMAKE_HOME_DIRECTORY)" = "$here" ] && [ -z "$(cached MESHLAB_SOURCE_DIR)" ]; }; then
         fresh=(--fresh)
     fi
     cmake "${fresh[@]}" -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release > "$build/configure.log" 2>&1 ||
@@ -117,7 +120,7 @@ compile() {
     cmake --build "$build" --target "$@" -- --quiet
 }
 
-# A path as the caller meant it, whatever folder this script works in.
+# path_of PATH: PATH seen from the folder in which this script was called.
 path_of() { case "$1" in /*) echo "$1" ;; *) echo "$called_from/$1" ;; esac; }
 
 build() {
@@ -138,59 +141,53 @@ demo() {
     "$python" tests/hosts/demo.py --build "$build" "${arguments[@]}"
 }
 
-# sanitized PRESET TARGET...: the targets as CMakePresets.json's PRESET instruments them, in build/PRESET.
+# sanitized PRESET TARGET...: builds the targets with the sanitizers of PRESET in CMakePresets.json, and runs its tests.
+# tests/README.md says which tests it leaves out, and why.
 sanitized() {
     local preset="$1"
     shift
-    cmake --preset "$preset" > "$build/configure.log" 2>&1 ||
-        { cat "$build/configure.log" >&2; fail "The configuration of $preset failed."; }
-    cmake --build --preset "$preset" --target "$@" -- --quiet
+    cmake --preset "$preset" > "$build/configure_$preset.log" 2>&1 ||
+        { cat "$build/configure_$preset.log" >&2; fail "The configuration of $preset failed."; }
+    cmake --build --preset "$preset" --parallel "$stage_jobs" --target "$@" -- --quiet
+    ctest --preset "$preset" --parallel "$stage_jobs" | without_passed
 }
 
-# matching PROGRAM PATTERN...: runs the tests of PROGRAM that each pattern names; one that names none is an error, which
-# GoogleTest would pass over.
-matching() {
-    local program="$1" pattern
-    shift
-    for pattern in "$@"; do
-        "$program" --gtest_list_tests --gtest_filter="$pattern" | grep -q '^  ' ||
-            { echo "$program has no test $pattern: its name in run.sh is out of date." >&2; return 1; }
-        "$program" --gtest_brief=1 --gtest_filter="$pattern" || return 1
-    done
-}
+# Removes ctest's lines about tests that pass.
+without_passed() { grep -v -e '^ *Start ' -e ' Passed '; }
 
-# Where a wrong access, undefined behaviour or a race ends the program. CMakePresets.json and the names below say
-# what runs; tests/README.md says what does not, and why.
-sanitizer_tests() {
-    say "Unit tests with the address and undefined-behaviour sanitizers"
-    sanitized sanitize unit_tests fuzz_network fuzz_settings || return 1
-    ctest --preset sanitize --parallel "$(nproc)" || return 1
-    say "Whole runs with the address sanitizer and lighter checks"
-    sanitized sanitize-light fuzz_cloud || return 1
-    "$build/sanitize-light/tests/fuzz_cloud" tests/fuzz/corpus/cloud.txt || return 1
-    say "Tests of threads with the thread sanitizer"
-    sanitized threads thread_tests || return 1
-    matching "$build/threads/tests/thread_tests" 'ThreadTeam.*' 'BasicStepBatch.*' Learner.IsTheReferenceInBatches \
-        'Learner.SettlesAlike*' Fit.GivesTheSameBytesForAnyNumberOfThreads Shell.PiecesOfASparseCloudAreNoComponents
+# stage NAME: one stage of `./run.sh test`. Each pytest file of tests/hosts is a stage, so that a crash in a host's
+# libraries ends that file only.
+stage() {
+    say "$1"
+    TIMEFORMAT="$1: %U s of processor time + %S s of the system, %R s of the clock"
+    time case "$1" in
+        unit) ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel "$stage_jobs" | without_passed ;;
+        sanitize) sanitized sanitize unit_tests fuzz_network fuzz_settings fuzz_cloud ;;
+        threads) sanitized threads thread_tests ;;
+        accuracy)
+            "$venv/bin/python" tests/experiments/accuracy/accuracy_table.py --small --out "$build/experiments" \
+                --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
+            ;;
+        *) NEURALMESH_BUILD="$here/$build" "$venv/bin/python" -m pytest -q "tests/hosts/$1.py" ;;
+    esac
 }
 
 run_tests() {
     need $compile_packages $demo_packages $test_packages $venv_packages
-    need_venv
+    need_venv &
+    local installing=$!
     compile all
-    say "Unit tests"
-    ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel "$(nproc)"
-    local file failed=0
-    sanitizer_tests || failed=1
-    say "Tests in the hosts"
-    # A process for each file: a crash inside a host's libraries ends one file only, and says which.
+    wait "$installing"
+    # The longest first, so that the last ones end at about the same time.
+    local stages=(sanitize unit test_compare_pymeshlab threads test_experiments accuracy) file
     for file in tests/hosts/test_*.py; do
-        NEURALMESH_BUILD="$here/$build" "$venv/bin/python" -m pytest "$file" -q || failed=1
+        file="$(basename "$file" .py)"
+        [[ " ${stages[*]} " = *" $file "* ]] || stages+=("$file")
     done
-    say "Accuracy and topology, the small form"
-    "$venv/bin/python" tests/experiments/accuracy/accuracy_table.py --small --out "$build/experiments" \
-        --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so" || failed=1
-    return "$failed"
+    say "Running ${#stages[@]} stages of tests, two at a time; each prints its output when it ends"
+    parallel --will-cite --jobs 2 "$here/run.sh" stage ::: "${stages[@]}" ||
+        fail "$? of the stages failed; their output is above."
+    say "All tests have passed"
 }
 
 bench() {
@@ -229,6 +226,7 @@ case "$word" in
     build) build ;;
     demo) demo "$@" ;;
     test) run_tests ;;
+    stage) stage "$@" ;;  # one stage of the tests, for run_tests
     bench) bench ;;
     figures) figures ;;
     *)

@@ -29,10 +29,10 @@ import pymeshlab
 from scipy.spatial import cKDTree
 from scipy.stats import rankdata
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "accuracy"))
-import models  # noqa: E402
-import paper_runs  # noqa: E402
-from compare_accuracy import numbers, table  # noqa: E402
+import import_paths  # noqa: F401
+import models
+import paper_runs
+from compare_accuracy import numbers, table
 
 CREASE_DEGREES = 30
 DEFAULT_THRESHOLD = 1.0

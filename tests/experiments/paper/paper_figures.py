@@ -24,14 +24,13 @@ from matplotlib import colormaps
 from scipy.spatial import cKDTree
 from scipy.stats import spearmanr
 
-EXPERIMENTS = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(EXPERIMENTS / "accuracy"), str(EXPERIMENTS / "pictures")]
-import models  # noqa: E402
-import paper_runs  # noqa: E402
-from compare_accuracy import numbers  # noqa: E402
-from meshlab_picture import Picture, render  # noqa: E402
-from meshlab_picture_sheet import Legend, contact_sheet, legend_of_mesh  # noqa: E402
-from small_png import make_small  # noqa: E402
+import import_paths  # noqa: F401
+import models
+import paper_runs
+from compare_accuracy import numbers
+from meshlab_picture import Picture, render
+from meshlab_picture_sheet import Legend, contact_sheet, legend_of_mesh
+from small_png import make_small
 
 FIGURES = ("bunny", "fig1", "fig2", "fig3")
 LEVELS = (500, 2000, 5000, 10000, 20000)

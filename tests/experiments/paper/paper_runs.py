@@ -17,6 +17,7 @@ import numpy as np
 import pymeshlab
 from scipy.spatial import cKDTree
 
+import import_paths  # noqa: F401
 import evaluate
 import models
 

@@ -23,10 +23,10 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "accuracy"))
-import models  # noqa: E402
-import paper_runs  # noqa: E402
-from compare_accuracy import numbers, table  # noqa: E402
+import import_paths  # noqa: F401
+import models
+import paper_runs
+from compare_accuracy import numbers, table
 
 # From smooth to rich; the first four that can be had.
 MODELS = ("filleted-cube", "kitten", "bunny", "armadillo", "dino")

@@ -111,7 +111,7 @@ TEST(Learner, IsTheReferenceFromATetrahedron) {
     compare_runs(shapes::sphere_cloud(2000, 0.01), start_of(shapes::tetrahedron(), 0.1), options, 1500);
 }
 
-TEST(Learner, IsTheReferenceInBatches) {
+TEST(Learner, IsTheReferenceInBatchesOnOneThreadAndOnThree) {
     LearnerOptions options;
     options.signals_per_split = 40;
     options.min_wins_per_split = 5;

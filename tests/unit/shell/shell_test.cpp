@@ -183,14 +183,27 @@ TEST(Shell, VerticesFollowTheBudget) {
     }
 }
 
-TEST(Shell, SameCloudSameBytes) {
-    Random random(2);
-    const auto cloud = shell_shapes::sample(shell_shapes::torus(1, 0.4), 20000, random);
-    const StartMesh a = shell(cloud), b = shell(cloud);
+void expect_same_bytes(const StartMesh& a, const StartMesh& b) {
     ASSERT_EQ(a.positions.size(), b.positions.size());
     EXPECT_EQ(std::memcmp(a.positions.data(), b.positions.data(), a.positions.size() * sizeof(vcg::Point3f)),
               0);
     EXPECT_EQ(a.faces, b.faces);
+}
+
+TEST(Shell, SameCloudSameBytes) {
+    Random random(2);
+    const auto cloud = shell_shapes::sample(shell_shapes::torus(1, 0.4), 20000, random);
+    expect_same_bytes(shell(cloud), shell(cloud));
+}
+
+/// Only where parts nearly touch, as the points of a sparse cloud do, does the shell use threads.
+TEST(Shell, SparseCloudSameBytesForAnyNumberOfThreads) {
+    Random random(16);
+    const auto cloud = shell_shapes::sample(shell_shapes::torus(1, 0.35), 800, random);
+    ShellOptions alone, together;
+    alone.threads = 1;
+    together.threads = 3;
+    expect_same_bytes(shell(cloud, alone), shell(cloud, together));
 }
 
 TEST(Shell, MeshAsTarget) {

@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""Which folder of vcg_core/ may include which: data flows one way, and no include leads back up."""
+
+import re
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+MAY_INCLUDE = {  # beside its own files; the files directly in vcg_core/ may include all
+    "learning": {"engine", "mesh", "target", "base"},
+    "engine": {"mesh", "target", "base"},
+    "shell": {"mesh", "target", "base"},
+    "fit": {"mesh", "target", "base"},
+    "mesh": {"base"},
+    "target": {"base"},
+    "base": set(),
+}
+INCLUDE = re.compile(r'\s*#\s*include\s*"([^"]+)"')
+
+
+def forbidden_includes(root):
+    """One sentence for each include in root/vcg_core that MAY_INCLUDE does not allow."""
+    for file in sorted((root / "vcg_core").rglob("*.[hc]*")):
+        path = file.relative_to(root)
+        folder = path.parts[1] if len(path.parts) > 2 else "the top"
+        if folder not in MAY_INCLUDE and folder != "the top":
+            yield f"{path}: the folder {folder} has no row in MAY_INCLUDE."
+            continue
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            if not (found := INCLUDE.match(line)):
+                continue
+            parts = found[1].split("/")
+            if parts[0] != "vcg_core":
+                yield f"{path}:{number}: {found[1]} is not in vcg_core/."
+            elif folder != "the top" and parts[1] not in MAY_INCLUDE[folder] | {folder}:
+                target = parts[1] if len(parts) > 2 else f"the top ({parts[1]})"
+                yield f"{path}:{number}: {folder} must not include {target}."
+
+
+class IncludeArrows(unittest.TestCase):
+    def test_the_core_has_no_forbidden_include(self):
+        found = list(forbidden_includes(ROOT))
+        self.assertFalse(found, "\n" + "\n".join(found))
+
+    def test_every_kind_of_forbidden_include_is_named(self):
+        files = {"mesh/a.h": '#include <vector>\n#include "vcg_core/base/b.h"\n#include "vcg_core/fit/f.h"\n',
+                 "fit/f.cpp": '#include "vcg_core/settings.h"\n#include "vcg_core/fit/f.h"\n',
+                 "base/b.h": '  #  include "filter_neuralmesh/actions.h"\n',
+                 "extra/e.h": "", "top.cpp": '#include "vcg_core/fit/f.h"\n'}
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in files.items():
+                file = Path(folder) / "vcg_core" / name
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_text(text)
+            self.assertEqual(list(forbidden_includes(Path(folder))), [
+                "vcg_core/base/b.h:1: filter_neuralmesh/actions.h is not in vcg_core/.",
+                "vcg_core/extra/e.h: the folder extra has no row in MAY_INCLUDE.",
+                "vcg_core/fit/f.cpp:1: fit must not include the top (settings.h).",
+                "vcg_core/mesh/a.h:3: mesh must not include fit."])
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
