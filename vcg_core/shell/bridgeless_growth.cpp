@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Growth by nodes whose surroundings in the solid are connected.
+// A node may join the solid if its neighbours in the solid are connected among themselves. Then it neither
+// joins components nor closes a loop.
 #include "vcg_core/shell/bridgeless_growth.h"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/shell/node_groups.h"
@@ -14,136 +16,124 @@
 namespace neuralmesh {
 namespace {
 
-constexpr int kNeighbours = 14;
-constexpr int kGrowth = 2;                // by this factor a handle has to persist
-constexpr double kLevelOfOccupied = 0.6;  // squared radius that the occupied nodes stand for by themselves
-constexpr std::array<int, 8> kStarts = {0, 1, 2, 3, 4, 6, 9, 16};
+constexpr int kRadiusFactor = 2;  // a handle has to persist over this range of radii
+// The radius of level 0 is 0 and cannot be doubled. Its solid grows by the diagonal of a lattice square.
+constexpr int kGrownLevelOfOccupied = 2;
+/// Dense for small radii, where gaps between points and narrow handles appear and vanish.
+constexpr std::array<int, 8> kGrownFromLevels = {0, 1, 2, 3, 4, 6, 9, 16};
 
-std::array<int, 3> offset(int neighbour) {
-    const auto& ahead = kNeighboursAhead[static_cast<std::size_t>(neighbour % 7)];
-    const int sign = neighbour < 7 ? 1 : -1;
-    return {sign * ahead[0], sign * ahead[1], sign * ahead[2]};
-}
+/// Some of the 14 neighbours of a node, as bits in the order of kNeighbourOffsets.
+using NeighbourSet = std::uint32_t;
 
-/// The neighbours of a node are the corners of a triangulated sphere: for every set of them, as a bit mask,
-/// whether it is one connected piece.
+/// For every set of neighbours, whether it is connected. The neighbours of a node are the vertices of a
+/// triangulated sphere, the node's link.
 class LinkConnected {
 public:
-    LinkConnected() : one_(std::size_t{1} << kNeighbours) {
-        for (int i = 0; i < kNeighbours; ++i)
-            for (int j = 0; j < kNeighbours; ++j)
-                if (adjacent(i, j)) beside_[static_cast<std::size_t>(i)] |= 1U << j;
-        for (std::uint32_t set = 1; set < one_.size(); ++set) one_[set] = connected(set) ? 1 : 0;
+    LinkConnected() : connected_(std::size_t{1} << kNeighbourCount) {
+        for (std::size_t i = 0; i < kNeighbourCount; ++i)
+            for (std::size_t j = 0; j < kNeighbourCount; ++j)
+                if (adjacent(i, j)) adjacent_[i] |= NeighbourSet{1} << j;
+        for (NeighbourSet set = 1; set < connected_.size(); ++set) connected_[set] = connected(set) ? 1 : 0;
     }
-    bool operator()(std::uint32_t set) const { return one_[set] != 0; }
+    bool operator()(NeighbourSet set) const { return connected_[set] != 0; }
 
 private:
-    static bool adjacent(int i, int j) {
-        const auto a = offset(i), b = offset(j);
-        for (int k = 0; k < kNeighbours; ++k) {
-            const auto step = offset(k);
-            if (b[0] - a[0] == step[0] && b[1] - a[1] == step[1] && b[2] - a[2] == step[2]) return true;
-        }
-        return false;
+    static bool adjacent(std::size_t i, std::size_t j) {
+        const auto &a = kNeighbourOffsets[i], &b = kNeighbourOffsets[j];
+        const std::array<int, 3> difference = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+        return std::find(kNeighbourOffsets.begin(), kNeighbourOffsets.end(), difference) !=
+               kNeighbourOffsets.end();
     }
-    bool connected(std::uint32_t set) const {
-        std::uint32_t reached = set & (~set + 1), before = 0;
+    bool connected(NeighbourSet set) const {
+        NeighbourSet reached = set & (~set + 1), before = 0;
         while (reached != before) {
             before = reached;
-            for (int i = 0; i < kNeighbours; ++i)
-                if ((before >> i & 1U) != 0) reached |= beside_[static_cast<std::size_t>(i)] & set;
+            for (std::size_t i = 0; i < kNeighbourCount; ++i)
+                if ((before >> i & 1U) != 0) reached |= adjacent_[i] & set;
         }
         return reached == set;
     }
 
-    std::array<std::uint32_t, kNeighbours> beside_{};
-    std::vector<std::uint8_t> one_;
+    std::array<NeighbourSet, kNeighbourCount> adjacent_{};
+    std::vector<std::uint8_t> connected_;
 };
 
-/// The neighbours of node \p i that are in the solid, as bits.
-std::uint32_t solid_around(const Lattice& lattice, std::size_t i, const std::vector<std::uint8_t>& solid) {
-    const std::uint32_t nx = static_cast<std::uint32_t>(lattice.nx),
-                        ny = static_cast<std::uint32_t>(lattice.ny);
-    const std::uint32_t row = static_cast<std::uint32_t>(i) / nx;
-    const int x = static_cast<int>(static_cast<std::uint32_t>(i) - row * nx);
-    const int y = static_cast<int>(row % ny), z = static_cast<int>(row / ny);
-    std::uint32_t set = 0;
-    for (std::size_t k = 0; k < 7; ++k) {
-        const auto& [dx, dy, dz] = kNeighboursAhead[k];
-        const std::size_t step = lattice.index(dx, dy, dz);
-        if (in_box(lattice, x, y, z, dx, dy, dz) && solid[i + step] != 0) set |= 1U << k;
-        if (in_box(lattice, x, y, z, -dx, -dy, -dz) && solid[i - step] != 0) set |= 1U << (k + 7);
-    }
+NeighbourSet solid_neighbours(const Lattice& lattice, NodeId i, const NodeSet& solid) {
+    NeighbourSet set = 0;
+    for_each_neighbour_offset(lattice, i, [&](NodeId j, int k) {
+        if (solid[j] != 0) set |= NeighbourSet{1} << k;
+    });
     return set;
 }
 
-/// Adds the groups of left-out nodes that nothing connects to the outside.
-void fill_cavities(const Lattice& lattice, const std::vector<std::uint32_t>& candidates,
-                   const std::vector<SquaredRadius>& clearance, int level, std::vector<std::uint8_t>& solid) {
-    constexpr std::uint8_t kSeen = 2;  // left out and looked at
-    std::vector<std::uint32_t> group;
-    for (const std::uint32_t seed : candidates) {
+bool on_wall(const Lattice& l, NodeId i) {
+    const auto [x, y, z] = l.coordinates(i);
+    return x == 0 || y == 0 || z == 0 || x == l.nx - 1 || y == l.ny - 1 || z == l.nz - 1;
+}
+
+/// Adds the components of the nodes left out of \p solid that touch no node with clearance > level.
+/// \p left_out holds all nodes of clearance <= level that were outside before growth.
+void fill_cavities(const Lattice& lattice, const std::vector<NodeId>& left_out,
+                   const PerNode<SquaredRadius>& clearance, int level, NodeSet& solid) {
+    constexpr std::uint8_t kVisited = 2;  // in solid: visited, but not in it
+    std::vector<NodeId> component;
+    for (const NodeId seed : left_out) {
         if (solid[seed] != 0) continue;
-        group.assign(1, seed);
-        solid[seed] = kSeen;
         bool open = false;
-        for (std::size_t k = 0; k < group.size(); ++k) {
-            int neighbours = 0;
-            for_each_neighbour(lattice, group[k], [&](std::size_t j) {
-                ++neighbours;
-                open = open || clearance[j] > level;
-                if (solid[j] != 0 || clearance[j] > level) return;
-                solid[j] = kSeen;
-                group.push_back(static_cast<std::uint32_t>(j));
-            });
-            open = open || neighbours < kNeighbours;
-        }
-        if (!open)
-            for (const std::uint32_t i : group) solid[i] = 1;
+        solid[seed] = kVisited;
+        const auto enter = [&](NodeId j) {
+            open = open || clearance[j] > level;
+            if (solid[j] != 0 || clearance[j] > level) return false;
+            solid[j] = kVisited;
+            return true;
+        };
+        flood(lattice, seed, enter, component);
+        for (const NodeId i : component) open = open || on_wall(lattice, i);
+        if (open) continue;
+        for (const NodeId i : component) solid[i] = 1;
     }
-    for (const std::uint32_t i : candidates) solid[i] = solid[i] == 1 ? 1 : 0;
+    for (const NodeId i : left_out) solid[i] = solid[i] == 1 ? 1 : 0;
 }
 
 }  // namespace
 
-void grow_without_bridges(const Lattice& lattice, const std::vector<SquaredRadius>& clearance, int level,
-                          std::vector<std::uint8_t>& solid) {
-    static const LinkConnected one_piece;
-    std::vector<std::vector<std::uint32_t>> waiting(static_cast<std::size_t>(level) + 1);
-    std::vector<std::uint32_t> candidates;
-    for (std::size_t i = 0; i < solid.size(); ++i)
+void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
+                          NodeSet& solid) {
+    static const LinkConnected link_connected;
+    Indexed<std::vector<NodeId>> waiting(level + 1);
+    std::vector<NodeId> outside;
+    for (NodeId i = 0; i < solid.size(); ++i)
         if (solid[i] == 0 && clearance[i] <= level) {
-            waiting[static_cast<std::size_t>(clearance[i])].push_back(static_cast<std::uint32_t>(i));
-            candidates.push_back(static_cast<std::uint32_t>(i));
+            waiting[clearance[i]].push_back(i);
+            outside.push_back(i);
         }
     for (int l = 0; l <= level; ++l) {
-        std::vector<std::uint32_t>& front = waiting[static_cast<std::size_t>(l)];
+        std::vector<NodeId>& front = waiting[l];
         for (std::size_t k = 0; k < front.size(); ++k) {
-            const std::size_t i = front[k];
-            if (solid[i] != 0 || !one_piece(solid_around(lattice, i, solid))) continue;
+            const NodeId i = front[k];
+            if (solid[i] != 0 || !link_connected(solid_neighbours(lattice, i, solid))) continue;
             solid[i] = 1;
-            // What was left out, or not reached yet, may be different now.
-            for_each_neighbour(lattice, i, [&](std::size_t j) {
-                if (solid[j] == 0 && clearance[j] <= l) front.push_back(static_cast<std::uint32_t>(j));
+            // Neighbours that were left out may be connected to the solid in another way now.
+            for_each_neighbour(lattice, i, [&](NodeId j) {
+                if (solid[j] == 0 && clearance[j] <= l) front.push_back(j);
             });
         }
     }
-    fill_cavities(lattice, candidates, clearance, level, solid);
+    fill_cavities(lattice, outside, clearance, level, solid);
 }
 
 int grown_level(int level) {
-    const double from = std::max(static_cast<double>(level), kLevelOfOccupied);
-    return std::min(Region::kReach * Region::kReach, static_cast<int>(from * kGrowth * kGrowth));
+    if (level == 0) return kGrownLevelOfOccupied;
+    return std::min(Region::kMaxLevel, level * kRadiusFactor * kRadiusFactor);
 }
 
-std::vector<std::uint8_t> grown_solid(const Region& region, int level) {
-    std::vector<std::uint8_t> solid;
-    const LevelTopology& plain = region.topologies[static_cast<std::size_t>(level)];
-    if (plain.specks > 0) {
-        solid = solid_of(region.lattice, region.clearance, region.counts, level, region.enough);
-    } else {  // all of it, and cheaper
+NodeSet grown_solid(const Region& region, int level) {
+    NodeSet solid;
+    if (region.topologies[level].specks > 0) {
+        solid = solid_of(region.lattice, region.clearance, region.counts, level, region.min_points);
+    } else {  // the same, without a search for components
         solid.resize(region.clearance.size());
-        for (std::size_t i = 0; i < solid.size(); ++i) solid[i] = region.clearance[i] <= level ? 1 : 0;
+        for (NodeId i = 0; i < solid.size(); ++i) solid[i] = region.clearance[i] <= level ? 1 : 0;
     }
     grow_without_bridges(region.lattice, region.clearance, grown_level(level), solid);
     return solid;
@@ -151,14 +141,14 @@ std::vector<std::uint8_t> grown_solid(const Region& region, int level) {
 
 std::vector<TopologyAt> grown_topologies(const Region& region, ThreadTeam& team) {
     std::vector<TopologyAt> result;
-    for (const int level : kStarts) {
-        const LevelTopology& plain = region.topologies[static_cast<std::size_t>(level)];
+    for (const int level : kGrownFromLevels) {
+        const LevelTopology& plain = region.topologies[level];
         if (is_fragmented(region, level) || (level == 0 && plain.specks > 0)) continue;
         result.push_back({level, plain.components, 0});
     }
     for_chunks(result.size(), 1, team, [&](std::size_t i, std::size_t, std::size_t) {
-        const std::vector<std::uint8_t> solid = grown_solid(region, result[i].level);
-        // No cavities: the Euler characteristic is components minus handles.
+        const NodeSet solid = grown_solid(region, result[i].level);
+        // There are no cavities, so the Euler characteristic is components minus handles.
         result[i].genus = result[i].components - euler_characteristic(region.lattice, solid);
     });
     return result;

@@ -1,37 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The solid of a cloud without what is only there for want of points: growth that closes tunnels and never
-// bridges gaps.
+// Growth of a solid that fills holes and tunnels but never joins parts. It tells handles of the surface from
+// gaps between its points.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "vcg_core/base/thread_team.h"
-#include "vcg_core/shell/level_topology.h"
+#include "vcg_core/shell/clearance.h"
+#include "vcg_core/shell/lattice.h"
 #include "vcg_core/shell/region.h"
 #include "vcg_core/shell/topology_vote.h"
 
 namespace neuralmesh {
 
-/// Grows \p solid (1: in it) over the nodes with clearance <= \p level, by rising clearance, node by node; a
-/// node at which separate parts of the solid would meet is left out. So a tunnel or hole narrower than the
-/// level is filled, while no new handle is made and no two components are joined: what comes out has the
-/// components of \p solid, and those of its handles that persist to \p level. (Chazal and Oudot 2008: the
-/// topology of a surface is what of that of an offset survives in a larger one.) Parts that come close are
-/// left with a gap one node wide; cavities are filled. O(nodes + 14 x those added).
-void grow_without_bridges(const Lattice& lattice, const std::vector<SquaredRadius>& clearance, int level,
-                          std::vector<std::uint8_t>& solid);
+/// Adds to \p solid the nodes with clearance <= \p level, one by one in order of clearance, except nodes at
+/// which separate parts of the solid would meet. This fills tunnels and holes narrower than the level, makes
+/// no handle and joins no components: the result has the components of \p solid and those of its handles
+/// that persist to \p level. (Chazal and Oudot 2008: the topology of a surface is what survives of one offset
+/// in a larger one.) Parts that come close keep a gap one node wide; cavities are filled. O(nodes + 14 x
+/// nodes added).
+void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
+                          NodeSet& solid);
 
-/// The squared radius to which the solid at \p level is grown: twice as far; level 0 counts as 0.6.
+/// The level of twice the radius of \p level, to which its solid is grown. Level 0 is grown to level 2; at
+/// most Region::kMaxLevel.
 int grown_level(int level);
 
-/// The components at \p level that hold enough points, grown to grown_level.
-std::vector<std::uint8_t> grown_solid(const Region& region, int level);
+/// The components of the solid at \p level, without specks, grown to grown_level().
+NodeSet grown_solid(const Region& region, int level);
 
-/// The topologies of the grown solids at a few levels from 0 to a third of the region's reach. Level 0 is
-/// passed over if isolated groups of points would be lost there. About 0.1 microseconds per node.
+/// The topologies of the grown solids of some levels up to a third of Region::kMaxRadius. Left out are levels
+/// whose solid is fragmented, and level 0 if it has specks. About 0.1 microseconds per node and level.
 std::vector<TopologyAt> grown_topologies(const Region& region, ThreadTeam& team);
 
 }  // namespace neuralmesh

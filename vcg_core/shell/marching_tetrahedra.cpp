@@ -1,56 +1,58 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Marching tetrahedra.
 #include "vcg_core/shell/marching_tetrahedra.h"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <vector>
 
 namespace neuralmesh {
 namespace {
 
 using vcg::Point3f;
 
+// Vertices stay this share of a lattice edge away from its ends, so that no face is degenerate.
+constexpr float kMinEdgeShare = 0.1F;
+
 /// Kuhn's six tetrahedra of a cube, positively oriented; corner bits: 1 = x, 2 = y, 4 = z.
 constexpr std::array<std::array<int, 4>, 6> kTetrahedra = {
     {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 3, 2, 7}, {0, 6, 4, 7}, {0, 5, 1, 7}}};
 
-/// Even permutations of a tetrahedron's vertices, by their first one and, for pairs, by the first two.
+/// Even permutations of a tetrahedron's corners: one that starts with each corner, and one that starts with
+/// each pair of corners.
 constexpr std::array<std::array<int, 4>, 4> kVertexFirst = {
     {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
 constexpr std::array<std::array<int, 4>, 6> kPairFirst = {
     {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
 
-/// A lattice edge: seven per node, by the corner bits of its other end.
+/// A lattice edge: 8 * its lower end + the corner bits from there to its upper end.
 using EdgeKey = std::uint64_t;
 
-/// Collects triangles whose corners are lattice edges.
-class Tetrahedra {
+/// Collects triangles whose vertices lie on lattice edges.
+class EdgeTriangles {
 public:
-    Tetrahedra(const Lattice& lattice, const std::vector<float>& values)
+    EdgeTriangles(const Lattice& lattice, const PerNode<float>& values)
         : lattice_(lattice), values_(values) {}
 
     void add_cube(int x, int y, int z);
-    IndexedMesh mesh() const;
+    IndexedMesh<float> mesh() const;
 
 private:
-    void add_tetrahedron(std::size_t node, const std::array<int, 4>& corners, unsigned solid_corners);
+    void add_tetrahedron(NodeId node, const std::array<int, 4>& corners, unsigned solid_corners);
     void add_triangle(EdgeKey a, EdgeKey b, EdgeKey c) { keys_.insert(keys_.end(), {a, b, c}); }
-    std::size_t offset(int corner) const {
-        return lattice_.index(corner & 1, (corner >> 1) & 1, corner >> 2);
-    }
-    Point3f crossing(EdgeKey key) const;
+    NodeId offset(int corner) const { return lattice_.index(corner & 1, (corner >> 1) & 1, corner >> 2); }
+    Point3f point_on(EdgeKey key) const;
 
     const Lattice& lattice_;
-    const std::vector<float>& values_;
+    const PerNode<float>& values_;
     std::vector<EdgeKey> keys_;
 };
 
-void Tetrahedra::add_cube(int x, int y, int z) {
-    const std::size_t node = lattice_.index(x, y, z);
+void EdgeTriangles::add_cube(int x, int y, int z) {
+    const NodeId node = lattice_.index(x, y, z);
     unsigned solid = 0;
     for (int corner = 0; corner < 8; ++corner)
         if (values_[node + offset(corner)] < 0) solid |= 1U << corner;
@@ -58,8 +60,7 @@ void Tetrahedra::add_cube(int x, int y, int z) {
     for (const std::array<int, 4>& corners : kTetrahedra) add_tetrahedron(node, corners, solid);
 }
 
-void Tetrahedra::add_tetrahedron(std::size_t node, const std::array<int, 4>& corners,
-                                 unsigned solid_corners) {
+void EdgeTriangles::add_tetrahedron(NodeId node, const std::array<int, 4>& corners, unsigned solid_corners) {
     const auto corner = [&](int i) { return corners[static_cast<std::size_t>(i)]; };
     const auto solid = [&](int i) { return (solid_corners >> corner(i) & 1U) != 0; };
     // The corner bits of one end of a lattice edge contain those of the other.
@@ -86,27 +87,24 @@ void Tetrahedra::add_tetrahedron(std::size_t node, const std::array<int, 4>& cor
     }
 }
 
-Point3f Tetrahedra::crossing(EdgeKey key) const {
-    const std::size_t node = static_cast<std::size_t>(key / 8);
+Point3f EdgeTriangles::point_on(EdgeKey key) const {
+    const NodeId node = static_cast<NodeId>(key / 8);
     const int corner = static_cast<int>(key % 8);
-    const std::size_t nx = static_cast<std::size_t>(lattice_.nx), ny = static_cast<std::size_t>(lattice_.ny);
-    const Point3f start = lattice_.position(static_cast<int>(node % nx), static_cast<int>(node / nx % ny),
-                                            static_cast<int>(node / nx / ny));
     const Point3f along(static_cast<float>(corner & 1), static_cast<float>((corner >> 1) & 1),
                         static_cast<float>(corner >> 2));
     const float a = values_[node], b = values_[node + offset(corner)];
-    const float t = std::min(0.9F, std::max(0.1F, a / (a - b)));  // away from the nodes: no degenerate faces
-    return start + along * (t * lattice_.step);
+    const float t = std::min(1 - kMinEdgeShare, std::max(kMinEdgeShare, a / (a - b)));
+    return lattice_.position(node) + along * (t * lattice_.step);
 }
 
-IndexedMesh Tetrahedra::mesh() const {
+IndexedMesh<float> EdgeTriangles::mesh() const {
     std::vector<EdgeKey> unique = keys_;
     std::sort(unique.begin(), unique.end());
     unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
-    IndexedMesh result;
-    for (const EdgeKey key : unique) result.positions.push_back(crossing(key));
+    IndexedMesh<float> result;
+    for (const EdgeKey key : unique) result.positions.push_back(point_on(key));
     const auto id = [&](EdgeKey key) {
-        return static_cast<VertexId>(std::lower_bound(unique.begin(), unique.end(), key) - unique.begin());
+        return static_cast<int>(std::lower_bound(unique.begin(), unique.end(), key) - unique.begin());
     };
     for (std::size_t i = 0; i < keys_.size(); i += 3)
         result.faces.push_back({id(keys_[i]), id(keys_[i + 1]), id(keys_[i + 2])});
@@ -115,12 +113,12 @@ IndexedMesh Tetrahedra::mesh() const {
 
 }  // namespace
 
-IndexedMesh marching_tetrahedra(const Lattice& lattice, const std::vector<float>& values) {
-    Tetrahedra tetrahedra(lattice, values);
+IndexedMesh<float> marching_tetrahedra(const Lattice& lattice, const PerNode<float>& values) {
+    EdgeTriangles triangles(lattice, values);
     for (int z = 0; z + 1 < lattice.nz; ++z)
         for (int y = 0; y + 1 < lattice.ny; ++y)
-            for (int x = 0; x + 1 < lattice.nx; ++x) tetrahedra.add_cube(x, y, z);
-    return tetrahedra.mesh();
+            for (int x = 0; x + 1 < lattice.nx; ++x) triangles.add_cube(x, y, z);
+    return triangles.mesh();
 }
 
 }  // namespace neuralmesh

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// By the groups they lie in.
 #include "vcg_core/shell/outliers.h"
 
 #include <algorithm>
@@ -16,64 +15,79 @@ namespace {
 using vcg::Box3f;
 using vcg::Point3f;
 
-/// Deeper in the solid than this times the widest gap of its surface lies nothing of the surface.
-constexpr double kDeep = 2;
+// For main_box(). The groups of a surface are connected only if its cells hold several points on average:
+// cells are enlarged until they do, within these bounds on their number along the longest side.
+constexpr double kMaxCells = 32, kMinCells = 4, kFewerCells = 0.75;
+constexpr double kPointsPerCell = 4;
+constexpr double kGroupShare = 0.01, kAllGroupsShare = 0.9;  // of the points
+// A smaller gain in length is not worth a round; 8 rounds reach 1/256 of the length.
+constexpr float kShrinkage = 0.5F;
+constexpr int kMaxRounds = 8;
 
-/// The squared depth in lattice steps from which on a point that is alone is inside, not of the surface.
-int depth_of_inside(const Region& region, int level) {
-    const double gap = std::sqrt(static_cast<double>(level)) +
-                       region.widest_opening / static_cast<double>(region.lattice.step);
-    const double depth = kDeep * std::max(gap, 1.0);
-    return static_cast<int>(std::min(depth * depth, 1e6));
+// For outliers_of(). Gaps of a surface let points sink in: deeper than this many times the radius of the
+// widest gap, a point is not of the surface.
+constexpr double kDepthOverGap = 2;
+constexpr double kMaxSquaredDepth = 1e6;  // so that it fits into an int
+
+/// The box of the large groups within \p box; null if they do not hold enough points.
+Box3f box_of_groups(const std::vector<Point3f>& points, const Box3f& box) {
+    double cells = kMaxCells;
+    for (;;) {
+        const Lattice lattice(box, longest_side(box) / static_cast<float>(cells), 1);
+        const PerNode<std::uint32_t> counts = count_points(lattice, points);
+        if (points_per_occupied_node(counts) >= kPointsPerCell || cells <= kMinCells)
+            return box_of_large_groups(lattice, counts, kGroupShare, kAllGroupsShare);
+        cells *= kFewerCells;
+    }
 }
 
-/// 1 for the nodes whose points are outliers.
-std::vector<std::uint8_t> outlying_nodes(const Region& region, const std::vector<std::uint8_t>& solid,
-                                         int level) {
-    const std::vector<std::uint8_t> together =
-        solid_of(region.lattice, region.distances, region.counts, level, region.enough);
-    std::vector<std::uint8_t> outlying(together.size());
-    for (std::size_t i = 0; i < outlying.size(); ++i)
-        outlying[i] = region.counts[i] != 0 && together[i] == 0 ? 1 : 0;
-    if (std::count(outlying.begin(), outlying.end(), 1) == 0) return outlying;
-    const int inside = depth_of_inside(region, level);
-    std::vector<std::uint32_t> outside(solid.size());
-    for (std::size_t i = 0; i < solid.size(); ++i) outside[i] = solid[i] == 0 ? 1 : 0;
-    const std::vector<SquaredRadius> depths = squared_distances(region.lattice, outside, Region::kReach);
-    for (std::size_t i = 0; i < outlying.size(); ++i)
-        if (solid[i] != 0 && depths[i] <= inside) outlying[i] = 0;
-    return outlying;
+/// The squared depth in lattice steps up to which an isolated point still counts as one of the surface.
+int max_squared_depth(const Region& region, int level) {
+    const double gap = std::sqrt(static_cast<double>(level)) +
+                       region.widest_opening / static_cast<double>(region.lattice.step);
+    const double depth = kDepthOverGap * std::max(gap, 1.0);
+    return static_cast<int>(std::min(depth * depth, kMaxSquaredDepth));
+}
+
+/// The occupied nodes, without the fringe, that are far from all large groups.
+NodeSet isolated_nodes(const Region& region, int level) {
+    const NodeSet large = solid_of(region.lattice, region.distances, region.counts, level, region.min_points);
+    NodeSet isolated(large.size());
+    for (NodeId i = 0; i < isolated.size(); ++i) isolated[i] = region.counts[i] != 0 && large[i] == 0 ? 1 : 0;
+    return isolated;
+}
+
+/// Removes from \p nodes those in the outer layer of \p solid.
+void remove_surface_nodes(const Region& region, const NodeSet& solid, int level, NodeSet& nodes) {
+    const int max_depth = max_squared_depth(region, level);
+    PerNode<std::uint32_t> outside(solid.size());
+    for (NodeId i = 0; i < solid.size(); ++i) outside[i] = solid[i] == 0 ? 1 : 0;
+    const PerNode<SquaredRadius> depths = squared_distances(region.lattice, outside, Region::kMaxRadius);
+    for (NodeId i = 0; i < nodes.size(); ++i)
+        if (solid[i] != 0 && depths[i] <= max_depth) nodes[i] = 0;
 }
 
 }  // namespace
 
 Box3f main_box(const std::vector<Point3f>& points) {
-    constexpr int kCells = 32, kRounds = 8;
     Box3f box;
     for (const Point3f& p : points) box.Add(p);
-    for (int round = 0; round < kRounds; ++round) {
-        const float side = longest_side(box);
-        double cells = kCells;
-        std::vector<std::uint32_t> counts;
-        Lattice lattice(box, side / static_cast<float>(cells), 1);
-        for (counts = count_points(lattice, points); points_per_occupied_node(counts) < 4 && cells > 4;) {
-            cells *= 0.75;  // connected groups need cells wider than the gaps between points
-            lattice = Lattice(box, side / static_cast<float>(cells), 1);
-            counts = count_points(lattice, points);
-        }
-        const Box3f kept = box_of_large_groups(lattice, counts, 0.01, 0.9);
-        if (kept.IsNull() || longest_side(kept) > 0.5F * side) break;
-        box = kept;
+    for (int round = 0; round < kMaxRounds; ++round) {
+        const Box3f groups = box_of_groups(points, box);
+        if (groups.IsNull() || longest_side(groups) > kShrinkage * longest_side(box)) break;
+        box = groups;
     }
     return box;
 }
 
 std::vector<std::uint8_t> outliers_of(const std::vector<Point3f>& points, const Region& region,
-                                      const std::vector<std::uint8_t>& solid, int level) {
-    const std::vector<std::uint8_t> outlying = outlying_nodes(region, solid, level);
+                                      const NodeSet& solid, int level) {
+    NodeSet outlying = isolated_nodes(region, level);
+    if (std::find(outlying.begin(), outlying.end(), 1) != outlying.end())
+        remove_surface_nodes(region, solid, level, outlying);
     std::vector<std::uint8_t> result;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const std::size_t node = region.lattice.node_of(points[i]);
+        const NodeId node = region.lattice.node_of(points[i]);
         if (node < outlying.size() && outlying[node] == 0) continue;
         result.resize(points.size(), 0);
         result[i] = 1;

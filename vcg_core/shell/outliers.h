@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What of a cloud is the surface: the box it lies in, and which points are outliers.
+// Which points of a cloud are not of its surface: far ones, before a lattice is laid over the cloud, and
+// isolated ones, once the solid is known.
 #pragma once
 
 #include <vcg/space/box3.h>
@@ -10,19 +11,21 @@
 #include <cstdint>
 #include <vector>
 
+#include "vcg_core/shell/lattice.h"
 #include "vcg_core/shell/region.h"
 
 namespace neuralmesh {
 
-/// The box of the cloud without far outliers: while the groups that hold at least a hundredth of the points
-/// each, and nine tenths together, fit into a box half as long, that box is taken. O(points).
+/// The bounding box of the cloud without far outliers. The box is replaced by that of the large groups of
+/// points as long as that is at most half as long: groups of at least 1 % of the points each that hold 90 %
+/// together. O(points).
 vcg::Box3f main_box(const std::vector<vcg::Point3f>& points);
 
-/// The points that belong to no surface, 1 for each; empty if there are none. They lie, with fewer others
-/// than make a component, farther from all the rest than the points of a surface do at \p level: outside of
-/// \p solid (1: in it), or so deep in it that they are not of its surface. Points that are merely the fringe
-/// of a noisy cloud are none. O(points), and O(nodes) if there are any.
+/// 1 for each outlier; empty if there are none. Outliers are points outside region.lattice, and points in
+/// groups too small for a component that are farther than the radius of \p level from all larger groups and
+/// either outside \p solid or so deep inside that they are not of its surface. Fringe points (examine())
+/// close to the surface are none. O(points), and O(nodes) if small groups exist.
 std::vector<std::uint8_t> outliers_of(const std::vector<vcg::Point3f>& points, const Region& region,
-                                      const std::vector<std::uint8_t>& solid, int level);
+                                      const NodeSet& solid, int level);
 
 }  // namespace neuralmesh

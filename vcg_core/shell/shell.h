@@ -1,87 +1,88 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The shell of the cloud: a small closed mesh around it that already has its components and handles, for the
-// learning to start from. (From a tetrahedron the surface cannot grow handles and spans gaps.)
+// The shell of a cloud: a small closed mesh around it with the components and handles of its surface.
+// Learning starts from it, because learning from a tetrahedron makes no handles and leaves webs across gaps.
 //
-// How: on a lattice as fine as the cloud is dense, the solid at radius r is everything a ball of radius r
-// cannot get to from outside without touching a point. Spaces much wider than the way into them are sealed:
-// they are the inside of a surface with gaps between its points. Components and genus of the solid are
-// counted for all radii at once, and those that persist over radii are believed. Where they do not agree,
-// the solids are grown without bridging gaps (shell_grow.h), which tells handles from holes between points
-// and from parts that nearly touch, on more lattices. The winner is meshed by marching tetrahedra and reduced
-// by half-edge collapses, which keep its topology.
+// 1. A lattice is laid over the cloud, as fine as the density of the points allows (lattice.h).
+// 2. The solid at radius r is the set of nodes that the centre of a ball of radius r cannot reach from
+// outside
+//    without the ball touching a point. Spaces much wider than their opening are sealed: they are the inside
+//    of a surface with gaps between its points (clearance.h, region.h).
+// 3. Components and handles are counted at all radii (level_topology.h), on two lattices. The topology that
+//    persists over the largest range of radii is chosen (topology_vote.h).
+// 4. If the vote is unclear, the solids are grown without bridging gaps, which tells handles from gaps
+// between
+//    points and from parts that nearly touch (bridgeless_growth.h), on more lattices (lattice_survey.h).
+// 5. Marching tetrahedra turn the chosen solid into a mesh (closed_mesh.h), and half-edge collapses, which
+// keep
+//    the topology, reduce it (simplify.h).
 //
-// Outliers make no component of their own: a group of points that is isolated at the radius chosen counts
-// only if it holds at least 1 % of the points (component_share) and kSpeckPoints of them. The others are left
-// out of the start mesh, and a warning says how many. So of 200,000 points a clump of 1,999 is an outlier.
-// Single points deep inside are outliers, too.
+// Outliers make no component. An isolated group of points is a component if it holds at least 1 % of the
+// points (component_share) and kSpeckPoints of them: of 200,000 points a group of 1,999 is an outlier. So are
+// single points deep inside. The start mesh leaves them out, and a warning says how many they are.
 #pragma once
 
-#include <vcg/space/point3.h>
-
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/random.h"
+#include "vcg_core/mesh/indexed_mesh.h"
 #include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 
-/// What the shell may cost and how it decides. The defaults were found by experiment (shell_topology).
+/// Limits of cost, and what counts as a component. tests/experiments/tools/shell_topology shows what a change
+/// of the defaults does.
 struct ShellOptions {
-    /// Wanted number of vertices: min(max_vertices, target_vertices / 4), but never below
-    /// 8 per component and 8 per handle. More if the topology cannot be kept otherwise.
+    /// The start mesh has min(max_vertices, target_vertices / 4) vertices, but at least 8 per component and 8
+    /// per handle, and more if the topology needs them.
     int max_vertices = 400;
     int target_vertices = 10000;
-    /// Nodes of the finest lattice: about 30 bytes and 0.3 microseconds each, and up to 9 bytes more for each
-    /// of at most eight threads where parts nearly touch.
+    /// Nodes of the first lattice. About 30 bytes and 0.3 microseconds per node; where parts nearly touch, up
+    /// to eight times the nodes, and 9 bytes more per node for each of at most eight threads.
     double max_nodes = 5.0e5;
     int max_nodes_per_side = 256;
-    /// The lattice is coarse enough if its occupied nodes hold this many points on average.
+    /// The lattice is as fine as possible with this many points per occupied node on average.
     double points_per_node = 1.1;
-    /// A component counts with this share of the points and at least kSpeckPoints of them.
+    /// A component holds at least this share of the points, and kSpeckPoints.
     double component_share = 0.01;
-    /// Points drawn from a target that is a mesh.
+    /// Points drawn from a target with faces.
     int samples = 200000;
-    /// As in Settings; the mesh does not depend on it.
+    /// As in Settings. The mesh does not depend on it.
     int threads = 0;
 
     static constexpr int kSpeckPoints = 20;
-    /// A cloud with a larger share of them is one of another kind than thought: they are to be learned.
-    static constexpr double kMostOutliers = 0.1;
+    /// Outliers that are a larger share of the cloud are learned: then they are not rare errors but a part of
+    /// it.
+    static constexpr double kMaxOutlierShare = 0.1;
 };
 
-/// A closed, oriented 2-manifold (simplicial, valences 3 to 12) in the core's frame, and what it stands for.
-struct StartMesh {
-    std::vector<vcg::Point3f> positions;
-    std::vector<std::array<int, 3>> faces;  ///< counter-clockwise seen from outside
-
+/// A closed, oriented, simplicial 2-manifold with valences from 3 to 12, in the core's frame.
+struct StartMesh : IndexedMesh<float> {
     int components = 0;
-    int genus = 0;  ///< of all components together
-    /// How sure components and genus are: their share in the votes of all topologies met, in [0, 1].
-    double confidence = 0;
-    double radius = 0;             ///< at which the cloud was closed; the mesh lies about this far outside it
+    int genus = 0;                 ///< of all components together
+    double confidence = 0;         ///< share of the votes for components and genus, in [0, 1]
+    double radius = 0;             ///< of the ball; the mesh lies about this far outside the points
     double resolution = 0;         ///< distance of the lattice nodes
-    double widest_opening = 0;     ///< radius of the widest hole that was sealed; 0: none
-    bool encloses_space = true;    ///< false: a sheet, a single scan; the mesh goes around it on both sides
-    long long ignored_points = 0;  ///< outliers: they belong to no component
-    /// Those that are not to be learned: 1 for each such point of the cloud. Empty if there are none, too
-    /// many, or if the target has faces.
+    double widest_opening = 0;     ///< radius of the widest sealed opening; 0: none
+    bool encloses_space = true;    ///< false for a sheet or a single scan: the mesh has a layer on both sides
+    long long ignored_points = 0;  ///< outliers: the mesh leaves them out
+    /// 1 for each outlier of the cloud. Empty if all points are to be learned: there are no outliers, they
+    /// exceed kMaxOutlierShare, or the target has faces.
     std::vector<std::uint8_t> outliers;
-    std::vector<std::string> warnings;  ///< full sentences
+    std::vector<std::string> warnings;  ///< full sentences for the log
 };
 
-/// The shell of \p target. The same target, options and state of \p random give the same mesh everywhere;
-/// random is drawn from only if the target has faces. Nested surfaces come as the outermost one.
+/// The shell of \p target. Equal targets, options and states of \p random give equal meshes on every machine;
+/// random is used only if the target has faces. Of nested surfaces only the outermost one is kept.
 ///
-/// \p progress gets fractions of this step from 0 to 1; a wish to stop is not answered (the step takes about
-/// 0.2 s, 0.1 s more for each million points, and up to 3 s where parts nearly touch). Memory: about 30 bytes
-/// per lattice node, of which there are up to eight times max_nodes where parts nearly touch.
-/// \throws SettingError for options out of range, InputError if no part of the cloud holds enough points
+/// \p progress is called with fractions from 0 to 1 of this step; its answer to stop is ignored. Time: about
+/// 0.2 s, 0.1 s more per million points, and up to 3 s where parts nearly touch. Memory: about 30 bytes per
+/// lattice node.
+/// \throws SettingError if an option is out of range, InputError if no part of the cloud holds enough points
 StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Random& random,
                    Progress& progress);
 

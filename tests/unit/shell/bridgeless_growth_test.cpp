@@ -1,42 +1,40 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Growth fills holes and tunnels up to its radius, and neither joins parts nor makes handles.
 #include "vcg_core/shell/bridgeless_growth.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <cstdlib>
-#include <vector>
+
+#include "vcg_core/shell/level_topology.h"
 
 namespace neuralmesh {
 namespace {
 
-constexpr int kReach = 12;
+constexpr int kMaxRadius = 12;
 
-/// Nodes of a box of 30 steps per side, those with inside(x, y, z) occupied, grown to \p level.
+/// The nodes with inside(x, y, z) in a cube of 31 nodes per side around (0, 0, 0), grown to \p level.
 class Growth {
 public:
     template <class Inside>
     Growth(int level, const Inside& inside) : lattice_(box(), 1, 2), solid_(lattice_.size(), 0) {
-        std::vector<std::uint32_t> occupied(lattice_.size(), 0);
-        for (int z = 0; z < lattice_.nz; ++z)
-            for (int y = 0; y < lattice_.ny; ++y)
-                for (int x = 0; x < lattice_.nx; ++x)
-                    if (inside(x - 17, y - 17, z - 17)) {
-                        occupied[lattice_.index(x, y, z)] = 1;
-                        solid_[lattice_.index(x, y, z)] = 1;
-                    }
+        PerNode<std::uint32_t> occupied(lattice_.size(), 0);
+        for_each_node(lattice_, [&](int x, int y, int z) {
+            if (!inside(x - 17, y - 17, z - 17)) return;
+            occupied[lattice_.index(x, y, z)] = 1;
+            solid_[lattice_.index(x, y, z)] = 1;
+        });
         before_ = euler_characteristic(lattice_, solid_);
-        distances_ = squared_distances(lattice_, occupied, kReach);
+        distances_ = squared_distances(lattice_, occupied, kMaxRadius);
         grow_without_bridges(lattice_, distances_, level, solid_);
     }
     int before() const { return before_; }
     int after() const { return euler_characteristic(lattice_, solid_); }
     bool solid(int x, int y, int z) const { return solid_[lattice_.index(x + 17, y + 17, z + 17)] != 0; }
     bool within_level(int level) const {
-        for (std::size_t i = 0; i < solid_.size(); ++i)
+        for (NodeId i = 0; i < solid_.size(); ++i)
             if (solid_[i] != 0 && distances_[i] > level) return false;
         return true;
     }
@@ -49,12 +47,12 @@ private:
         return result;
     }
     Lattice lattice_;
-    std::vector<std::uint8_t> solid_;
-    std::vector<SquaredRadius> distances_;
+    NodeSet solid_;
+    PerNode<SquaredRadius> distances_;
     int before_ = 0;
 };
 
-/// A plate with a square hole of the given half width.
+/// A plate with a square hole of half width \p hole.
 auto plate(int hole) {
     return [hole](int x, int y, int z) {
         return std::abs(x) <= 10 && std::abs(y) <= 10 && std::abs(z) <= 1 &&
@@ -62,9 +60,9 @@ auto plate(int hole) {
     };
 }
 
-TEST(ShellGrowth, FillsHolesUpToItsRadius) {
+TEST(BridgelessGrowth, FillsHolesUpToItsRadius) {
     const Growth narrow(9, plate(2)), wide(9, plate(5));
-    EXPECT_EQ(narrow.before(), 0);  // one piece, one handle
+    EXPECT_EQ(narrow.before(), 0);  // one component, one handle
     EXPECT_EQ(narrow.after(), 1);
     EXPECT_TRUE(narrow.solid(0, 0, 0));
     EXPECT_EQ(wide.after(), 0);
@@ -72,7 +70,7 @@ TEST(ShellGrowth, FillsHolesUpToItsRadius) {
     EXPECT_TRUE(narrow.within_level(9));
 }
 
-TEST(ShellGrowth, DoesNotJoinParts) {
+TEST(BridgelessGrowth, DoesNotJoinParts) {
     const Growth growth(16, [](int x, int y, int z) {
         return std::abs(x) <= 8 && std::abs(y) <= 8 && (std::abs(z - 4) <= 2 || std::abs(z + 4) <= 2);
     });
@@ -83,7 +81,7 @@ TEST(ShellGrowth, DoesNotJoinParts) {
     EXPECT_FALSE(growth.solid(0, 0, 0) && growth.solid(0, 0, 1) && growth.solid(0, 0, -1));
 }
 
-TEST(ShellGrowth, MakesNoHandleWhereEndsMeet) {
+TEST(BridgelessGrowth, MakesNoHandleWhereEndsMeet) {
     // A C whose ends are 4 steps apart.
     const Growth growth(16, [](int x, int y, int z) {
         const int squared = x * x + y * y;
@@ -93,8 +91,9 @@ TEST(ShellGrowth, MakesNoHandleWhereEndsMeet) {
     EXPECT_EQ(growth.after(), 1);
 }
 
-TEST(ShellGrowth, LeavesNoCavities) {
-    // The front meets itself within the ball, and a node is left out there; no way leads to it from outside.
+TEST(BridgelessGrowth, LeavesNoCavities) {
+    // A hollow ball with a hole: growth fills the hollow from all sides and leaves nodes out where the fronts
+    // meet. They are cut off from outside.
     const Growth growth(64, [](int x, int y, int z) {
         const int squared = x * x + y * y + z * z;
         return squared >= 36 && squared <= 64 && !(std::abs(x) <= 1 && std::abs(y) <= 1 && z > 0);
@@ -102,6 +101,14 @@ TEST(ShellGrowth, LeavesNoCavities) {
     EXPECT_EQ(growth.before(), 1);
     EXPECT_EQ(growth.after(), 1);
     EXPECT_TRUE(growth.solid(0, 0, 0));
+}
+
+TEST(BridgelessGrowth, GrowsToTwiceTheRadius) {
+    EXPECT_EQ(grown_level(0), 2);
+    EXPECT_EQ(grown_level(1), 4);
+    EXPECT_EQ(grown_level(9), 36);
+    EXPECT_EQ(grown_level(16), 64);
+    EXPECT_EQ(grown_level(Region::kMaxLevel), Region::kMaxLevel);
 }
 
 }  // namespace

@@ -14,16 +14,13 @@
 #include <vector>
 
 #include "vcg_core/base/random.h"
+#include "vcg_core/mesh/indexed_mesh.h"
 
 namespace neuralmesh::shapes {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// An indexed triangle mesh, counter-clockwise seen from outside.
-struct Shape {
-    std::vector<vcg::Point3d> positions;
-    std::vector<std::array<int, 3>> faces;
-};
+using Shape = IndexedMesh<double>;
 
 /// Adds the faces and vertices of \p part, moved by \p offset.
 inline void append(Shape& shape, const Shape& part, const vcg::Point3d& offset) {

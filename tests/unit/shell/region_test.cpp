@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/shell/region.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/unit/support/shapes.h"
+
+namespace neuralmesh {
+namespace {
+
+using vcg::Point3f;
+
+std::vector<Point3f> sphere(int count, double noise = 0) {
+    std::vector<Point3f> points;
+    for (const vcg::Point3d& p : shapes::sphere_cloud(count, noise)) points.push_back(Point3f::Construct(p));
+    return points;
+}
+
+/// A square with sides of length 2.
+std::vector<Point3f> square(int count) {
+    std::vector<Point3f> points;
+    for (const vcg::Point3d& p : shapes::plane_cloud(count)) points.push_back(Point3f::Construct(p) * 2);
+    return points;
+}
+
+Region region_of(const std::vector<Point3f>& points, float step) {
+    return examine(points, vcg::Box3f(Point3f(-1, -1, -1), Point3f(1, 1, 1)), step, 0.01, 20);
+}
+
+TEST(Region, PointsAreCountedAtTheirNodes) {
+    const Lattice lattice(vcg::Box3f(Point3f(0, 0, 0), Point3f(4, 4, 4)), 1, 1);
+    const PerNode<std::uint32_t> counts =
+        count_points(lattice, {{0.1F, 0, 0}, {0, -0.2F, 0.3F}, {2, 3, 4}, {9, 0, 0}});
+    EXPECT_EQ(counts[lattice.node_of({0, 0, 0})], 2U);
+    EXPECT_EQ(counts[lattice.node_of({2, 3, 4})], 1U);
+    EXPECT_DOUBLE_EQ(points_per_occupied_node(counts), 1.5);
+    EXPECT_DOUBLE_EQ(points_per_occupied_node(PerNode<std::uint32_t>(8, 0)), 0);
+}
+
+TEST(Region, ASphereEnclosesSpace) {
+    const Region region = region_of(sphere(20000), 0.05F);
+    EXPECT_TRUE(region.encloses_space);
+    EXPECT_EQ(region.clearance[region.lattice.node_of({0, 0, 0})], 0);
+    EXPECT_EQ(region.topologies[1].components, 1);
+    EXPECT_EQ(region.topologies[1].genus, 0);
+    EXPECT_FALSE(is_fragmented(region, 1));
+    EXPECT_EQ(region.total_points, 20000);
+    EXPECT_EQ(region.min_points, 200);
+}
+
+TEST(Region, APlaneEnclosesNoSpace) {
+    const Region region = region_of(square(20000), 0.05F);
+    EXPECT_FALSE(region.encloses_space);
+    EXPECT_EQ(region.widest_opening, 0);
+}
+
+TEST(Region, ASparseCloudIsFragmentedAtSmallRadii) {
+    const Region region = region_of(square(1000), 0.03F);
+    EXPECT_TRUE(is_fragmented(region, 0));
+    EXPECT_FALSE(is_fragmented(region, 36));
+}
+
+TEST(Region, WideOpeningsAreSealedAndMeasured) {
+    std::vector<Point3f> points;
+    for (const Point3f& p : sphere(40000))
+        if (p[2] < 0.8F) points.push_back(p);
+    const Region region = region_of(points, 0.02F);
+    EXPECT_TRUE(region.encloses_space);
+    EXPECT_EQ(region.clearance[region.lattice.node_of({0, 0, 0})], 0);
+    EXPECT_NEAR(region.widest_opening, 0.6, 0.05);  // the hole's radius; its rim is at z = 0.8
+}
+
+TEST(Region, TheFringeOfANoisyCloudIsLeftOut) {
+    std::vector<Point3f> points = sphere(100000);
+    const Region clean = region_of(points, 0.05F);
+    EXPECT_EQ(clean.counts, count_points(clean.lattice, points));
+    points.emplace_back(0.0F, 0.0F, 1.1F);  // two nodes from the surface
+    const Region fringed = region_of(points, 0.05F);
+    EXPECT_EQ(fringed.counts, clean.counts);
+    EXPECT_NE(fringed.counts, count_points(fringed.lattice, points));
+}
+
+TEST(Region, AFewPointsMakeAComponent) {
+    EXPECT_EQ(region_of(sphere(4), 0.1F).min_points, 2);
+    EXPECT_EQ(region_of(sphere(60), 0.1F).min_points, 16);
+    EXPECT_EQ(region_of(sphere(1000), 0.1F).min_points, 20);
+}
+
+}  // namespace
+}  // namespace neuralmesh

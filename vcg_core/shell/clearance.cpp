@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Distances: a separable transform, one axis after the other (Saito and Toriwaki 1994). Clearances: a flood
+// from the walls that takes the levels from the highest to the lowest.
+#include "vcg_core/shell/clearance.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace neuralmesh {
+namespace {
+
+SquaredRadius beyond(int max_radius) { return static_cast<SquaredRadius>(max_radius * max_radius + 1); }
+
+/// Squared distances along x, by two sweeps per row.
+void distances_along_rows(const Lattice& lattice, const PerNode<std::uint32_t>& occupied, int max_radius,
+                          PerNode<SquaredRadius>& out) {
+    const int far = max_radius + 1;
+    for (NodeId row = 0; row < lattice.size(); row += lattice.nx) {
+        int d = far;
+        for (NodeId i = row; i < row + lattice.nx; ++i) {
+            d = occupied[i] != 0 ? 0 : std::min(d + 1, far);
+            out[i] = static_cast<SquaredRadius>(d);
+        }
+        d = far;
+        for (NodeId i = row + lattice.nx; i-- > row;) {
+            d = occupied[i] != 0 ? 0 : std::min(d + 1, far);
+            const int best = std::min<int>(d, out[i]);
+            out[i] = best > max_radius ? beyond(max_radius) : static_cast<SquaredRadius>(best * best);
+        }
+    }
+}
+
+/// Replaces row i by the minimum over |k| <= max_radius of row i + k plus k^2, for \p count rows of \p width
+/// values, \p stride apart from \p first on. \p scratch is for a copy of the rows.
+void lower_envelope(SquaredRadius* first, int count, std::ptrdiff_t stride, int width, int max_radius,
+                    std::vector<SquaredRadius>& scratch) {
+    const std::ptrdiff_t w = width;
+    scratch.resize(static_cast<std::size_t>(count * w));
+    for (int i = 0; i < count; ++i) std::copy_n(first + i * stride, w, scratch.data() + i * w);
+    for (int i = 0; i < count; ++i) {
+        SquaredRadius* out = first + i * stride;
+        for (int j = std::max(0, i - max_radius); j <= std::min(count - 1, i + max_radius); ++j) {
+            const SquaredRadius* in = scratch.data() + j * w;
+            const SquaredRadius add = static_cast<SquaredRadius>((i - j) * (i - j));
+            for (std::ptrdiff_t x = 0; x < w; ++x) {
+                const SquaredRadius sum = static_cast<SquaredRadius>(in[x] + add);
+                out[x] = sum < out[x] ? sum : out[x];
+            }
+        }
+    }
+}
+
+/// Calls visit(i) for the nodes on the walls of the lattice, in the order of their ids.
+template <class Visit>
+void for_each_wall_node(const Lattice& l, const Visit& visit) {
+    for (int z = 0; z < l.nz; ++z)
+        for (int y = 0; y < l.ny; ++y) {
+            const bool all = z == 0 || y == 0 || z == l.nz - 1 || y == l.ny - 1;
+            for (int x = 0; x < l.nx; x += all ? 1 : std::max(1, l.nx - 1)) visit(l.index(x, y, z));
+        }
+}
+
+}  // namespace
+
+PerNode<SquaredRadius> squared_distances(const Lattice& lattice, const PerNode<std::uint32_t>& occupied,
+                                         int max_radius) {
+    PerNode<SquaredRadius> out(lattice.size());
+    std::vector<SquaredRadius> scratch;
+    distances_along_rows(lattice, occupied, max_radius, out);
+    const std::ptrdiff_t row = lattice.nx, slice = row * lattice.ny;
+    for (int z = 0; z < lattice.nz; ++z)
+        lower_envelope(out.data() + z * slice, lattice.ny, row, lattice.nx, max_radius, scratch);
+    for (int y = 0; y < lattice.ny; ++y)
+        lower_envelope(out.data() + y * row, lattice.nz, slice, lattice.nx, max_radius, scratch);
+    for (SquaredRadius& d : out) d = std::min(d, beyond(max_radius));
+    return out;
+}
+
+PerNode<SquaredRadius> clearances(const Lattice& lattice, const PerNode<SquaredRadius>& distances,
+                                  int max_radius, const NodeSet& inside) {
+    const int far = beyond(max_radius);
+    constexpr SquaredRadius kUnknown = -1, kInside = 0;
+    PerNode<SquaredRadius> out(lattice.size(), kUnknown);
+    // First in, first out on every level, so that inside and outside meet halfway.
+    Indexed<std::vector<NodeId>> waiting(far + 1);
+    const auto wait = [&](NodeId i, int level, bool in) {
+        const int l = std::min<int>(level, distances[i]);
+        out[i] = in ? kInside : static_cast<SquaredRadius>(l);
+        waiting[l].push_back(i);
+    };
+    for (NodeId i = 0; i < inside.size(); ++i)
+        if (inside[i] != 0) wait(i, far, true);
+    for_each_wall_node(lattice, [&](NodeId i) {
+        if (out[i] == kUnknown) wait(i, far, false);
+    });
+    for (int level = far; level > 0; --level) {
+        std::vector<NodeId>& front = waiting[level];
+        for (std::size_t k = 0; k < front.size(); ++k) {
+            const bool in = out[front[k]] == kInside;
+            for_each_neighbour(lattice, front[k], [&](NodeId j) {
+                if (out[j] == kUnknown) wait(j, level, in);
+            });
+        }
+        std::vector<NodeId>().swap(front);
+    }
+    for (SquaredRadius& c : out) c = std::max(c, kInside);  // unknown: occupied nodes all around
+    return out;
+}
+
+SealedSpaces enclosed_spaces(const Lattice& lattice, const PerNode<SquaredRadius>& distances,
+                             const PerNode<SquaredRadius>& clearance, double width_ratio,
+                             int min_squared_depth) {
+    SealedSpaces result;
+    result.inside.assign(lattice.size(), 0);
+    const auto hidden = [&](NodeId i) { return distances[i] > clearance[i]; };
+    for_each_component(lattice, hidden, [&](const std::vector<NodeId>& space) {
+        int depth = 0;
+        for (const NodeId i : space) depth = std::max<int>(depth, distances[i]);
+        const int opening = clearance[space.front()];  // the same for all nodes of the space
+        if (depth < min_squared_depth || depth < width_ratio * width_ratio * std::max(1, opening)) return;
+        for (const NodeId i : space) result.inside[i] = 1;
+        result.nodes += static_cast<long long>(space.size());
+        result.widest_opening = std::max(result.widest_opening, opening);
+    });
+    return result;
+}
+
+}  // namespace neuralmesh

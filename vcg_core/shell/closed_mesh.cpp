@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/shell/closed_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "vcg_core/shell/bridgeless_growth.h"
+#include "vcg_core/shell/marching_tetrahedra.h"
+#include "vcg_core/shell/node_groups.h"
+
+namespace neuralmesh {
+namespace {
+
+// In lattice steps. In sealed spaces, grown solids and specks the distance to the points has the wrong sign.
+// Such nodes get the sign of the solid and this distance.
+constexpr float kMinDistance = 0.2F;
+
+NodeSet solid_at(const Region& region, int level, bool grown) {
+    if (grown) return grown_solid(region, level);
+    return solid_of(region.lattice, region.clearance, region.counts, level, region.min_points);
+}
+
+/// Signed distances in lattice steps from the surface of \p solid, negative inside.
+PerNode<float> signed_distances(const Region& region, const NodeSet& solid, int level) {
+    const float radius = std::sqrt(static_cast<float>(level) + 0.5F);  // between this level and the next
+    PerNode<float> values(solid.size());
+    for (NodeId i = 0; i < values.size(); ++i) {
+        const float d = std::sqrt(static_cast<float>(region.distances[i])) - radius;
+        values[i] = solid[i] != 0 ? std::min(d, -kMinDistance) : std::max(d, kMinDistance);
+    }
+    return values;
+}
+
+/// Every \p stride-th node along each axis, surrounded by nodes outside.
+struct StridedValues {
+    Lattice lattice;
+    PerNode<float> values;
+};
+
+StridedValues with_stride(const Lattice& lattice, const PerNode<float>& values, int stride) {
+    const auto nodes = [&](int n) { return (n + 2 + stride - 1) / stride + 1; };
+    StridedValues strided{lattice, {}};
+    Lattice& coarse = strided.lattice;
+    coarse.nx = nodes(lattice.nx);
+    coarse.ny = nodes(lattice.ny);
+    coarse.nz = nodes(lattice.nz);
+    coarse.step = lattice.step * static_cast<float>(stride);
+    coarse.corner = lattice.position(-1, -1, -1);
+    strided.values.assign(coarse.size(), 1.0F);
+    for_each_node(coarse, [&](int x, int y, int z) {
+        const int fx = x * stride - 1, fy = y * stride - 1, fz = z * stride - 1;
+        if (lattice.contains(fx, fy, fz))
+            strided.values[coarse.index(x, y, z)] = values[lattice.index(fx, fy, fz)];
+    });
+    return strided;
+}
+
+Network surface_of(const Region& region, const PerNode<float>& distances, int stride) {
+    const StridedValues strided = with_stride(region.lattice, distances, stride);
+    const IndexedMesh<float> mesh = marching_tetrahedra(strided.lattice, strided.values);
+    return mesh.faces.empty() ? Network() : Network(mesh.positions, mesh.faces);
+}
+
+bool has_topology(const TopologyVote& vote, int components, int genus) {
+    return components == vote.components && genus == vote.genus;
+}
+
+/// Makes \p closed the mesh at \p level, on every third or second node. \return whether it has the topology
+/// of \p vote
+bool close_with_stride(const Region& region, const TopologyVote& vote, int level, bool grown,
+                       ClosedMesh& closed) {
+    closed.level = grown ? grown_level(level) : level;
+    closed.solid = solid_at(region, level, grown);
+    const PerNode<float> distances = signed_distances(region, closed.solid, closed.level);
+    for (const int stride : {3, 2}) {
+        closed.network = surface_of(region, distances, stride);
+        if (has_topology(vote, closed.network.component_count(), closed.network.genus())) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+ClosedMesh closed_mesh(const Region& region, const TopologyVote& vote) {
+    const std::vector<int>& levels = vote.levels;
+    ClosedMesh closed;
+    // The smallest radius, about the geometric mean, and the largest one.
+    for (const int level : {levels.front(), levels[levels.size() / 3], levels.back()}) {
+        const LevelTopology& plain = region.topologies[level];
+        if (has_topology(vote, plain.components, plain.genus) &&
+            close_with_stride(region, vote, level, false, closed))
+            return closed;
+    }
+    if (!close_with_stride(region, vote, levels.front(), vote.grown, closed))
+        closed.network = surface_of(region, signed_distances(region, closed.solid, closed.level), 1);
+    return closed;
+}
+
+}  // namespace neuralmesh

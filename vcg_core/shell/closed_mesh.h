@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The mesh of the solid that has the topology voted for.
+#pragma once
+
+#include "vcg_core/mesh/network.h"
+#include "vcg_core/shell/lattice.h"
+#include "vcg_core/shell/region.h"
+#include "vcg_core/shell/topology_vote.h"
+
+namespace neuralmesh {
+
+/// A closed mesh, and the solid on the region's lattice that it bounds.
+struct ClosedMesh {
+    Network network;
+    NodeSet solid;
+    int level = 0;  ///< of the solid
+};
+
+/// A mesh of the topology of \p vote at one of its levels, from the lattice of \p region. The mesh lies as
+/// far outside the points as the radius of the level, so the smallest level is tried first, and solids that
+/// are not grown before grown ones. It is made on every third or second node if that keeps the topology,
+/// because a mesh of fewer faces takes less time to reduce; else on all nodes, where the topology is the
+/// counted one. The network is empty if the solid is. O(nodes + faces log faces) for each of up to nine
+/// meshes.
+ClosedMesh closed_mesh(const Region& region, const TopologyVote& vote);
+
+}  // namespace neuralmesh

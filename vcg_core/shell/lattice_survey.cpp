@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/shell/lattice_survey.h"
+
+#include <cstddef>
+#include <utility>
+
+#include "vcg_core/base/parallel_for.h"
+#include "vcg_core/base/thread_team.h"
+#include "vcg_core/shell/bridgeless_growth.h"
+
+namespace neuralmesh {
+namespace {
+
+using vcg::Box3f;
+using vcg::Point3f;
+
+// tests/experiments/tools/shell_topology shows what a change of these figures does.
+
+constexpr std::size_t kMaxLattices = 5;
+constexpr float kCoarser = 1.4F;  // step of a lattice over that of the next finer one
+// The survey ends at this share of the votes: for plain solids, for grown ones before a finer lattice is
+// examined, and for grown ones before coarser lattices are.
+constexpr double kPlainConfidence = 0.9, kFineConfidence = 0.75;
+// The finer lattice may have this many times the nodes, but needs this many times the points per node: it is
+// for dense clouds.
+constexpr double kFineNodes = 8, kFinePointsPerNode = 2;
+
+// step_for() tries longer and longer steps. A try for the density counts all points, one for the size is
+// free.
+constexpr float kNextStepForSize = 1.05F, kNextStepForDensity = 1.12F;
+constexpr float kMinStepsPerSide = 8;  // a coarser lattice shows no shape
+
+/// The step of the finest lattice that the limits allow: at most \p max_nodes nodes, and at least \p
+/// points_per_node points per occupied node, so that most nodes of the surface hold points.
+float step_for(const std::vector<Point3f>& points, const Box3f& box, int max_nodes_per_side, double max_nodes,
+               double points_per_node) {
+    const float side = longest_side(box);
+    float step = side / static_cast<float>(max_nodes_per_side - 2 * Region::kMargin);
+    while (static_cast<double>(Lattice(box, step, Region::kMargin).size()) > max_nodes)
+        step *= kNextStepForSize;
+    while (step < side / kMinStepsPerSide) {
+        const Lattice lattice(box, step, Region::kMargin);
+        if (points_per_occupied_node(count_points(lattice, points)) >= points_per_node) break;
+        step *= kNextStepForDensity;
+    }
+    return step;
+}
+
+/// Of all levels with a solid. Level 0 is left out: the points alone are rarely connected.
+std::vector<TopologyAt> plain_topologies(const Region& region) {
+    std::vector<TopologyAt> result;
+    for (int level = 1; level < region.topologies.size(); ++level)
+        if (!is_fragmented(region, level))
+            result.push_back({level, region.topologies[level].components, region.topologies[level].genus});
+    return result;
+}
+
+class Surveyor {
+public:
+    Surveyor(const std::vector<Point3f>& points, const Box3f& box, const ShellOptions& options)
+        : points_(points), box_(box), options_(options), team_(thread_count(options.threads)) {
+        survey_.step =
+            step_for(points, box, options.max_nodes_per_side, options.max_nodes, options.points_per_node);
+    }
+
+    void examine_plain();
+    void grow();
+    void examine_finer();
+    void examine_coarser();
+    double confidence() const { return survey_.vote.confidence; }
+    LatticeSurvey take();
+
+private:
+    Region region_at(float step) const {
+        return examine(points_, box_, step, options_.component_share, ShellOptions::kSpeckPoints);
+    }
+    void count_votes(bool grown);
+
+    const std::vector<Point3f>& points_;
+    const Box3f& box_;
+    const ShellOptions& options_;
+    ThreadTeam team_;
+    LatticeSurvey survey_;
+};
+
+void Surveyor::count_votes(bool grown) {
+    std::vector<double> steps;
+    for (const Region& region : survey_.regions) steps.push_back(static_cast<double>(region.lattice.step));
+    survey_.vote = persistent_topology(survey_.topologies, steps);
+    survey_.vote.grown = grown;
+}
+
+void Surveyor::examine_plain() {
+    survey_.regions.assign(2, Region(Lattice(box_, longest_side(box_), 0)));
+    for_chunks(2, 1, team_, [&](std::size_t i, std::size_t, std::size_t) {
+        survey_.regions[i] = region_at(i == 0 ? survey_.step : kCoarser * survey_.step);
+    });
+    for (const Region& region : survey_.regions) survey_.topologies.push_back(plain_topologies(region));
+    count_votes(false);
+}
+
+void Surveyor::grow() {
+    for (std::size_t i = 0; i < survey_.regions.size(); ++i)
+        survey_.topologies[i] = grown_topologies(survey_.regions[i], team_);
+    count_votes(true);
+}
+
+void Surveyor::examine_finer() {
+    const float step = step_for(points_, box_, options_.max_nodes_per_side, kFineNodes * options_.max_nodes,
+                                kFinePointsPerNode * options_.points_per_node);
+    if (step * kCoarser > survey_.step) return;
+    survey_.regions.insert(survey_.regions.begin(), region_at(step));
+    survey_.topologies.insert(survey_.topologies.begin(), grown_topologies(survey_.regions.front(), team_));
+    count_votes(true);
+}
+
+void Surveyor::examine_coarser() {
+    for (float step = survey_.step * kCoarser * kCoarser;
+         confidence() < kLowConfidence && survey_.regions.size() < kMaxLattices; step *= kCoarser) {
+        survey_.regions.push_back(region_at(step));
+        survey_.topologies.push_back(grown_topologies(survey_.regions.back(), team_));
+        count_votes(true);
+    }
+}
+
+LatticeSurvey Surveyor::take() {
+    TopologyVote& vote = survey_.vote;
+    if (!vote.found) {
+        vote.lattice = static_cast<int>(survey_.regions.size()) - 1;
+        vote.levels = {Region::kMaxLevel};
+        vote.grown = false;
+    }
+    return std::move(survey_);
+}
+
+}  // namespace
+
+LatticeSurvey survey_lattices(const std::vector<Point3f>& points, const Box3f& box,
+                              const ShellOptions& options) {
+    Surveyor surveyor(points, box, options);
+    surveyor.examine_plain();
+    if (surveyor.confidence() >= kPlainConfidence) return surveyor.take();
+    surveyor.grow();
+    if (surveyor.confidence() < kFineConfidence) surveyor.examine_finer();
+    surveyor.examine_coarser();
+    return surveyor.take();
+}
+
+}  // namespace neuralmesh
