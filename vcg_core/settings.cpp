@@ -58,7 +58,7 @@ int nearest_int(double value) {
     return rounded > kLowest && rounded <= kLargestInt ? static_cast<int>(rounded) : kLowest;
 }
 
-std::vector<SettingInfo> common_rows() {
+std::vector<SettingInfo> mesh_rows() {
     using S = Settings;
     return {
         row(&S::target_vertices, "target_vertices", "Target vertices", 4, 20e6,
@@ -82,6 +82,12 @@ std::vector<SettingInfo> common_rows() {
         row(&S::selected_only, "selected_only", "Selected only",
             "Learn only the selected part of the layer: its selected faces where points are drawn from "
             "faces, else its selected vertices."),
+    };
+}
+
+std::vector<SettingInfo> feature_rows() {
+    using S = Settings;
+    return {
         row(&S::color_by_counter, "color_by_counter", "Colour by counter",
             "Colour the vertices by the feature measure, from light yellow where the surface is smooth over "
             "red to purple at features. The vertex quality holds the measure itself, whether this is on or "
@@ -97,6 +103,12 @@ std::vector<SettingInfo> common_rows() {
         row(&S::feature_threshold, "feature_threshold", "Feature threshold", 0, 1000,
             "C_nc of the paper (eq 7). A vertex is a feature if its normal counter is above this number "
             "times the mean counter or, with the crease measure, if its measure is above this number."),
+    };
+}
+
+std::vector<SettingInfo> run_rows() {
+    using S = Settings;
+    return {
         row(&S::random_seed, "random_seed", "Random seed", 0, kLargestInt,
             "The same seed gives the same mesh, bit for bit, on any machine and with any number of threads."),
         row(&S::threads, "threads", "Threads", 0, 1024,
@@ -104,7 +116,8 @@ std::vector<SettingInfo> common_rows() {
     };
 }
 
-std::vector<SettingInfo> advanced_rows() {
+/// The constants of the paper's eq 9, and C_delta of eq 3.
+std::vector<SettingInfo> paper_rows() {
     using S = Settings;
     return {
         row(&S::learning_rate, "learning_rate", "Learning rate", 0.001, 1,
@@ -128,6 +141,12 @@ std::vector<SettingInfo> advanced_rows() {
         row(&S::normalization_window, "normalization_window", "Normalization window", 1, 1e6,
             "C_δ of the paper (eq 3): the variation of a normal is divided by the mean over this many "
             "signals."),
+    };
+}
+
+std::vector<SettingInfo> growth_rows() {
+    using S = Settings;
+    return {
         row(&S::min_wins_per_split, "min_wins_per_split", "Minimum wins per split", 0, 1e6,
             "A vertex is split only after it has won this many signals since its last split or its creation. "
             "0: as in the paper, where growth can stall."),
@@ -162,8 +181,11 @@ void SettingInfo::store(Settings& settings, double value) const {
 
 const std::vector<SettingInfo>& setting_table() {
     static const std::vector<SettingInfo> table = [] {
-        std::vector<SettingInfo> rows = common_rows();
-        for (const SettingInfo& info : advanced_rows()) rows.push_back(advanced(info));
+        std::vector<SettingInfo> rows;
+        for (const auto& group : {mesh_rows(), feature_rows(), run_rows()})
+            rows.insert(rows.end(), group.begin(), group.end());
+        for (const auto& group : {paper_rows(), growth_rows()})
+            for (const SettingInfo& info : group) rows.push_back(advanced(info));
         return rows;
     }();
     return table;
