@@ -10,8 +10,6 @@
 #include <cstring>
 
 #include "tests/unit/support/shapes.h"
-#include "vcg_core/mesh/face_tree.h"
-#include "vcg_core/mesh/face_walk.h"
 #include "vcg_core/mesh/self_crossings.h"
 #include "vcg_core/rms_error.h"
 
@@ -269,27 +267,6 @@ TEST(Fit, TakesOutNoMoreThanTheTopologyAllows) {
     EXPECT_GT(network.vertex_count(), 4);
     EXPECT_EQ(network.validate(), "");
     EXPECT_EQ(network.genus(), 1);
-}
-
-// The walk looks at few faces, the tree is exact: on a smooth surface both find the same.
-TEST(Fit, WalksToTheFaceThatTheTreeFinds) {
-    const TargetSpace target = target_of(shapes::torus_cloud(8000, 0.01));
-    const Network network = network_of(shapes::torus_grid(40, 20), target, 1, 0.002);
-    const Surface surface(network);
-    const FaceTree tree(surface);
-    int differ = 0;
-    for (const vcg::Point3f& p : target.positions()) {
-        const Hit exact = tree.nearest(to_eigen(p));
-        const WalkStart there = walk_start_of(surface, exact);
-        EXPECT_EQ(surface.faces_around(there.vertex)[there.turn], exact.face);
-        for (const WalkStart start :
-             {there, WalkStart{there.vertex, 99}, WalkStart{network.ring(there.vertex)[0], 1}}) {
-            const Hit found = walk_to_nearest(surface, to_eigen(p), start);
-            EXPECT_GE(found.foot.squared_distance, exact.foot.squared_distance);
-            differ += found.foot.squared_distance > exact.foot.squared_distance ? 1 : 0;
-        }
-    }
-    EXPECT_EQ(differ, 0);
 }
 
 TEST(Fit, StopsWhenAskedTo) {
