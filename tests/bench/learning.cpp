@@ -57,7 +57,7 @@ Network torus_start() {
     return Network(positions, faces);
 }
 
-/// A network of that many vertices, learned once for all benchmarks.
+/// A network of \p vertices vertices, learned once for all benchmarks.
 const Network& learned(int vertices) {
     static std::map<int, Network> networks;
     auto it = networks.find(vertices);
@@ -107,7 +107,7 @@ void basic_steps(benchmark::State& state) {
     options.threads = static_cast<int>(state.range(2));
     Learner learner(cloud(), options, learned(options.grow_to));
     NoProgress progress;
-    learner.settle(1, progress);  // into order and into the caches
+    learner.settle(1, progress);  // into memory order and into the caches
     const std::int64_t before = learner.signals();
     for (auto _ : state) learner.settle(1, progress);
     per_signal(state, learner.signals() - before);
@@ -117,7 +117,7 @@ BENCHMARK(basic_steps)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-/// From the start mesh to so many vertices, splits and collapses included; arguments: vertices, threads.
+/// Growth from the start mesh, splits and collapses included; arguments: vertices, threads.
 void growth(benchmark::State& state) {
     LearnerOptions options;
     options.grow_to = static_cast<int>(state.range(0));
@@ -150,7 +150,7 @@ std::vector<VertexId> winners(Network& network) {
     return result;
 }
 
-/// Groups of eight winners of one valence, as the learner makes them.
+/// Groups of eight winners of one valence.
 std::vector<std::vector<VertexId>> groups(Network& network) {
     std::map<int, std::vector<VertexId>> of_valence;
     std::vector<std::vector<VertexId>> result;
@@ -168,45 +168,45 @@ template <class Part>
 void per_group(benchmark::State& state, const Part& part) {
     Network network = learned(static_cast<int>(state.range(0)));
     const auto all = groups(network);
-    EightSteps patches;
-    patches.gather(network, all.front().data(), EightSteps::kLanes);
+    EightSteps eight;
+    eight.gather(network, all.front().data(), EightSteps::kLanes);
     for (auto _ : state)
         for (const auto& group : all) {
-            part(network, group, patches);
-            benchmark::DoNotOptimize(patches);
+            part(network, group, eight);
+            benchmark::DoNotOptimize(eight);
         }
     per_signal(state);
 }
 
 void part_gather(benchmark::State& state) {
-    per_group(state, [](const Network& network, const std::vector<VertexId>& group, EightSteps& patches) {
-        patches.gather(network, group.data(), EightSteps::kLanes);
+    per_group(state, [](const Network& network, const std::vector<VertexId>& group, EightSteps& eight) {
+        eight.gather(network, group.data(), EightSteps::kLanes);
     });
 }
 
-/// Five sweeps, on what has been gathered.
+/// Five smoothing steps.
 void part_smoothing(benchmark::State& state) {
-    per_group(state, [](const Network&, const std::vector<VertexId>&, EightSteps& patches) {
-        patches.smooth(5, 0.05F);
+    per_group(state, [](const Network&, const std::vector<VertexId>&, EightSteps& eight) {
+        eight.smooth(5, 0.05F);
     });
 }
 
-/// The normals before and after.
+/// Normals before and after.
 void part_normals(benchmark::State& state) {
-    per_group(state, [](const Network&, const std::vector<VertexId>&, EightSteps& patches) {
+    per_group(state, [](const Network&, const std::vector<VertexId>&, EightSteps& eight) {
         EightVectors n;
-        patches.normals(n);
-        patches.normals(n);
+        eight.normals(n);
+        eight.normals(n);
         benchmark::DoNotOptimize(n);
     });
 }
 
 void part_displacements(benchmark::State& state) {
-    per_group(state, [](const Network&, const std::vector<VertexId>&, EightSteps& patches) {
+    per_group(state, [](const Network&, const std::vector<VertexId>&, EightSteps& eight) {
         Four moved[EightSteps::kLanes][1 + Ring::kMaxValence];
         Four* to[EightSteps::kLanes];
         std::copy(std::begin(moved), std::end(moved), std::begin(to));
-        patches.displacements(to);
+        eight.displacements(to);
         benchmark::DoNotOptimize(moved);
     });
 }
@@ -228,7 +228,7 @@ void part_counters(benchmark::State& state) {
     per_signal(state);
 }
 
-/// The winner and its ring told to the grid, without leaving their cells.
+/// Moves of the winner and its ring in the winner search, all within their cells.
 void part_moves(benchmark::State& state) {
     Network network = learned(static_cast<int>(state.range(0)));
     WinnerSearch search(network);
@@ -275,7 +275,7 @@ BENCHMARK(part_counters)->Apply(sizes);
 BENCHMARK(part_moves)->Apply(sizes);
 BENCHMARK(part_topology)->Arg(1000)->Iterations(20)->Unit(benchmark::kMillisecond);
 
-/// Bytes of the network, the search and the counters per vertex, by what they allocate.
+/// Bytes per vertex that the network, the winner search and the counters allocate.
 void memory(benchmark::State& state) {
     Network network = learned(static_cast<int>(state.range(0)));
     const WinnerSearch search(network);

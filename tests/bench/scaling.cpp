@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// How the cost grows: with the vertices, with the points, with outliers and with threads; and whole runs as a
-// person waits for them. The clouds are points of a bumpy torus made here, point by point, so that nothing
-// but the core holds them. The largest rows take minutes.
+// How the cost grows with vertices, points, outliers and threads; and the time of whole runs. The clouds are
+// points of a bumpy torus, generated one by one, so that only the core stores them. The largest rows take
+// minutes.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -34,8 +34,8 @@ TargetSpace cloud(std::size_t points, bool outliers = false) {
     return TargetSpace::points(points, [&](std::size_t i) { return point(i, outliers); });
 }
 
-/// Learned once per number of vertices, quickly: what it costs to learn on it is measured, not how it came
-/// about.
+/// A network of \p vertices vertices, learned once for all benchmarks, with few signals per split: its growth
+/// is not measured.
 const Network& learned(int vertices) {
     static std::map<int, Network> networks;
     const auto known = networks.find(vertices);
@@ -62,7 +62,7 @@ void settle(benchmark::State& state, const TargetSpace& target, int vertices, in
     options.threads = threads;
     Learner learner(target, options, learned(vertices));
     NoProgress progress;
-    learner.settle(1, progress);  // into order and into the caches
+    learner.settle(1, progress);  // into memory order and into the caches
     const std::int64_t before = learner.signals();
     for (auto _ : state) learner.settle(1, progress);
     const std::int64_t signals = learner.signals() - before;

@@ -112,6 +112,14 @@ NEURALMESH_ALWAYS_INLINE void square_root(Eight& v) {
     std::memcpy(&v, lanes, sizeof v);
 }
 
+/// The lanes of \p ints as floats.
+NEURALMESH_ALWAYS_INLINE void convert(const EightInts& ints, Eight& floats) {
+    floats = __builtin_convertvector(ints, Eight);
+}
+
+/// The lanes of \p v rounded towards 0.
+inline FourInts to_ints(Four v) { return __builtin_convertvector(v, FourInts); }
+
 /// x, y, z of eight points of one word each, side by side; the points' last words are dropped.
 NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v) {
     const auto pair = [](const Four& low, const Four& high, Eight& both) {

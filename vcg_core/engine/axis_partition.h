@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Space cut into slabs, one for each thread that learns.
+// Space cut into slabs across one axis, one slab per thread.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -10,16 +10,17 @@
 
 namespace neuralmesh {
 
-/// Slabs across the longest axis of a sample, cut so that each holds as many of its points as the others.
+/// Slabs across the longest axis of a sample, each with equally many of its points.
 class AxisPartition {
 public:
-    /// One slab, which is all space. O(n log n) in the points of the \p sample.
+    /// One slab: all of space. O(n log n) in the points of \p sample.
     explicit AxisPartition(const std::vector<vcg::Point3f>& sample);
 
-    /// Cuts anew into \p count slabs, at least 1. O(count).
-    void split(int count);
+    /// Cuts space into \p count slabs, at least 1, instead of the present ones. O(count).
+    void cut(int count);
     int count() const { return static_cast<int>(borders_.size()) - 1; }
 
+    /// The points p with begin <= p[axis] < end.
     struct Range {
         int axis;
         float begin;
@@ -38,8 +39,8 @@ public:
 
 private:
     int axis_ = 0;
-    std::vector<float> places_;   ///< of the sample along the axis, in order
-    std::vector<float> borders_;  ///< slab i from borders_[i] to borders_[i + 1]
+    std::vector<float> coordinates_;  ///< of the sample along the axis, in rising order
+    std::vector<float> borders_;      ///< slab i reaches from borders_[i] to borders_[i + 1]
 };
 
 }  // namespace neuralmesh

@@ -75,7 +75,7 @@ void BasicStepBatch::collect(WinnerSearch& search) {
             results_[static_cast<std::size_t>(slab.steps.signal(k))] = {slab.steps.winner(k),
                                                                         slab.steps.delta(k)};
         // The order of changes does not matter: ties go to the smaller id wherever it is in its list.
-        search.follow(slab.cell_changes);
+        search.apply(slab.cell_changes);
     }
 }
 

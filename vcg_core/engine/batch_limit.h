@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// How many signals may be taken from one state of the network where few vertices win most of them.
+// Limits the batch size when a few vertices win most signals.
 #pragma once
 
 #include <algorithm>
@@ -11,29 +11,33 @@
 
 namespace neuralmesh {
 
-/// Watches the batches of Basic Steps. Moves from one state add up: a vertex that wins 17 signals of a batch
-/// overshoots their mean (alpha_w = 0.06), its neighbours overshoot theirs at 5, and from twice as many on
-/// both swing ever wider. So batches are halved until hardly any vertex wins more than twice in one, and
-/// doubled again when that has held for a while. Where signals spread evenly nothing comes of it.
+/// Watches who wins in each batch of Basic Steps.
+///
+/// Displacements computed from one state of the network add up. With alpha_w = 0.06 a vertex that wins 17
+/// signals of a batch overshoots their mean, and its neighbours overshoot at 5 wins; from twice as many wins
+/// on, both oscillate with growing amplitude. So batches are halved until hardly any vertex wins more than
+/// twice in one, and doubled after 64 such batches in a row. Evenly spread signals are never limited.
 class BatchLimit {
 public:
-    /// The most signals the next batch should have; at least 1.
+    /// Most signals that the next batch should have, at least 1.
     int limit() const { return limit_; }
-    /// \p winner has won in the present batch before. O(repeated wins of the batch) at worst.
+    /// Reports a win of \p winner, which has won in the present batch before. O(repeated wins of the batch)
+    /// at worst.
     void repeated(VertexId winner);
-    /// A batch of \p count signals has ended.
+    /// Reports the end of a batch of \p count signals.
     void end_batch(int count);
 
 private:
     static constexpr int kUnlimited = 1 << 20;
-    /// Wins of a batch beyond each vertex's second: so many, and one more for every so many signals. In a
-    /// long batch of an even cloud there are some, all over the network, and no harm is in them.
+    /// Tolerated wins of a batch beyond each vertex's second: kTolerated, and one more per
+    /// kSignalsPerTolerated signals up to kMostTolerated. Long batches of evenly spread signals have a few,
+    /// all over the network, which do no harm.
     static constexpr int kTolerated = 2, kMostTolerated = 6, kSignalsPerTolerated = 64;
-    static constexpr int kCalm = 64;  ///< batches in a row before a longer one is tried
+    static constexpr int kCalm = 64;  ///< batches in a row without a limit reached before the limit doubles
 
-    std::vector<VertexId> repeated_;
-    int excess_ = 0;
-    int calm_ = 0;
+    std::vector<VertexId> repeated_;  ///< vertices with two wins or more in the present batch
+    int excess_ = 0;                  ///< wins of the present batch beyond each vertex's second
+    int calm_ = 0;                    ///< batches in a row below the tolerated excess
     int limit_ = kUnlimited;
 };
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Counts per level, and the children of a cell by their distance.
 #include "vcg_core/engine/cell_pyramid.h"
+
+#include "vcg_core/base/platform.h"
 
 namespace neuralmesh {
 
 namespace {
 
-/// How far s is from the interval of \p size from \p low on, made \p slack larger.
+/// Distance of s from the interval [low - slack, low + size + slack].
 float gap(float s, float low, float size, float slack) {
     return std::max({low - slack - s, s - (low + size + slack), 0.0F});
 }
@@ -61,12 +62,12 @@ CellPyramid::Slices CellPyramid::slices(const std::array<float, 3>& s, float sla
     return squared;
 }
 
-/// The inhabited children nearer than \p bound, near ones first. \return how many.
+/// The occupied children nearer than \p bound, in order of distance. \return their number.
 int CellPyramid::near_children(const Slices& squared, const Cell& cell, std::size_t level, float bound,
                                std::array<Child, 64>& found) const {
     auto end = found.begin();
     for (std::uint64_t left = nodes(level).at(key_of(cell)).children; left != 0; left &= left - 1) {
-        const int i = __builtin_ctzll(left);
+        const int i = lowest_bit(left);
         const float distance = squared_distance(squared, i);
         if (distance < bound) *end++ = {distance, child_of(cell, i)};
     }
@@ -78,7 +79,7 @@ int CellPyramid::near_children(const Slices& squared, const Cell& cell, std::siz
 std::size_t CellPyramid::bytes() const {
     std::size_t bytes = 0;
     for (const auto& level : nodes_) {
-        // A node, its key, its link and the head of its bucket.
+        // Per node its key and a link, per bucket its head.
         bytes +=
             level.size() * (sizeof(Node) + 2 * sizeof(std::uint64_t)) + level.bucket_count() * sizeof(void*);
     }

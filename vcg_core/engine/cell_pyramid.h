@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Which cells of a uniform grid hold something, in levels each four times coarser than the one below, so that
-// whoever is far from everything need not look at all the empty cells between.
+// The occupied cells of a uniform grid as a 64-ary tree, for nearest-neighbour searches that start far from
+// every occupied cell.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,9 @@
 
 namespace neuralmesh {
 
-/// Counts what lies in the cells of every level from the first coarser one on, and knows of every cell which
-/// of its 64 children are inhabited. Of the finest level it knows blocks of 4 x 4 x 4 cells only.
+/// Levels of cells, each four times coarser per axis than the one below. A node stores the number of entries
+/// in its cell and which of its 64 children are occupied. The finest level, 0, has no nodes: of its cells
+/// only the occupied blocks of 4 x 4 x 4 are known.
 class CellPyramid {
 public:
     CellPyramid() : CellPyramid(1) {}
@@ -28,15 +29,15 @@ public:
     bool holds(FourInts cell) const {
         return std::min({cell[0], cell[1], cell[2]}) >= 0 && std::max({cell[0], cell[1], cell[2]}) < across_;
     }
-    /// One more, one less in \p cell. O(levels).
+    /// Adds or removes one entry in \p cell. O(levels).
     void add(FourInts cell) { count(cell, 1); }
     void remove(FourInts cell) { count(cell, -1); }
-    /// O(1) expected.
+    /// Moves one entry. O(1) expected for neighbouring cells.
     void move(FourInts from, FourInts to);
 
-    /// Calls \p visit(x, y, z) for cells of inhabited blocks, near blocks first, whose distance from \p s,
-    /// squared, in cells and given as if every cell were \p slack larger, is below the least bound that
-    /// visit() has returned. O(levels) expected where cells lie on a surface.
+    /// Branch and bound: calls \p visit(x, y, z) for cells of occupied blocks, near blocks first, that are
+    /// nearer to \p s than the bound. Visit returns the new bound, a squared distance in cells. Cells count
+    /// as \p slack larger on each side, which allows for rounding. O(levels) expected for cells on a surface.
     template <class Visit>
     void nearest(const std::array<float, 3>& s, float slack, const Visit& visit) const {
         float bound = std::numeric_limits<float>::infinity();
@@ -88,7 +89,7 @@ private:
                  float& bound, const Visit& visit) const {
         const Slices squared = slices(s, slack, cell, level);
         if (level == 1) {
-            // To look into a cell is cheaper than to put the cells in order.
+            // Visiting a cell is cheaper than sorting the cells.
             for (int i = 0; i < 64; ++i) {
                 if (squared_distance(squared, i) >= bound) continue;
                 const Cell at = child_of(cell, i);
@@ -103,7 +104,7 @@ private:
     }
 
     std::int32_t across_;
-    std::vector<std::unordered_map<std::uint64_t, Node>> nodes_;  ///< from level 1 to that of the one root
+    std::vector<std::unordered_map<std::uint64_t, Node>> nodes_;  ///< level 1 first, the root last
 };
 
 }  // namespace neuralmesh

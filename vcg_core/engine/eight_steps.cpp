@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Gathering and smoothing of the winners' surroundings, eight at a time.
 #include "vcg_core/engine/eight_steps.h"
 
 #include <algorithm>
@@ -11,10 +10,10 @@ namespace neuralmesh {
 
 namespace {
 
-/// Keeps a face or star without area from dividing zero by zero.
+/// Added to squared lengths, so that a face or star without area does not divide zero by zero.
 constexpr float kTiny = 1e-36F;
 
-[[gnu::always_inline]] inline void close_cycle(EightVectors* at, int valence) {
+NEURALMESH_ALWAYS_INLINE void close_cycle(EightVectors* at, int valence) {
     at[0] = at[valence];
     at[valence + 1] = at[1];
 }
@@ -23,16 +22,27 @@ constexpr float kTiny = 1e-36F;
 
 /// The loops over the lanes, each compiled for every instruction set.
 struct EightSteps::Kernels {
-    static constexpr int kOuter = 4;  ///< outer vertices of a star that are gathered without a branch
-    static constexpr int kPast = 2;   ///< in the ring of r_i, from w past w itself and r_(i-1)
+    static constexpr int kOuter = 4;    ///< outer vertices of a star that are loaded without a branch
+    static constexpr int kSkipped = 2;  ///< entries of the ring of r_i before o_1: the winner and r_(i-1)
 
-    [[gnu::always_inline]] static inline void gather_star(EightSteps& p, const Network& network, int i);
-    static void gather_whole(Star& star, const EightSteps& p, const VertexRecord* slots, const Ring& ring,
-                             int lane);
+    struct OuterPoints {
+        Four points[kOuter][kLanes];
+        EightInts counts;  ///< of outer vertices
+    };
+
+    NEURALMESH_ALWAYS_INLINE static int load_outer(EightSteps& p, const Network& network, int i,
+                                                   OuterPoints& outer);
+    NEURALMESH_ALWAYS_INLINE static void sum_star(const OuterPoints& outer, const EightVectors& origin,
+                                                  Star& star);
+    NEURALMESH_ALWAYS_INLINE static void gather_star(EightSteps& p, const Network& network, int i);
+    static void sum_large_star(const EightSteps& p, const VertexRecord* slots, const Ring& ring, int lane,
+                               Star& star);
+    NEURALMESH_ALWAYS_INLINE static void smooth_vertex(const Star& star, const Eight& rate,
+                                                       const EightVectors* from, EightVectors& to);
     NEURALMESH_MULTIVERSIONED static void gather(EightSteps& p, const Network& network);
     NEURALMESH_MULTIVERSIONED static void move_winners(EightSteps& p, const vcg::Point3f* signals,
-                                                       float alpha_w);
-    NEURALMESH_MULTIVERSIONED static void smooth(EightSteps& p, int sweeps, float alpha_l);
+                                                       float learning_rate);
+    NEURALMESH_MULTIVERSIONED static void smooth(EightSteps& p, int smoothing_steps, float smoothing_rate);
     NEURALMESH_MULTIVERSIONED static void normals(const EightSteps& p, EightVectors& normals);
     NEURALMESH_MULTIVERSIONED static void displacements(const EightSteps& p, Four* const* to);
 };
@@ -45,67 +55,77 @@ NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::gather(EightSteps& p, const 
         p.closed_[lane] = static_cast<std::int32_t>(p.rings_[lane]->open) - 1;
         points[lane] = load_raw(&slots[p.winners_[lane]]);
     }
-    transpose(points, p.origin_);
-    p.winner_at_ = EightVectors{};
+    transpose(points, p.winner_before_);
+    p.winner_now_ = EightVectors{};
     for (int i = 0; i < p.valence_; ++i) {
         for (int lane = 0; lane < kLanes; ++lane) points[lane] = load_raw(&slots[(*p.rings_[lane])[i]]);
-        transpose(points, p.before_[i]);
-        subtract(p.before_[i], p.origin_);
-        p.at_[i + 1] = p.before_[i];
+        transpose(points, p.ring_before_[i]);
+        subtract(p.ring_before_[i], p.winner_before_);
+        p.ring_now_[i + 1] = p.ring_before_[i];
     }
     for (int i = 0; i < p.valence_; ++i) gather_star(p, network, i);
-    close_cycle(p.at_, p.valence_);
+    close_cycle(p.ring_now_, p.valence_);
 }
 
-void EightSteps::Kernels::gather_star(EightSteps& p, const Network& network, int i) {
+/// Loads the first kOuter outer vertices of ring vertex i of every lane. \return the largest number of outer
+/// vertices of a lane.
+int EightSteps::Kernels::load_outer(EightSteps& p, const Network& network, int i, OuterPoints& outer) {
     const VertexRecord* slots = network.slots();
-    Star& star = p.stars_[i];
-    Four points[kOuter][kLanes];
-    EightInts counts;
     int most = 0;
     for (int lane = 0; lane < kLanes; ++lane) {
         const Ring& ring = network.ring((*p.rings_[lane])[i]);
-        // How many there are nobody can predict, so there is no branch for it: past the last the ring goes
-        // on, and what is read there does not count.
-        const VertexId* outer =
+        // The number of outer vertices cannot be predicted, so no branch depends on it: this reads kOuter
+        // entries of the padded ring, of which sum_star() ignores those past the last outer vertex.
+        const VertexId* first =
             ring.neighbours.data() +
-            std::min(ring.find_existing(p.winners_[lane]) + kPast, Ring::kMaxValence - kOuter);
-        for (int m = 0; m < kOuter; ++m) points[m][lane] = load_raw(&slots[outer[m]]);
-        counts[lane] = ring.valence - 3;
-        star.moves[lane] = static_cast<std::int32_t>(ring.open) - 1;
+            std::min(ring.find_existing(p.winners_[lane]) + kSkipped, Ring::kMaxValence - kOuter);
+        for (int m = 0; m < kOuter; ++m) outer.points[m][lane] = load_raw(&slots[first[m]]);
+        outer.counts[lane] = ring.valence - 3;
+        p.stars_[i].inner[lane] = static_cast<std::int32_t>(ring.open) - 1;
         most = std::max(most, ring.valence - 3);
     }
-    star.inverse_valence = 1 / __builtin_convertvector(counts + 3, Eight);
-    star.area = EightVectors{};
-    // Without outer vertices r_(i-1) and r_(i+1) follow each other: the latter, as it stands, takes their
-    // part.
-    transpose(points[0], star.first);
-    subtract(star.first, p.origin_);
-    star.last = star.first;
-    star.sum = star.first;
-    keep_where(counts > 0, star.sum);
-    for (int m = 1; m < kOuter; ++m) {
-        EightVectors o;
-        transpose(points[m], o);
-        subtract(o, p.origin_);
-        const EightInts there = counts > m;
-        choose(there, o, star.last, o);  // it adds no area with itself
-        add_cross(star.area, star.last, o);
-        star.last = o;
-        keep_where(there, o);
-        add(star.sum, o);
-    }
-    if (most <= kOuter) return;
-    for (int lane = 0; lane < kLanes; ++lane)
-        if (counts[lane] > kOuter) gather_whole(star, p, slots, network.ring((*p.rings_[lane])[i]), lane);
+    return most;
 }
 
-/// One lane of a star with many outer vertices.
-void EightSteps::Kernels::gather_whole(Star& star, const EightSteps& p, const VertexRecord* slots,
-                                       const Ring& ring, int lane) {
-    const vcg::Point3f origin(p.origin_.x[lane], p.origin_.y[lane], p.origin_.z[lane]);
-    const int past = ring.find_existing(p.winners_[lane]) + kPast;
-    const auto outer = [&](int m) { return slots[ring[(past + m) % ring.valence]].point() - origin; };
+void EightSteps::Kernels::sum_star(const OuterPoints& outer, const EightVectors& origin, Star& star) {
+    convert(outer.counts + 3, star.inverse_valence);
+    star.inverse_valence = 1 / star.inverse_valence;
+    star.area = EightVectors{};
+    // Without outer vertices, points[0] is r_(i+1): it serves as o_1 of the area vector, not of the mean.
+    transpose(outer.points[0], star.first);
+    subtract(star.first, origin);
+    star.last = star.first;
+    star.sum = star.first;
+    keep_where(outer.counts > 0, star.sum);
+    for (int m = 1; m < kOuter; ++m) {
+        EightVectors o;
+        transpose(outer.points[m], o);
+        subtract(o, origin);
+        const EightInts exists = outer.counts > m;
+        choose(exists, o, star.last, o);  // a repeated point adds no area
+        add_cross(star.area, star.last, o);
+        star.last = o;
+        keep_where(exists, o);
+        add(star.sum, o);
+    }
+}
+
+void EightSteps::Kernels::gather_star(EightSteps& p, const Network& network, int i) {
+    OuterPoints outer;
+    const int most = load_outer(p, network, i, outer);
+    sum_star(outer, p.winner_before_, p.stars_[i]);
+    if (most <= kOuter) return;
+    for (int lane = 0; lane < kLanes; ++lane)
+        if (outer.counts[lane] > kOuter)
+            sum_large_star(p, network.slots(), network.ring((*p.rings_[lane])[i]), lane, p.stars_[i]);
+}
+
+/// sum_star() for one lane with more than kOuter outer vertices.
+void EightSteps::Kernels::sum_large_star(const EightSteps& p, const VertexRecord* slots, const Ring& ring,
+                                         int lane, Star& star) {
+    const vcg::Point3f origin(p.winner_before_.x[lane], p.winner_before_.y[lane], p.winner_before_.z[lane]);
+    const int first = ring.find_existing(p.winners_[lane]) + kSkipped;
+    const auto outer = [&](int m) { return slots[ring[(first + m) % ring.valence]].point() - origin; };
     vcg::Point3f last = outer(0);
     vcg::Point3f sum = last;
     vcg::Point3f area(0, 0, 0);
@@ -127,69 +147,73 @@ void EightSteps::Kernels::gather_whole(Star& star, const EightSteps& p, const Ve
 }
 
 NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::move_winners(EightSteps& p, const vcg::Point3f* signals,
-                                                                 float alpha_w) {
+                                                                 float learning_rate) {
     EightVectors s;
     for (int lane = 0; lane < kLanes; ++lane) {
         s.x[lane] = signals[lane][0];
         s.y[lane] = signals[lane][1];
         s.z[lane] = signals[lane][2];
     }
-    subtract(s, p.origin_);
-    subtract(s, p.winner_at_);
-    p.winner_at_.x += s.x * alpha_w;
-    p.winner_at_.y += s.y * alpha_w;
-    p.winner_at_.z += s.z * alpha_w;
+    subtract(s, p.winner_before_);
+    subtract(s, p.winner_now_);
+    p.winner_now_.x += s.x * learning_rate;  // eq 1, as v_w + alpha_w (s - v_w)
+    p.winner_now_.y += s.y * learning_rate;
+    p.winner_now_.z += s.z * learning_rate;
 }
 
-NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::smooth(EightSteps& p, int sweeps, float alpha_l) {
-    const EightVectors w = p.winner_at_;
+/// v + rate L_t for the ring vertex v = from[1], whose neighbours in the ring are from[0] and from[2].
+void EightSteps::Kernels::smooth_vertex(const Star& star, const Eight& rate, const EightVectors* from,
+                                        EightVectors& to) {
+    const EightVectors& a = from[0];
+    const EightVectors& v = from[1];
+    const EightVectors& b = from[2];
+    // Twice the area vector of the star: N = w x a + a x o_1 + (o_1 x o_2 + ..) + o_m x b + b x w, where
+    // w x a + a x o_1 = a x (o_1 - w), and the same at the other end.
+    const Eight nx =
+        star.area.x + (a.y * star.first.z - a.z * star.first.y) + (star.last.y * b.z - star.last.z * b.y);
+    const Eight ny =
+        star.area.y + (a.z * star.first.x - a.x * star.first.z) + (star.last.z * b.x - star.last.x * b.z);
+    const Eight nz =
+        star.area.z + (a.x * star.first.y - a.y * star.first.x) + (star.last.x * b.y - star.last.y * b.x);
+    const Eight lx = (star.sum.x + (a.x + b.x)) * star.inverse_valence - v.x;
+    const Eight ly = (star.sum.y + (a.y + b.y)) * star.inverse_valence - v.y;
+    const Eight lz = (star.sum.z + (a.z + b.z)) * star.inverse_valence - v.z;
+    const Eight along = (lx * nx + ly * ny + lz * nz) / (nx * nx + ny * ny + nz * nz + kTiny);
+    to.x = v.x + rate * (lx - along * nx);
+    to.y = v.y + rate * (ly - along * ny);
+    to.z = v.z + rate * (lz - along * nz);
+}
+
+NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::smooth(EightSteps& p, int smoothing_steps,
+                                                           float smoothing_rate) {
+    const EightVectors w = p.winner_now_;
     Eight rate[kMost];
     for (int i = 0; i < p.valence_; ++i) {
         add(p.stars_[i].sum, w);
         subtract(p.stars_[i].first, w);
         subtract(p.stars_[i].last, w);
-        rate[i] = Eight{} + alpha_l;
-        keep_where(p.stars_[i].moves, rate[i]);
+        rate[i] = Eight{} + smoothing_rate;
+        keep_where(p.stars_[i].inner, rate[i]);
     }
     EightVectors other[kMost + 2];
-    EightVectors* from = p.at_;
+    EightVectors* from = p.ring_now_;
     EightVectors* to = other;
-    for (int sweep = 0; sweep < sweeps; ++sweep) {
-        for (int i = 0; i < p.valence_; ++i) {
-            const Star& s = p.stars_[i];
-            const EightVectors& a = from[i];
-            const EightVectors& v = from[i + 1];
-            const EightVectors& b = from[i + 2];
-            // N = w x a + a x o_1 + (o_1 x o_2 + ..) + o_m x b + b x w: twice the star's area vector, which
-            // does not depend on v itself.
-            const Eight nx =
-                s.area.x + (a.y * s.first.z - a.z * s.first.y) + (s.last.y * b.z - s.last.z * b.y);
-            const Eight ny =
-                s.area.y + (a.z * s.first.x - a.x * s.first.z) + (s.last.z * b.x - s.last.x * b.z);
-            const Eight nz =
-                s.area.z + (a.x * s.first.y - a.y * s.first.x) + (s.last.x * b.y - s.last.y * b.x);
-            const Eight lx = (s.sum.x + (a.x + b.x)) * s.inverse_valence - v.x;
-            const Eight ly = (s.sum.y + (a.y + b.y)) * s.inverse_valence - v.y;
-            const Eight lz = (s.sum.z + (a.z + b.z)) * s.inverse_valence - v.z;
-            const Eight along = (lx * nx + ly * ny + lz * nz) / (nx * nx + ny * ny + nz * nz + kTiny);
-            to[i + 1].x = v.x + rate[i] * (lx - along * nx);
-            to[i + 1].y = v.y + rate[i] * (ly - along * ny);
-            to[i + 1].z = v.z + rate[i] * (lz - along * nz);
-        }
+    for (int step = 0; step < smoothing_steps; ++step) {
+        for (int i = 0; i < p.valence_; ++i) smooth_vertex(p.stars_[i], rate[i], from + i, to[i + 1]);
         close_cycle(to, p.valence_);
         std::swap(from, to);
     }
-    if (from == p.at_) return;
-    for (int i = 0; i < p.valence_ + 2; ++i) p.at_[i] = from[i];
+    if (from == p.ring_now_) return;
+    for (int i = 0; i < p.valence_ + 2; ++i) p.ring_now_[i] = from[i];
 }
 
 NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::normals(const EightSteps& p, EightVectors& normals) {
-    const EightVectors w = p.winner_at_;
+    const EightVectors w = p.winner_now_;
     EightVectors sum{};
-    EightVectors a = p.at_[1];
+    EightVectors a = p.ring_now_[1];
     subtract(a, w);
     for (int i = 0; i < p.valence_; ++i) {
-        EightVectors b = p.at_[i + 2];
+        EightVectors b = p.ring_now_[i + 2];
         subtract(b, w);
         EightVectors n{};
         add_cross(n, a, b);
@@ -205,8 +229,10 @@ NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::normals(const EightSteps& p,
     Eight length = sum.x * sum.x + sum.y * sum.y + sum.z * sum.z;
     square_root(length);
     const EightInts some = length > 0;
-    // Where they cancel the sum is 0 as it is.
-    length += __builtin_convertvector(~some & 1, Eight);
+    // Where the normals cancel, the sum is 0 and stays 0.
+    Eight one_if_zero;
+    convert(~some & 1, one_if_zero);
+    length += one_if_zero;
     normals.x = sum.x / length;
     normals.y = sum.y / length;
     normals.z = sum.z / length;
@@ -214,11 +240,11 @@ NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::normals(const EightSteps& p,
 
 NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::displacements(const EightSteps& p, Four* const* to) {
     Four moved[kLanes];
-    transpose(p.winner_at_, moved);
+    transpose(p.winner_now_, moved);
     for (int lane = 0; lane < kLanes; ++lane) to[lane][0] = moved[lane];
     for (int i = 0; i < p.valence_; ++i) {
-        EightVectors d = p.at_[i + 1];
-        subtract(d, p.before_[i]);
+        EightVectors d = p.ring_now_[i + 1];
+        subtract(d, p.ring_before_[i]);
         transpose(d, moved);
         for (int lane = 0; lane < kLanes; ++lane) to[lane][1 + i] = moved[lane];
     }
@@ -230,11 +256,13 @@ void EightSteps::gather(const Network& network, const VertexId* winners, int cou
     Kernels::gather(*this, network);
 }
 
-void EightSteps::move_winners(const vcg::Point3f* signals, float alpha_w) {
-    Kernels::move_winners(*this, signals, alpha_w);
+void EightSteps::move_winners(const vcg::Point3f* signals, float learning_rate) {
+    Kernels::move_winners(*this, signals, learning_rate);
 }
 
-void EightSteps::smooth(int sweeps, float alpha_l) { Kernels::smooth(*this, sweeps, alpha_l); }
+void EightSteps::smooth(int smoothing_steps, float smoothing_rate) {
+    Kernels::smooth(*this, smoothing_steps, smoothing_rate);
+}
 
 void EightSteps::normals(EightVectors& n) const { Kernels::normals(*this, n); }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The geometry of eight Basic Steps side by side: the winners, their one-rings and what surrounds them,
-// gathered into lanes in which the winners move, the rings are smoothed and the winners' normals are taken.
+// The same as learning/basic_step.h, for eight signals at once in SIMD lanes.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -12,46 +11,45 @@
 
 namespace neuralmesh {
 
-/// The surroundings of up to eight winners of one valence, each relative to where its winner stood. The lanes
-/// know nothing of each other: eight steps from one state of the network.
+/// Up to eight Basic Steps from one state of the network, whose winners have the same valence. Call gather(),
+/// then move_winners() and smooth(), then displacements(). Positions are relative to those of the winners
+/// before the step.
 ///
-/// One sweep of smoothing sees, for a ring vertex r_i, its ring in the order w, r_(i-1), o_1 .. o_m, r_(i+1).
-/// Only its two neighbours along the winner's ring move during the sweeps; w and the outer o_j stand still.
-/// So what they add to the mean and to the area vector of the star of r_i is summed once, and a sweep costs
-/// two cross products and one division per ring vertex. (Where three edges bound no face, or a ring
-/// vertex has valence 3, an o_j is itself in the ring; it is then seen where it stood before the sweeps.)
+/// Smoothing is fast because of what stays constant. The ring of a ring vertex r_i is, in order, the winner
+/// w, r_(i-1), outer vertices o_1 .. o_m, r_(i+1). During the smoothing steps only r_(i-1) and r_(i+1) move.
+/// So the parts of w and of all o_j in the mean and in the area vector of the star of r_i are summed once,
+/// and a smoothing step costs two cross products and one division per ring vertex. (An o_j may itself be in
+/// the winner's ring, if three edges bound no face; it then counts with its position before the step.)
 class EightSteps {
 public:
     static constexpr int kLanes = 8;
 
-    /// Gathers the surroundings of \p count (1 to 8) winners, which must have the same valence. A boundary
-    /// vertex of a ring is not smoothed: its place along the boundary is for the signals to say.
-    /// O(sum of the rings' valences).
+    /// Loads the two-rings of \p count winners, 1 to 8 of the same valence.
+    /// O(sum of the valences in the winners' rings).
     void gather(const Network& network, const VertexId* winners, int count);
 
-    /// eq 1: v_w <- (1 - alpha_w) v_w + alpha_w s, \p signals one per lane.
-    void move_winners(const vcg::Point3f* signals, float alpha_w);
-    /// C_L sweeps of Laplacian smoothing over the ring, all its vertices at once (Jacobi), in the tangential
-    /// direction: L = mean of the neighbours - v, L_t = L - (L.n) n, v <- v + alpha_L L_t.
-    void smooth(int sweeps, float alpha_l);
-    /// n_w, the sum of the unit normals of the faces around each winner, normalised; 0 if they cancel.
+    /// Moves each winner towards its signal; \p signals has kLanes elements.
+    void move_winners(const vcg::Point3f* signals, float learning_rate);
+    /// Tangential Laplacian smoothing of the winners' rings.
+    void smooth(int smoothing_steps, float smoothing_rate);
+    /// The present unit normal of each winner: the sum of the unit normals of its faces, normalised; 0 if
+    /// they cancel.
     void normals(EightVectors& n) const;
 
     int valence() const { return valence_; }
-    /// By what every lane moves its winner and its ring: \p to[lane][0] the winner, \p to[lane][1 + i] ring
-    /// vertex i.
+    /// Present minus original positions: \p to[lane][0] of the winner, \p to[lane][1 + i] of ring vertex i.
     void displacements(Four* const* to) const;
 
 private:
     static constexpr int kMost = Ring::kMaxValence;
-    /// What does not change during the sweeps, for ring vertex i of every lane.
+    /// Of the star of one ring vertex in all lanes, what smoothing steps do not change.
     struct Star {
-        EightVectors sum;    ///< w + o_1 + .. + o_m
-        EightVectors area;   ///< o_1 x o_2 + .. + o_(m-1) x o_m, relative to w
-        EightVectors first;  ///< o_1 - w
-        EightVectors last;   ///< o_m - w
+        EightVectors sum;    ///< o_1 + .. + o_m; smooth() adds w
+        EightVectors area;   ///< o_1 x o_2 + .. + o_(m-1) x o_m
+        EightVectors first;  ///< o_1; smooth() subtracts w
+        EightVectors last;   ///< o_m; smooth() subtracts w
         Eight inverse_valence;
-        EightInts moves;  ///< -1; 0: a boundary vertex
+        EightInts inner;  ///< -1; 0 for a boundary vertex, which is not smoothed
     };
 
     struct Kernels;
@@ -60,13 +58,13 @@ private:
     int valence_ = 0;
     const Ring* rings_[kLanes] = {};
     VertexId winners_[kLanes] = {};
-    EightVectors origin_;
-    EightVectors winner_at_;
-    EightInts closed_;  ///< -1; 0: the winner lies on a boundary, its last face is none
+    EightVectors winner_before_;  ///< the origin of all other positions here
+    EightVectors winner_now_;
+    EightInts closed_;  ///< -1; 0 for a winner on a boundary, whose ring is open
     Star stars_[kMost];
-    /// As gathered, and now. Entry i + 1 is ring vertex i; 0 and valence + 1 repeat the last and the first.
-    EightVectors before_[kMost];
-    EightVectors at_[kMost + 2];
+    EightVectors ring_before_[kMost];
+    /// Entry i + 1 is ring vertex i; entries 0 and valence + 1 repeat the last and the first.
+    EightVectors ring_now_[kMost + 2];
 };
 
 }  // namespace neuralmesh

@@ -19,9 +19,9 @@ void SlabSchedule::begin_batch(int count, Network& network, WinnerSearch& search
     worth_timing_ = threads > 1;
     if (threads > 1 && (threads > partition_.count() || !assigned_)) {
         if (threads > partition_.count()) {
-            partition_.split(threads);
+            partition_.cut(threads);
             const AxisPartition::Range half = partition_.range(threads / 2);
-            search.split_table(half.axis, half.begin);
+            search.divide_table(half.axis, half.begin);
         }
         assigned_ = true;
         timing_ = ThreadTiming();

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Hashed uniform grid with singly linked lists through the network's slots.
+// Singly linked lists through the vertex records of the network.
 #include "vcg_core/engine/winner_search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+
+#include "vcg_core/base/bits.h"
+#include "vcg_core/base/platform.h"
 
 namespace neuralmesh {
 
@@ -14,53 +17,46 @@ namespace {
 
 /// Cell edge in mean edge lengths of the network, by measurement.
 constexpr float kCellEdge = 1.3F;
-/// Float rounding of a cell border, in cells, generously ...
+/// Bound on the float rounding of a cell border, in cells.
 constexpr float kRounding = 1e-3F;
-/// ... but no less than this: near the origin of the frame a border is off by up to 5e-7, half from adding
-/// the cells' offset, half from the product with the inverse edge, and the box has two. In fine grids that is
-/// more.
+/// The same as a distance, which is larger in fine grids: within the frame, adding kOffset and multiplying by
+/// the inverse edge each move a border by up to 2.5e-7, and a box has two borders.
 constexpr float kLeastRounding = 1.2e-6F;
-/// The same far from the origin of the cells, where float has fewer digits left.
+/// Bound on the rounding far from the frame, in cells: float has fewer digits there.
 constexpr float kFarRounding = 0.1F;
-/// A box of more cells across is dearer than a walk down the pyramid.
+/// Cells across a box beyond which a search through the pyramid is faster.
 constexpr float kMostAcross = 4;
-/// So many are looked at in the time of a walk down the pyramid.
+/// Vertices up to which a search through all of them is faster than one through the pyramid.
 constexpr int kFewVertices = 1500;
 
-/// Squared distances from here on are those of nobody.
+/// Squared distance of the network's sentinel, or more.
 constexpr float kFar = 1e30F;
 
-/// Squared distance and vertex in one number that orders by distance, then by id: the bits of a non-negative
-/// float order like the float.
-using Candidate = std::uint64_t;
-constexpr Candidate kSentinel = Candidate{0x7f800000} << 32 | 0xffffffff;
+/// A vertex and its squared distance, in one number that orders by distance, then by id: the bits of a
+/// non-negative float order like the float.
+using RankedVertex = std::uint64_t;
+constexpr RankedVertex kNoVertex = RankedVertex{0x7f800000} << 32 | 0xffffffff;
 
-Candidate candidate(float squared_distance, VertexId v) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &squared_distance, sizeof bits);
-    return Candidate{bits} << 32 | static_cast<std::uint32_t>(v);
+RankedVertex ranked(float squared_distance, VertexId v) {
+    return RankedVertex{bit_cast<std::uint32_t>(squared_distance)} << 32 | static_cast<std::uint32_t>(v);
 }
 
-Candidate candidate(const VertexRecord& slot, VertexId v, const vcg::Point3f& s) {
+RankedVertex ranked(const VertexRecord& slot, VertexId v, const vcg::Point3f& s) {
     const float x = slot.x - s[0];
     const float y = slot.y - s[1];
     const float z = slot.z - s[2];
-    return candidate(x * x + y * y + z * z, v);
+    return ranked(x * x + y * y + z * z, v);
 }
 
-float squared_distance_of(Candidate c) {
-    const auto bits = static_cast<std::uint32_t>(c >> 32);
-    float d = 0;
-    std::memcpy(&d, &bits, sizeof d);
-    return d;
-}
+float squared_distance_of(RankedVertex r) { return bit_cast<float>(static_cast<std::uint32_t>(r >> 32)); }
 
-VertexId vertex_of(Candidate c) { return static_cast<VertexId>(c & 0xffffffff); }
+VertexId vertex_of(RankedVertex r) { return static_cast<VertexId>(r & 0xffffffff); }
 
-/// Index of the list head of a cell, or of eight cells: 4 x 2 x 2 neighbouring cells share a cache line.
+/// Index of the list head of a cell, or of eight cells. The heads of 4 x 2 x 2 neighbouring cells share a
+/// cache line.
 template <class Ints>
-[[gnu::always_inline]] inline void bucket_of(const Ints& x, const Ints& y, const Ints& z,
-                                             const WinnerSearch::CellLists& lists, Ints& bucket) {
+NEURALMESH_ALWAYS_INLINE void bucket_of(const Ints& x, const Ints& y, const Ints& z,
+                                        const WinnerSearch::CellLists& lists, Ints& bucket) {
     const Ints hash = (x >> 2) * 0x9e3779b1u ^ (y >> 1) * 0x85ebca77u ^ (z >> 1) * 0xc2b2ae3du;
     Ints line = (hash * 0x27d4eb2fu) >> lists.shift;
     if (lists.beyond != 0) {
@@ -71,9 +67,9 @@ template <class Ints>
     bucket = line << 4 | (x & 3u) | (y & 1u) << 2 | (z & 1u) << 3;
 }
 
-/// The buckets of the 2 x 2 x 2 cells from \p low on.
-[[gnu::always_inline]] inline void eight_buckets(FourInts low, const WinnerSearch::CellLists& lists,
-                                                 EightWords& buckets) {
+/// The list heads of the 2 x 2 x 2 cells from \p low on.
+NEURALMESH_ALWAYS_INLINE void eight_buckets(FourInts low, const WinnerSearch::CellLists& lists,
+                                            EightWords& buckets) {
     const EightWords one_x = {0, 1, 0, 1, 0, 1, 0, 1};
     const EightWords one_y = {0, 0, 1, 1, 0, 0, 1, 1};
     const EightWords one_z = {0, 0, 0, 0, 1, 1, 1, 1};
@@ -81,11 +77,11 @@ template <class Ints>
               one_z + static_cast<std::uint32_t>(low[2]), lists, buckets);
 }
 
-/// The nearest vertex in the 2 x 2 x 2 cells from \p low on. The eight lists are walked abreast, to the end
-/// of the longest and without a branch per vertex: which cells are empty is unpredictable.
-NEURALMESH_MULTIVERSIONED Candidate scan_eight_cells(const VertexRecord* slots, const VertexId* heads,
-                                                     const WinnerSearch::CellLists& lists, FourInts low,
-                                                     const vcg::Point3f& s) {
+/// The nearest vertex in the 2 x 2 x 2 cells from \p low on. Walks the eight lists in parallel, to the end of
+/// the longest, without a branch per vertex: which cells are empty cannot be predicted.
+NEURALMESH_MULTIVERSIONED RankedVertex scan_eight_cells(const VertexRecord* slots, const VertexId* heads,
+                                                        const WinnerSearch::CellLists& lists, FourInts low,
+                                                        const vcg::Point3f& s) {
     EightWords buckets;
     eight_buckets(low, lists, buckets);
     std::uint32_t b[8];
@@ -116,63 +112,58 @@ NEURALMESH_MULTIVERSIONED Candidate scan_eight_cells(const VertexRecord* slots, 
     std::int32_t winners[8];
     std::memcpy(distances, &least, sizeof distances);
     std::memcpy(winners, &nearest, sizeof winners);
-    Candidate best = kSentinel;
-    for (int i = 0; i < 8; ++i) best = std::min(best, candidate(distances[i], winners[i]));
-    return squared_distance_of(best) < kFar ? best : kSentinel;
+    RankedVertex best = kNoVertex;
+    for (int i = 0; i < 8; ++i) best = std::min(best, ranked(distances[i], winners[i]));
+    return squared_distance_of(best) < kFar ? best : kNoVertex;
 }
 
-/// Mean edge length, from every vertex's first edge.
+/// Mean length of the first edge of each vertex.
 float mean_edge_length(const Network& network) {
     double sum = 0;
-    int count = 0;
-    for (VertexId v = 0; v < network.slot_count(); ++v) {
-        if (!network.alive(v)) continue;
+    for (const VertexId v : network.vertices())
         sum += static_cast<double>((network.position(v) - network.position(network.ring(v)[0])).Norm());
-        ++count;
-    }
-    return count == 0 ? 0.0F : static_cast<float>(sum / count);
+    return network.vertex_count() == 0 ? 0.0F : static_cast<float>(sum / network.vertex_count());
 }
 
 }  // namespace
 
-WinnerSearch::WinnerSearch(Network& network) : network_(network) { lay_out(); }
+WinnerSearch::WinnerSearch(Network& network) : network_(network) { rebuild(); }
 
-void WinnerSearch::keep_up() {
+void WinnerSearch::rebuild_if_outgrown() {
     const int n = network_.vertex_count();
-    if (n > 2 * laid_out_for_ || 3 * n < laid_out_for_) lay_out();
+    if (n > 2 * built_for_ || 3 * n < built_for_) rebuild();
 }
 
-void WinnerSearch::lay_out() {
-    laid_out_for_ = network_.vertex_count();
-    // Below 1e-5 of the diagonal a cell coordinate would no longer be exact in float.
+void WinnerSearch::rebuild() {
+    built_for_ = network_.vertex_count();
+    // With cells below 1e-5 of the diagonal, cell coordinates would not be exact in float.
     edge_ = std::max(kCellEdge * mean_edge_length(network_), 1e-5F);
     inverse_edge_ = 1 / edge_;
     std::size_t lines = 4;
     lists_ = CellLists();
     lists_.shift = 30;
-    while (16 * lines < 4 * static_cast<std::size_t>(laid_out_for_)) {
+    while (16 * lines < 4 * static_cast<std::size_t>(built_for_)) {
         lines *= 2;
         --lists_.shift;
     }
     if (divided_) {
-        // The two halves of the table.
+        // Each side of the plane has half of the table.
         ++lists_.shift;
         lists_.beyond = static_cast<std::uint32_t>(lines / 2);
         (axis_ == 0 ? lists_.along_x : axis_ == 1 ? lists_.along_y : lists_.along_z) = ~0u;
         lists_.first_beyond = static_cast<std::uint32_t>((place_ + kOffset) * inverse_edge_);
     }
     heads_.assign(16 * lines, -1);
-    inhabited_ = CellPyramid(static_cast<std::int32_t>(2 * kOffset * inverse_edge_) + 1);
+    occupied_ = CellPyramid(static_cast<std::int32_t>(2 * kOffset * inverse_edge_) + 1);
     out_of_range_ = 0;
-    for (VertexId v = 0; v < network_.slot_count(); ++v)
-        if (network_.alive(v)) add(v);
+    for (const VertexId v : network_.vertices()) add(v);
 }
 
-void WinnerSearch::split_table(int axis, float place) {
+void WinnerSearch::divide_table(int axis, float place) {
     divided_ = true;
     axis_ = axis;
     place_ = std::clamp(place, -1.0F, 1.0F);
-    lay_out();
+    rebuild();
 }
 
 std::size_t WinnerSearch::bucket_of(std::int32_t x, std::int32_t y, std::int32_t z) const {
@@ -195,16 +186,16 @@ void WinnerSearch::unlink(VertexId v, std::size_t bucket) {
 }
 
 void WinnerSearch::enter(FourInts cell) {
-    if (inhabited_.holds(cell)) {
-        inhabited_.add(cell);
+    if (occupied_.holds(cell)) {
+        occupied_.add(cell);
     } else {
         ++out_of_range_;
     }
 }
 
 void WinnerSearch::leave(FourInts cell) {
-    if (inhabited_.holds(cell)) {
-        inhabited_.remove(cell);
+    if (occupied_.holds(cell)) {
+        occupied_.remove(cell);
     } else {
         --out_of_range_;
     }
@@ -225,8 +216,8 @@ void WinnerSearch::remove(VertexId v) {
 void WinnerSearch::relink(VertexId v, FourInts from, FourInts to) {
     unlink(v, bucket_of(from));
     link(v, bucket_of(to));
-    if (inhabited_.holds(from) && inhabited_.holds(to)) {
-        inhabited_.move(from, to);
+    if (occupied_.holds(from) && occupied_.holds(to)) {
+        occupied_.move(from, to);
     } else {
         leave(from);
         enter(to);
@@ -236,58 +227,57 @@ void WinnerSearch::relink(VertexId v, FourInts from, FourInts to) {
 void WinnerSearch::prefetch_heads(const vcg::Point3f& s) const {
     const FourInts low = first_of_nearest(s);
     for (int z = 0; z < 2; ++z)
-        for (int y = 0; y < 2; ++y) __builtin_prefetch(&heads_[bucket_of(low[0], low[1] + y, low[2] + z)]);
+        for (int y = 0; y < 2; ++y) prefetch(&heads_[bucket_of(low[0], low[1] + y, low[2] + z)]);
 }
 
 void WinnerSearch::prefetch_vertices(const vcg::Point3f& s) const {
     EightWords buckets;
     eight_buckets(first_of_nearest(s), lists_, buckets);
-    for (int i = 0; i < 8; ++i) __builtin_prefetch(network_.slots() + heads_[buckets[i]]);
+    for (int i = 0; i < 8; ++i) prefetch(network_.slots() + heads_[buckets[i]]);
 }
 
 std::uint64_t WinnerSearch::scan_box(const vcg::Point3f& s, float reach) const {
     const VertexRecord* slots = network_.slots();
     const FourInts low = cell_of(s - vcg::Point3f(reach, reach, reach));
     const FourInts high = cell_of(s + vcg::Point3f(reach, reach, reach));
-    Candidate best = kSentinel;
+    RankedVertex best = kNoVertex;
     for (std::int32_t z = low[2]; z <= high[2]; ++z)
         for (std::int32_t y = low[1]; y <= high[1]; ++y)
             for (std::int32_t x = low[0]; x <= high[0]; ++x)
                 for (VertexId v = heads_[bucket_of(x, y, z)]; v >= 0; v = slots[v].link)
-                    best = std::min(best, candidate(slots[v], v, s));
+                    best = std::min(best, ranked(slots[v], v, s));
     return best;
 }
 
 std::uint64_t WinnerSearch::scan_far(const vcg::Point3f& s) const {
     const VertexRecord* slots = network_.slots();
-    Candidate best = kSentinel;
+    RankedVertex best = kNoVertex;
     const float to_cells = inverse_edge_ * inverse_edge_;
-    inhabited_.nearest({(s[0] + kOffset) * inverse_edge_, (s[1] + kOffset) * inverse_edge_,
-                        (s[2] + kOffset) * inverse_edge_},
-                       kFarRounding, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
-                           for (VertexId v = heads_[bucket_of(x, y, z)]; v >= 0; v = slots[v].link)
-                               best = std::min(best, candidate(slots[v], v, s));
-                           // Those at the same distance count, too: the smaller id wins.
-                           return squared_distance_of(best) * to_cells * (1 + kRounding * kRounding);
-                       });
+    occupied_.nearest({(s[0] + kOffset) * inverse_edge_, (s[1] + kOffset) * inverse_edge_,
+                       (s[2] + kOffset) * inverse_edge_},
+                      kFarRounding, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
+                          for (VertexId v = heads_[bucket_of(x, y, z)]; v >= 0; v = slots[v].link)
+                              best = std::min(best, ranked(slots[v], v, s));
+                          // Not below this distance, as among vertices at the same one the smallest id wins.
+                          return squared_distance_of(best) * to_cells * (1 + kRounding * kRounding);
+                      });
     return best;
 }
 
 std::uint64_t WinnerSearch::scan_all(const vcg::Point3f& s) const {
     const VertexRecord* slots = network_.slots();
-    Candidate best = kSentinel;
-    for (VertexId v = 0; v < network_.slot_count(); ++v)
-        if (network_.alive(v)) best = std::min(best, candidate(slots[v], v, s));
+    RankedVertex best = kNoVertex;
+    for (const VertexId v : network_.vertices()) best = std::min(best, ranked(slots[v], v, s));
     return best;
 }
 
 VertexId WinnerSearch::winner(const vcg::Point3f& s) const {
-    Candidate best = scan_eight_cells(network_.slots(), heads_.data(), lists_, first_of_nearest(s), s);
+    RankedVertex best = scan_eight_cells(network_.slots(), heads_.data(), lists_, first_of_nearest(s), s);
     const float rounding = std::max(kRounding * edge_, kLeastRounding);
     const float sure = 0.5F * edge_ - rounding;
     if (squared_distance_of(best) < sure * sure) return vertex_of(best);
-    if (best == kSentinel) best = scan_box(s, 2 * edge_);
-    if (best != kSentinel) {
+    if (best == kNoVertex) best = scan_box(s, 2 * edge_);
+    if (best != kNoVertex) {
         const float reach = std::sqrt(squared_distance_of(best)) + rounding;
         if (2 * reach * inverse_edge_ < kMostAcross) return vertex_of(scan_box(s, reach));
     }

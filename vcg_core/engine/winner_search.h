@@ -20,51 +20,54 @@
 
 namespace neuralmesh {
 
-/// Nearest-vertex search, exact within 1.5 of the origin (the core's frame reaches to 0.5), and as far as
-/// cells are large against the digits that float has left. Every change of the network must be told; the grid
-/// is laid out anew when the number of vertices has doubled or fallen to a third.
+/// Nearest-vertex search. Exact within 1.5 of the origin, where the core's frame reaches to 0.5; beyond that,
+/// exact up to float rounding of cell coordinates. Ties go to the smaller id, so the result is that of a
+/// linear search to the bit. Report every change of the network through add(), move() and remove().
 ///
-/// The table has a list head per cell, found by hashing, and no keys: cells that share a head share a list.
-/// That costs a few distances to vertices elsewhere, which cannot win, and saves every comparison of keys.
-/// Ties go to the smaller id, so that the answer is that of a linear search to the bit.
-/// Memory: 8 to 32 bytes per vertex and the pyramid; the list links live in the network's slots.
+/// The hash table maps a cell to the head of a list of vertices. It stores no keys: cells with the same hash
+/// share a list. That costs a few distances to vertices of other cells, which cannot win, and saves all
+/// comparisons of keys. The table is rebuilt when the number of vertices has doubled or fallen to a third.
+///
+/// Memory: 8 to 32 bytes per vertex, and the pyramid. The links of the lists are stored in the network's
+/// vertex records.
 class WinnerSearch {
 public:
-    /// Which list a cell has.
+    /// Which list a cell belongs to. After divide_table(), cells beyond its plane have the second half of the
+    /// table.
     struct CellLists {
-        int shift = 0;             ///< of the hash, to the number of a cache line
-        std::uint32_t beyond = 0;  ///< added to that of a cell beyond the plane
-        /// The mask of the plane's axis is all ones, and its first cell beyond.
+        int shift = 0;             ///< right shift that makes a hash the number of a cache line
+        std::uint32_t beyond = 0;  ///< added to that number for a cell beyond the plane
+        /// All ones for the axis across which the plane lies, else 0.
         std::uint32_t along_x = 0;
         std::uint32_t along_y = 0;
         std::uint32_t along_z = 0;
-        std::uint32_t first_beyond = 0;
+        std::uint32_t first_beyond = 0;  ///< the first cell coordinate beyond the plane
     };
 
     /// Keeps a reference to \p network. O(vertices).
     explicit WinnerSearch(Network& network);
 
-    /// The vertex nearest to \p s. O(1) expected near a mesh whose edges are about equally long where the
-    /// signals are, O(log vertices) expected far from it. Many vertices in one cell cost a distance each.
+    /// The vertex nearest to \p s. O(1) expected near a mesh with edges of similar length, O(log vertices)
+    /// expected far from it; O(vertices in the cell) where many crowd in one cell.
     VertexId winner(const vcg::Point3f& s) const;
-    /// Brings into the cache what winner(s) will read first: the lists' heads, and later, when those have
-    /// come, the vertices they name.
+    /// Prefetch what winner(s) reads first: the heads of lists, then, once those are in the cache, the first
+    /// vertex of each list.
     void prefetch_heads(const vcg::Point3f& s) const;
     void prefetch_vertices(const vcg::Point3f& s) const;
 
-    /// \p v has just been born. O(1).
+    /// Call after \p v was added to the network. O(1).
     void add(VertexId v);
-    /// \p v is about to be removed. O(1) expected.
+    /// Call before \p v is removed from the network. O(1) expected.
     void remove(VertexId v);
-    /// A vertex that has moved from one cell to another, of which the grid does not know yet.
+    /// A vertex whose position has moved to another cell while its list has not changed yet.
     struct CellChange {
         FourInts from;
         FourInts to;
         VertexId vertex;
     };
-    /// Moves \p v to \p where (x, y, z, 0) in the network. If it leaves its cell it is only added to \p
-    /// cell_changes, which are to be handed to follow() before the next search: so threads may move different
-    /// vertices at once. O(1).
+    /// Moves \p v to \p where (x, y, z, 0) in the network. If it leaves its cell, only adds that to \p
+    /// cell_changes, so different threads may move different vertices at the same time. Pass these to apply()
+    /// before the next search. O(1).
     void move(VertexId v, Four where, std::vector<CellChange>& cell_changes) {
         VertexRecord* slot = &network_.slots()[v];
         const FourInts from = cell_of(load_xyz(slot));
@@ -73,38 +76,35 @@ public:
             cell_changes.push_back({from, to, v});
         store_xyz(slot, where);
     }
-    /// Those of one vertex must come in their order. O(1) expected for each.
-    void follow(const std::vector<CellChange>& cell_changes) {
+    /// Moves vertices between lists. The changes of one vertex must come in their order. O(1) expected each.
+    void apply(const std::vector<CellChange>& cell_changes) {
         for (const CellChange& c : cell_changes) relink(c.vertex, c.from, c.to);
     }
-    /// Moves \p v to \p where, in the network and in the grid. O(1) expected.
+    /// Moves \p v to \p where, in the network and in the table. O(1) expected.
     void move(VertexId v, const vcg::Point3f& where) {
         std::vector<CellChange> cell_changes;
         move(v, Four{where[0], where[1], where[2], 0}, cell_changes);
-        follow(cell_changes);
+        apply(cell_changes);
     }
-    /// From now on cells on different sides of the plane where coordinate \p axis is \p place never share a
-    /// list: for two threads, one on each side, which else would look at each other's vertices all over the
-    /// mesh. O(vertices).
-    void split_table(int axis, float place);
-    /// Lays the grid out anew if the network has outgrown it.
-    void keep_up();
+    /// Gives cells on different sides of the plane x[axis] = \p place different lists, from now on. For two
+    /// threads, one on each side: in a shared list, each would read vertices that the other moves.
+    /// O(vertices).
+    void divide_table(int axis, float place);
+    /// Rebuilds the table if the number of vertices has doubled or fallen to a third. O(1), O(vertices) then.
+    void rebuild_if_outgrown();
+    /// Call after the network was renumbered. O(vertices).
+    void rebuild();
 
-    /// Lays the grid out anew: to be called after vertices have got new ids.
-    void lay_out();
-
-    std::size_t bytes() const { return heads_.size() * sizeof(VertexId) + inhabited_.bytes(); }
+    std::size_t bytes() const { return heads_.size() * sizeof(VertexId) + occupied_.bytes(); }
 
 private:
-    /// Makes all coordinates positive: the core's frame lies in [-0.5, 0.5], start meshes somewhat beyond.
+    /// Makes cell coordinates positive: the core's frame is [-0.5, 0.5]^3, start meshes reach beyond it.
     static constexpr float kOffset = 4;
 
-    FourInts cell_of(Four position) const {
-        return __builtin_convertvector((position + kOffset) * inverse_edge_, FourInts);
-    }
+    FourInts cell_of(Four position) const { return to_ints((position + kOffset) * inverse_edge_); }
     FourInts cell_of(const vcg::Point3f& p) const { return cell_of(Four{p[0], p[1], p[2], 0}); }
-    /// The first of the 2 x 2 x 2 cells nearest to s, which reach at least half a cell's edge in all
-    /// directions.
+    /// The lowest of the 2 x 2 x 2 cells nearest to s. They contain all points within half a cell's edge of
+    /// s.
     FourInts first_of_nearest(const vcg::Point3f& s) const {
         const float half = 0.5F * edge_;
         return cell_of(s - vcg::Point3f(half, half, half));
@@ -122,14 +122,14 @@ private:
 
     Network& network_;
     HugeVector<VertexId> heads_;
-    CellPyramid inhabited_;
-    int out_of_range_ = 0;  ///< vertices so far away that the pyramid does not hold them
+    CellPyramid occupied_;
+    int out_of_range_ = 0;  ///< vertices outside the cells of the pyramid
     CellLists lists_;
     bool divided_ = false;
-    int axis_ = 0;  ///< of the plane that divides the lists
-    float place_ = 0;
-    int laid_out_for_ = 0;
-    float edge_ = 1;
+    int axis_ = 0;       ///< see divide_table()
+    float place_ = 0;    ///< see divide_table()
+    int built_for_ = 0;  ///< number of vertices at the last rebuild()
+    float edge_ = 1;     ///< of a cell
     float inverse_edge_ = 1;
 };
 

@@ -39,7 +39,7 @@ int half_edge_collapse(LearningState& state, std::int64_t since) {
         state.regularise(kept);
         ++removed;
     }
-    state.search.keep_up();
+    state.search.rebuild_if_outgrown();
     return removed;
 }
 

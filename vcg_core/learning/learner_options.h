@@ -12,9 +12,9 @@ enum class UtilityIncrement {
     one,      ///< the signal counter: the density of the mesh follows that of the cloud
 };
 
-/// The first group has the paper's values (eq 9), the second has symbols but no values in the paper's list,
-/// the third is not in the paper.
+/// The paper's constants, and what it leaves open.
 struct LearnerOptions {
+    // eq 9: constants with the paper's values.
     double learning_rate = 0.06;    ///< alpha_w
     double smoothing_rate = 0.05;   ///< alpha_L
     int smoothing_steps = 5;        ///< C_L
@@ -23,10 +23,12 @@ struct LearnerOptions {
     double counter_decay = 0.95;    ///< alpha_nc
     double feature_decay = 0.95;    ///< alpha_fd
 
-    int normalization_window = 1000;  ///< C_delta
+    // The paper's constants that are not in eq 9.
+    int normalization_window = 1000;  ///< C_delta, the value of its section 3
     double stop_below_turn = 0;       ///< alpha_t, in degrees as NormalTurn measures; 0: off
     UtilityIncrement utility_increment = UtilityIncrement::n_delta;
 
+    // Not in the paper.
     int grow_to = 10000;  ///< vertices at which growth ends
     /// Wins since its birth or last split that a vertex needs before it is split. 0 is the paper to the
     /// letter: no maturity, no batches, no edge flips.

@@ -40,7 +40,7 @@ LearningState::LearningState(const LearnerOptions& the_options, Network start)
 VertexId LearningState::split(VertexId v, int first, int count, const vcg::Point3f& where) {
     const VertexId u = network.split(v, first, count, where);
     search.add(u);
-    search.keep_up();
+    search.rebuild_if_outgrown();
     utility_counters.resize(network.slot_count());
     feature_counters.resize(network.slot_count());
     activity.resize(network.slot_count());
@@ -69,7 +69,7 @@ void LearningState::renumber(const std::vector<VertexId>& order) {
     utility_counters.renumber(order);
     feature_counters.renumber(order);
     activity.renumber(order);
-    search.lay_out();
+    search.rebuild();
 }
 
 }  // namespace neuralmesh

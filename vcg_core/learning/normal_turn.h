@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// By how much normals turn while a mesh learns: what eq 8 can be asked of.
+// How much the normals turn while a mesh learns: what termination compares with alpha_t (see eq 8).
 #pragma once
 
 #include <algorithm>
@@ -9,32 +9,36 @@
 
 namespace neuralmesh {
 
-/// The root of the mean square angle by which the winner's normal turns in one Basic Step, over about the
-/// last ten signals per vertex.
+/// Root mean square angle by which a Basic Step turns the winner's normal, over about the last ten signals
+/// per vertex.
 ///
-/// This is Mean(n_c) without the normalisation of eq 3, which holds that close to 1 whatever the mesh. The
-/// variations are far from equal (a few vertices at the sharpest places have most of the sum), so a mean over
-/// the C_delta = 1000 signals of eq 3 falls below a bound by chance long before the mesh does; and a memory
-/// of many more signals than these lags behind the growth, which doubles the vertices in 100 signals per
-/// vertex.
+/// It replaces the Mean(n_c) of eq 8, which cannot tell when to stop: its n_delta are normalised (see eq 3),
+/// so it stays near 1 for the counters of eq 6, and near 20 / vertices for those of eq 4, however far the
+/// mesh has converged. The deltas before normalisation do fall; degrees() is their mean, converted to an
+/// angle. In the dialog the bound is called stop_below_mean_counter.
+///
+/// The memory of ten signals per vertex is a compromise. A few vertices at the sharpest places have most of
+/// the sum, so a mean over few signals, such as C_delta = 1000, falls below a bound by chance long before the
+/// mesh does. A longer memory lags behind the growth, which doubles the vertices in 100 signals per vertex.
 class NormalTurn {
 public:
     static constexpr int kSignalsPerVertex = 10;
 
-    /// \p delta of eq 2, of a signal learned by a mesh of \p vertices. O(1).
+    /// Adds the \p delta of a signal (see eq 2) that a mesh of \p vertices vertices has learned. O(1).
     void add(double delta, int vertices) {
         ++signals_;
-        const double memory = std::max(1000.0, static_cast<double>(kSignalsPerVertex) * vertices);
+        const double memory = std::max(kLeastMemory, static_cast<double>(kSignalsPerVertex) * vertices);
         mean_ += (delta - mean_) / std::min(signals_, memory);
     }
 
     /// 0 before the first signal.
     double degrees() const {
-        // delta = 1 - cos(angle), which is angle^2 / 2 for the small angles in question.
+        // delta = 1 - cos(angle), which for small angles is angle^2 / 2.
         return kDegreesPerRadian * std::sqrt(2 * mean_);
     }
 
 private:
+    static constexpr double kLeastMemory = 1000;  ///< signals, for small meshes
     static constexpr double kDegreesPerRadian = 57.29577951308232;
 
     double signals_ = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Every point in one slab, and as many in each.
+// Every point lies in one slab, and each slab has equally many.
 #include "vcg_core/engine/axis_partition.h"
 
 #include <gtest/gtest.h>
@@ -24,24 +24,24 @@ std::vector<vcg::Point3f> random_points(int count) {
     return points;
 }
 
-TEST(AxisPartition, ShareASampleEvenly) {
+TEST(AxisPartition, SharesASampleEvenly) {
     const auto points = random_points(12000);
     AxisPartition slabs(points);
     for (const int count : {1, 2, 3, 8}) {
-        slabs.split(count);
+        slabs.cut(count);
         ASSERT_EQ(slabs.count(), count);
         std::vector<int> held(static_cast<std::size_t>(count), 0);
         for (const vcg::Point3f& p : points) ++held[static_cast<std::size_t>(slabs.of(p))];
         for (const int h : held) EXPECT_NEAR(h, 12000 / count, 1);
     }
-    slabs.split(4);
+    slabs.cut(4);
     EXPECT_EQ(slabs.of({0.9F, 0.1F, -5}), 0);
     EXPECT_EQ(slabs.of({0.1F, 0.9F, 5}), 3);
 }
 
-TEST(AxisPartition, HoldEveryPointOnce) {
+TEST(AxisPartition, HoldsEveryPointOnce) {
     AxisPartition slabs(random_points(100));
-    slabs.split(5);
+    slabs.cut(5);
     for (const vcg::Point3f& p : random_points(1000)) {
         int holders = 0;
         for (int i = 0; i < slabs.count(); ++i) holders += slabs.range(i).holds(p) ? 1 : 0;
@@ -49,10 +49,10 @@ TEST(AxisPartition, HoldEveryPointOnce) {
     }
 }
 
-TEST(AxisPartition, HoldEveryPointOfASampleWithoutExtent) {
+TEST(AxisPartition, HoldsEveryPointOfASampleWithoutExtent) {
     for (const auto& sample : {std::vector<vcg::Point3f>{}, std::vector<vcg::Point3f>(50, {1, 2, 3})}) {
         AxisPartition slabs(sample);
-        slabs.split(3);
+        slabs.cut(3);
         for (const vcg::Point3f& p : {vcg::Point3f(1, 2, 3), vcg::Point3f(0, 0, 0), vcg::Point3f(9, 9, 9)}) {
             EXPECT_GE(slabs.of(p), 0);
             EXPECT_LT(slabs.of(p), 3);

@@ -61,7 +61,7 @@ TEST(BasicStepBatch, AreTheSameBytesForAnyNumberOfThreads) {
     const StepRates rates{0.06F, 0.05F, 5};
     std::vector<vcg::Point3f> drawn(1000);
     for (int batch = 0; batch < 100; ++batch) {
-        // Many for so few vertices, so that displacements of several slabs meet at most vertices.
+        // Many signals for few vertices: most vertices are moved by steps of several slabs.
         const int count = 240 + static_cast<int>(random.below(760));
         for (int i = 0; i < count; ++i) drawn[static_cast<std::size_t>(i)] = target.sample(random);
         const auto v = static_cast<VertexId>(random.below(900));
@@ -70,7 +70,7 @@ TEST(BasicStepBatch, AreTheSameBytesForAnyNumberOfThreads) {
             ASSERT_EQ(static_cast<int>(run->results.size()), count);
             if (!run->network.can_split(v, 0, 4)) continue;
             run->search.add(run->network.split(v, 0, 4, run->network.position(v)));
-            run->search.keep_up();
+            run->search.rebuild_if_outgrown();
         }
         expect_same(alone, two);
         expect_same(alone, five);

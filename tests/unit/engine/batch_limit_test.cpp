@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Few vertices that win most signals: scanners put all they did not hit into one point, for one.
+// Clouds in which few vertices win most signals: some scanners write all missed rays as one point.
 #include "vcg_core/engine/batch_limit.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Cloud crowded_sphere(double radius) {
     return cloud;
 }
 
-TEST(BatchLimit, ManySignalsAtOnePlaceDoNotThrowVerticesOut) {
+TEST(BatchLimit, KeepsVerticesInPlaceWhereManySignalsCrowd) {
     for (const auto& [radius, counter] : {std::pair(0.0, kNormalCounter), std::pair(0.01, kSignalCounter)}) {
         SCOPED_TRACE(testing::Message() << "radius " << radius << ", counter " << counter);
         Settings settings;
@@ -40,42 +40,42 @@ TEST(BatchLimit, ManySignalsAtOnePlaceDoNotThrowVerticesOut) {
     }
 }
 
-void take_batch(BatchLimit& crowding, int count, int vertices, int wins) {
+void take_batch(BatchLimit& limit, int count, int vertices, int wins) {
     for (VertexId v = 0; v < vertices; ++v)
-        for (int i = 1; i < wins; ++i) crowding.repeated(v);
-    crowding.end_batch(count);
+        for (int i = 1; i < wins; ++i) limit.repeated(v);
+    limit.end_batch(count);
 }
 
 TEST(BatchLimit, HalvesUntilHardlyAnyVertexWinsOften) {
-    BatchLimit crowding;
-    const int unlimited = crowding.limit();
-    take_batch(crowding, 400, 100, 2);
-    EXPECT_EQ(crowding.limit(), unlimited);
-    take_batch(crowding, 400, 1, 8);
-    EXPECT_EQ(crowding.limit(), unlimited);
-    take_batch(crowding, 400, 1, 9);
-    EXPECT_EQ(crowding.limit(), 200);
-    take_batch(crowding, 200, 7, 3);
-    EXPECT_EQ(crowding.limit(), 100);
-    take_batch(crowding, 10, 3, 3);
-    EXPECT_EQ(crowding.limit(), 5);
-    take_batch(crowding, 1, 0, 0);
-    EXPECT_EQ(crowding.limit(), 5);
+    BatchLimit limit;
+    const int unlimited = limit.limit();
+    take_batch(limit, 400, 100, 2);
+    EXPECT_EQ(limit.limit(), unlimited);
+    take_batch(limit, 400, 1, 8);
+    EXPECT_EQ(limit.limit(), unlimited);
+    take_batch(limit, 400, 1, 9);
+    EXPECT_EQ(limit.limit(), 200);
+    take_batch(limit, 200, 7, 3);
+    EXPECT_EQ(limit.limit(), 100);
+    take_batch(limit, 10, 3, 3);
+    EXPECT_EQ(limit.limit(), 5);
+    take_batch(limit, 1, 0, 0);
+    EXPECT_EQ(limit.limit(), 5);
 }
 
 TEST(BatchLimit, GrowsAgainWhenTheWinsHaveSpread) {
-    BatchLimit crowding;
-    const int unlimited = crowding.limit();
-    take_batch(crowding, 400, 1, 100);
-    for (int batch = 0; batch < 63; ++batch) take_batch(crowding, 200, 5, 2);
-    EXPECT_EQ(crowding.limit(), 200);
-    take_batch(crowding, 200, 5, 2);
-    EXPECT_EQ(crowding.limit(), 400);
-    for (int batch = 0; batch < 64 * 40; ++batch) take_batch(crowding, 400, 5, 2);
-    EXPECT_EQ(crowding.limit(), unlimited);
+    BatchLimit limit;
+    const int unlimited = limit.limit();
+    take_batch(limit, 400, 1, 100);
+    for (int batch = 0; batch < 63; ++batch) take_batch(limit, 200, 5, 2);
+    EXPECT_EQ(limit.limit(), 200);
+    take_batch(limit, 200, 5, 2);
+    EXPECT_EQ(limit.limit(), 400);
+    for (int batch = 0; batch < 64 * 40; ++batch) take_batch(limit, 400, 5, 2);
+    EXPECT_EQ(limit.limit(), unlimited);
 }
 
-/// What happens in the learner: most signals at one vertex make its batches short.
+/// Most signals at one vertex shorten the batches of the learner.
 TEST(BatchLimit, ShortensTheLearnersBatches) {
     for (const bool crowded : {false, true}) {
         LearnerOptions options;

@@ -49,7 +49,7 @@ bool has_star_of_three(const Network& network, VertexId w) {
     return false;
 }
 
-/// Lane by lane: the winner, by what it and its ring move, and its normal before and after.
+/// Per lane: the normal of the winner before and after, and the displacements of the winner and its ring.
 struct Steps {
     EightVectors normal;
     EightVectors normal_after;
@@ -57,18 +57,17 @@ struct Steps {
 };
 
 void take(const Network& network, const std::vector<VertexId>& winners,
-          const std::vector<vcg::Point3f>& signals, const StepRates& rates, EightSteps& patches,
-          Steps& steps) {
+          const std::vector<vcg::Point3f>& signals, const StepRates& rates, EightSteps& eight, Steps& steps) {
     vcg::Point3f towards[EightSteps::kLanes];
     std::copy(signals.begin(), signals.end(), towards);
-    patches.gather(network, winners.data(), static_cast<int>(winners.size()));
-    patches.normals(steps.normal);
-    patches.move_winners(towards, rates.learning_rate);
-    patches.smooth(rates.smoothing_steps, rates.smoothing_rate);
-    patches.normals(steps.normal_after);
+    eight.gather(network, winners.data(), static_cast<int>(winners.size()));
+    eight.normals(steps.normal);
+    eight.move_winners(towards, rates.learning_rate);
+    eight.smooth(rates.smoothing_steps, rates.smoothing_rate);
+    eight.normals(steps.normal_after);
     Four* to[EightSteps::kLanes];
     for (int lane = 0; lane < EightSteps::kLanes; ++lane) to[lane] = steps.moved[lane];
-    patches.displacements(to);
+    eight.displacements(to);
 }
 
 vcg::Point3d lane_of(const EightVectors& v, int lane) {
@@ -77,7 +76,7 @@ vcg::Point3d lane_of(const EightVectors& v, int lane) {
 
 vcg::Point3d point_of(const Four& v) { return vcg::Point3d::Construct(vcg::Point3f(v[0], v[1], v[2])); }
 
-/// Winners of one valence, up to eight at a time: from \p first on, wherever they are in the mesh.
+/// Up to \p count vertices with the valence of \p first, from all over the mesh.
 std::vector<VertexId> winners_like(const Network& network, VertexId first, std::size_t count) {
     std::vector<VertexId> result;
     for (VertexId i = 0; i < network.slot_count() && result.size() < count; ++i) {
@@ -103,7 +102,7 @@ void expect_step(const BasicStep& expected, const Steps& steps, int lane, const 
 
 TEST(EightSteps, AreBasicSteps) {
     Random random(2);
-    EightSteps patches;  // reused, as the learner does
+    EightSteps eight;  // reused, as in a run
     Steps steps;
     for (const Case& c : cases()) {
         const Network network = referee::network_of(c.shape);
@@ -118,8 +117,8 @@ TEST(EightSteps, AreBasicSteps) {
                 for (const VertexId w : winners)
                     signals.push_back(network.position(w) +
                                       vcg::Point3f::Construct(shapes::in_ball(random) * 0.05));
-                take(network, winners, signals, rates, patches, steps);
-                ASSERT_EQ(patches.valence(), network.ring(first).valence);
+                take(network, winners, signals, rates, eight, steps);
+                ASSERT_EQ(eight.valence(), network.ring(first).valence);
                 for (std::size_t lane = 0; lane < winners.size(); ++lane)
                     expect_step(basic_step(network, before, winners[lane],
                                            vcg::Point3d::Construct(signals[lane]), rates),
@@ -129,19 +128,19 @@ TEST(EightSteps, AreBasicSteps) {
     }
 }
 
-TEST(EightSteps, LanesDoNotKnowOfEachOther) {
+TEST(EightSteps, LanesAreIndependent) {
     const Network network = referee::network_of(cases()[1].shape);
     const auto winners = winners_like(network, 5, EightSteps::kLanes);
     std::vector<vcg::Point3f> signals;
     Random random(8);
     for (const VertexId w : winners)
         signals.push_back(network.position(w) + vcg::Point3f::Construct(shapes::in_ball(random) * 0.05));
-    EightSteps patches;
+    EightSteps eight;
     Steps together;
     Steps alone;
-    take(network, winners, signals, {0.06F, 0.05F, 5}, patches, together);
+    take(network, winners, signals, {0.06F, 0.05F, 5}, eight, together);
     for (std::size_t lane = 0; lane < winners.size(); ++lane) {
-        take(network, {winners[lane]}, {signals[lane]}, {0.06F, 0.05F, 5}, patches, alone);
+        take(network, {winners[lane]}, {signals[lane]}, {0.06F, 0.05F, 5}, eight, alone);
         for (int i = 0; i <= network.ring(winners[lane]).valence; ++i)
             for (int k = 0; k < 4; ++k) EXPECT_EQ(together.moved[lane][i][k], alone.moved[0][i][k]);
     }
@@ -154,33 +153,33 @@ TEST(EightSteps, SmoothStarsOfThree) {
     ASSERT_TRUE(has_star_of_three(network, 0));
     const Positions before = reference::positions_of(network);
     const StepRates rates{0.06F, 0.05F, 5};
-    EightSteps patches;
+    EightSteps eight;
     Steps steps;
-    take(network, {0}, {{0.3F, 0.1F, 0.2F}}, rates, patches, steps);
+    take(network, {0}, {{0.3F, 0.1F, 0.2F}}, rates, eight, steps);
     const auto s = vcg::Point3d::Construct(vcg::Point3f(0.3F, 0.1F, 0.2F));
     expect_step(basic_step(network, before, 0, s, rates), steps, 0, network, before);
 }
 
 TEST(EightSteps, LeaveBoundaryVerticesWhereTheyAre) {
     const Network network = referee::network_of(cases()[2].shape);
-    EightSteps patches;
+    EightSteps eight;
     Steps steps;
     for (VertexId w = 0; w < network.slot_count(); ++w) {
-        take(network, {w}, {{0.1F, 0.1F, 0.1F}}, {0.5F, 0.5F, 10}, patches, steps);
-        for (int i = 0; i < patches.valence(); ++i)
+        take(network, {w}, {{0.1F, 0.1F, 0.1F}}, {0.5F, 0.5F, 10}, eight, steps);
+        for (int i = 0; i < eight.valence(); ++i)
             if (network.ring(network.ring(w)[i]).open != 0) {
                 EXPECT_EQ(point_of(steps.moved[0][1 + i]).Norm(), 0);
             }
     }
 }
 
-TEST(EightSteps, DoNotLeaveAPlane) {
+TEST(EightSteps, StayInAPlane) {
     const Network network = referee::network_of(shapes::grid(8, 8));
-    EightSteps patches;
+    EightSteps eight;
     Steps steps;
     for (VertexId w = 0; w < network.slot_count(); ++w) {
-        take(network, {w}, {{0.03F, -0.1F, 0}}, {0.3F, 0.3F, 20}, patches, steps);
-        for (int i = 0; i <= patches.valence(); ++i) EXPECT_EQ(steps.moved[0][i][2], 0);
+        take(network, {w}, {{0.03F, -0.1F, 0}}, {0.3F, 0.3F, 20}, eight, steps);
+        for (int i = 0; i <= eight.valence(); ++i) EXPECT_EQ(steps.moved[0][i][2], 0);
     }
 }
 
@@ -190,16 +189,16 @@ TEST(EightSteps, StayFiniteWhereTheMeshHasNoArea) {
         for (const double scale : {0.0, 1e-30, 1e-20, 1e-12, 1e-6}) {
             for (vcg::Point3d& p : shape.positions) p = vcg::Point3d(p[0], p[1] * scale, p[2] * scale) * 0.3;
             Network network = referee::network_of(shape);
-            EightSteps patches;
+            EightSteps eight;
             Steps steps;
             for (VertexId w = 0; w < network.slot_count(); ++w) {
-                take(network, {w}, {{0.1F, 0, 0}}, {0.06F, 0.05F, 5}, patches, steps);
+                take(network, {w}, {{0.1F, 0, 0}}, {0.06F, 0.05F, 5}, eight, steps);
                 EXPECT_LE(lane_of(steps.normal, 0).Norm(), 1.0001);
                 const auto move = [&](VertexId v, const Four& by) {
                     network.set_position(v, network.position(v) + vcg::Point3f(by[0], by[1], by[2]));
                 };
                 move(w, steps.moved[0][0]);
-                for (int i = 0; i < patches.valence(); ++i) move(network.ring(w)[i], steps.moved[0][1 + i]);
+                for (int i = 0; i < eight.valence(); ++i) move(network.ring(w)[i], steps.moved[0][1 + i]);
             }
             EXPECT_EQ(network.validate(), "");
         }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The winner search against a linear search, while vertices move, come and go.
+// The winner search against a linear search, while vertices move, are added and are removed.
 #include "vcg_core/engine/winner_search.h"
 
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 namespace neuralmesh {
 namespace {
 
-/// The nearest vertex, the smaller id among equally near ones.
-VertexId nearest_by_hand(const Network& network, const vcg::Point3f& s) {
+/// Linear search: the nearest vertex, the smaller id among equally near ones.
+VertexId nearest_by_linear_search(const Network& network, const vcg::Point3f& s) {
     VertexId best = -1;
     float least = std::numeric_limits<float>::infinity();
     for (VertexId v = 0; v < network.slot_count(); ++v) {
@@ -30,7 +30,7 @@ VertexId nearest_by_hand(const Network& network, const vcg::Point3f& s) {
     return best;
 }
 
-/// A network inside the core's frame: the shape scaled to a bounding-box diagonal of about 1.
+/// The shape as a network inside the core's frame, with a bounding-box diagonal of about 1.
 Network in_frame(shapes::Shape shape, double scale = 0.28) {
     for (vcg::Point3d& p : shape.positions) p *= scale;
     return referee::network_of(shape);
@@ -49,7 +49,7 @@ VertexId random_vertex(const Network& network, Random& random) {
     }
 }
 
-/// Signals of all kinds: near the mesh, on a vertex, half way between two, anywhere in and out of the frame.
+/// On a vertex, midway between two vertices, anywhere in or out of the frame, or near the mesh.
 vcg::Point3f random_signal(const Network& network, Random& random) {
     const vcg::Point3f p = network.position(random_vertex(network, random));
     switch (random.below(6)) {
@@ -64,7 +64,7 @@ vcg::Point3f random_signal(const Network& network, Random& random) {
 void expect_exact(const Network& network, const WinnerSearch& search, Random& random, int signals) {
     for (int i = 0; i < signals; ++i) {
         const vcg::Point3f s = random_signal(network, random);
-        ASSERT_EQ(search.winner(s), nearest_by_hand(network, s))
+        ASSERT_EQ(search.winner(s), nearest_by_linear_search(network, s))
             << "signal " << s[0] << ' ' << s[1] << ' ' << s[2];
     }
 }
@@ -77,7 +77,7 @@ void split_somewhere(Network& network, WinnerSearch& search, Random& random) {
     if (!network.can_split(v, first, count)) return;
     search.add(
         network.split(v, first, count, (network.position(v) + network.position(network.ring(v)[first])) / 2));
-    search.keep_up();
+    search.rebuild_if_outgrown();
 }
 
 void collapse_somewhere(Network& network, WinnerSearch& search, Random& random) {
@@ -86,7 +86,7 @@ void collapse_somewhere(Network& network, WinnerSearch& search, Random& random) 
     if (!network.can_collapse(v, w)) return;
     search.remove(v);
     network.collapse(v, w);
-    search.keep_up();
+    search.rebuild_if_outgrown();
 }
 
 TEST(WinnerSearch, IsLinearSearchOnAMeshAtRest) {
@@ -99,7 +99,7 @@ TEST(WinnerSearch, IsLinearSearchOnAMeshAtRest) {
     }
 }
 
-TEST(WinnerSearch, IsLinearSearchWhileVerticesMoveComeAndGo) {
+TEST(WinnerSearch, IsLinearSearchWhileVerticesMoveAndChange) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
         Random random(seed);
         Network network = in_frame(shapes::icosphere(3));
@@ -118,7 +118,7 @@ TEST(WinnerSearch, IsLinearSearchWhileVerticesMoveComeAndGo) {
     }
 }
 
-TEST(WinnerSearch, IsLinearSearchOverManyLayouts) {
+TEST(WinnerSearch, IsLinearSearchOverManyRebuilds) {
     Random random(4);
     Network network = in_frame(shapes::tetrahedron(), 0.1);
     WinnerSearch search(network);
@@ -143,7 +143,7 @@ TEST(WinnerSearch, ResolvesTiesToTheSmallerId) {
     Random random(5);
     Network network = in_frame(shapes::torus_grid(20, 10));
     WinnerSearch search(network);
-    // Few places on a lattice, many vertices in each, in changing order of arrival.
+    // Few places on a lattice, with many vertices in each, in changing order in their lists.
     for (int step = 0; step < 4000; ++step) {
         const auto coordinate = [&] { return (static_cast<float>(random.below(3)) - 1) / 8; };
         const float x = coordinate();
@@ -152,7 +152,7 @@ TEST(WinnerSearch, ResolvesTiesToTheSmallerId) {
         if (step % 4 == 0) expect_exact(network, search, random, 1);
         const float u = coordinate() / 2;
         const vcg::Point3f between(u, coordinate() / 2, coordinate() / 2);
-        ASSERT_EQ(search.winner(between), nearest_by_hand(network, between));
+        ASSERT_EQ(search.winner(between), nearest_by_linear_search(network, between));
     }
     for (VertexId v = network.slot_count(); v-- > 0;) search.move(v, {0.1F, 0.1F, 0.1F});
     EXPECT_EQ(search.winner({0.4F, -0.3F, 0}), 0);
@@ -175,14 +175,14 @@ TEST(WinnerSearch, IsExactWhereAllVerticesCrowdTogetherButOne) {
         for (int i = 0; i < 2000; ++i) {
             search.move(random_vertex(network, random), crowd + random_point(random, size));
             const vcg::Point3f s = crowd + random_point(random, 2 * size);
-            ASSERT_EQ(search.winner(s), nearest_by_hand(network, s));
+            ASSERT_EQ(search.winner(s), nearest_by_linear_search(network, s));
         }
     }
 }
 
 TEST(WinnerSearch, IsExactOnTheFinestGridAndAcrossCellBorders) {
-    // Edges below the finest cell, strewn over the frame: rounding of a cell border is largest against a
-    // cell.
+    // Edges shorter than the finest cell, all over the frame: there the rounding of cell borders is largest
+    // relative to a cell.
     Random random(7);
     Network network = in_frame(shapes::icosphere(4), 1e-7);
     const auto shift = [&] { return static_cast<float>(random.below(5)) * 0.2F - 0.4F; };
@@ -191,12 +191,12 @@ TEST(WinnerSearch, IsExactOnTheFinestGridAndAcrossCellBorders) {
         const vcg::Point3f place(shift(), shift(), shift());
         search.move(random_vertex(network, random), place + random_point(random, 2e-5F));
         const vcg::Point3f s = place + random_point(random, 2e-5F);
-        ASSERT_EQ(search.winner(s), nearest_by_hand(network, s)) << "at step " << i;
+        ASSERT_EQ(search.winner(s), nearest_by_linear_search(network, s)) << "at step " << i;
     }
 }
 
-// A vertex just within half a cell may lie outside the eight cells looked at, as their borders are rounded;
-// then one on the other side, hardly further away, must not win.
+// A vertex just within half a cell of the signal may lie outside the eight cells searched first, as their
+// borders are rounded. Then one on the other side, hardly further away, must not win.
 TEST(WinnerSearch, IsExactBesideRoundedCellBorders) {
     for (const double scale : {1e-7, 2e-5}) {
         SCOPED_TRACE(scale);
@@ -211,7 +211,7 @@ TEST(WinnerSearch, IsExactBesideRoundedCellBorders) {
             const float near = 0.47F + 0.0289F * random.unit();
             search.move(0, s + axis * near);
             search.move(1, s - axis * (near + (0.4989F - near) * random.unit()));
-            ASSERT_EQ(search.winner(s), nearest_by_hand(network, s)) << "at step " << i;
+            ASSERT_EQ(search.winner(s), nearest_by_linear_search(network, s)) << "at step " << i;
         }
     }
 }
@@ -223,11 +223,11 @@ TEST(WinnerSearch, IsExactForVerticesAndSignalsOutsideTheFrame) {
     for (int i = 0; i < 3000; ++i) {
         search.move(random_vertex(network, random), random_point(random, i % 2 == 0 ? 20.0F : 0.5F));
         const vcg::Point3f s = random_point(random, i % 3 == 0 ? 30.0F : 6.0F);
-        ASSERT_EQ(search.winner(s), nearest_by_hand(network, s)) << "at step " << i;
+        ASSERT_EQ(search.winner(s), nearest_by_linear_search(network, s)) << "at step " << i;
     }
 }
 
-TEST(WinnerSearch, SurvivesMovesThroughEverMoreCells) {
+TEST(WinnerSearch, IsExactAfterMovesThroughManyCells) {
     Random random(9);
     Network network = in_frame(shapes::tetrahedron(), 0.001);
     WinnerSearch search(network);
@@ -245,18 +245,18 @@ TEST(WinnerSearch, IsLinearSearchFarFromTheMesh) {
             const VertexId v = random_vertex(network, random);
             search.move(v, network.position(v) + random_point(random, 0.01F));
             const vcg::Point3f far = random_point(random, step % 2 == 0 ? 0.5F : 3.0F);
-            ASSERT_EQ(search.winner(far), nearest_by_hand(network, far)) << "at step " << step;
+            ASSERT_EQ(search.winner(far), nearest_by_linear_search(network, far)) << "at step " << step;
         }
     }
 }
 
-TEST(WinnerSearch, IsLinearSearchOnBothSidesOfADivision) {
+TEST(WinnerSearch, IsLinearSearchWithADividedTable) {
     for (const int axis : {0, 1, 2})
         for (const float place : {-5.0F, 0.02F, std::numeric_limits<float>::infinity()}) {
             Network network = in_frame(shapes::torus_grid(24, 16));
             WinnerSearch search(network);
             Random random(6);
-            search.split_table(axis, place);
+            search.divide_table(axis, place);
             expect_exact(network, search, random, 200);
             for (int i = 0; i < 800; ++i) {
                 split_somewhere(network, search, random);
@@ -280,8 +280,8 @@ TEST(WinnerSearch, FollowsMovesThatItIsToldOfLater) {
             search.move(v, Four{p[0], p[1], p[2], 0}, cell_changes[v % 2]);
         }
         EXPECT_GT(cell_changes[0].size(), 20U);
-        search.follow(cell_changes[1]);
-        search.follow(cell_changes[0]);
+        search.apply(cell_changes[1]);
+        search.apply(cell_changes[0]);
         expect_exact(network, search, random, 60);
     }
 }

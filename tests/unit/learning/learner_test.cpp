@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The learner against the reference, step by step, and its promises over whole runs.
+// The learner against the reference, step by step, and properties of whole runs.
 #include "vcg_core/learning/learner.h"
 
 #include <gtest/gtest.h>
@@ -24,27 +24,24 @@ Network start_of(shapes::Shape shape, double scale) {
     return referee::network_of(shape);
 }
 
-/// Structure equal, positions within \p tolerance, wins equal, counters within a part in a hundred: delta is
-/// a difference of nearly equal normals, so that float leaves it few digits.
-void expect_alike(const Learner& learner, const reference::ReferenceLearner& expected, float tolerance) {
+/// Equal connectivity and wins, positions within \p tolerance, counters within 1 %: delta is a difference of
+/// nearly equal normals, of which float leaves few digits.
+void expect_same_state(const Learner& learner, const reference::ReferenceLearner& expected, float tolerance) {
     ASSERT_EQ(learner.network().faces(), expected.network().faces());
     ASSERT_EQ(learner.network().slot_count(), expected.network().slot_count());
-    for (VertexId v = 0; v < learner.network().slot_count(); ++v) {
-        if (!learner.network().alive(v)) continue;
-        const auto i = static_cast<std::size_t>(v);
+    for (const VertexId v : learner.network().vertices()) {
         ASSERT_LT((learner.network().position(v) - expected.network().position(v)).Norm(), tolerance) << v;
-        ASSERT_EQ(learner.utility_counters().wins(v), expected.wins[i]) << v;
-        ASSERT_NEAR(learner.utility_counters().value(v), expected.utility[i],
-                    0.01 * expected.utility[i] + 1e-3)
+        ASSERT_EQ(learner.utility_counters().wins(v), expected.wins[v]) << v;
+        ASSERT_NEAR(learner.utility_counters().value(v), expected.utility[v],
+                    0.01 * expected.utility[v] + 1e-3)
             << v;
-        ASSERT_NEAR(static_cast<double>(learner.feature_counters().value(v)), expected.feature[i],
-                    0.01 * expected.feature[i] + 1e-3)
+        ASSERT_NEAR(static_cast<double>(learner.feature_counters().value(v)), expected.feature[v],
+                    0.01 * expected.feature[v] + 1e-3)
             << v;
     }
 }
 
-/// Runs are short, and short of the moment when a crumpled mesh (its star nearly without area) makes float
-/// and double part: from there both learn, but not the same mesh.
+/// Runs are short: once a crumpled star has nearly no area, float and double learn different meshes.
 void compare_runs(const shapes::Cloud& cloud, const Network& start, LearnerOptions options, int signals,
                   int batch = 1) {
     options.grow_to = 100000;
@@ -76,7 +73,7 @@ void compare_runs(const shapes::Cloud& cloud, const Network& start, LearnerOptio
             last_collapse = i;
             at_collapse = learner.network().vertex_count();
         }
-        if (i % 100 < batch) expect_alike(learner, expected, 2e-5F);
+        if (i % 100 < batch) expect_same_state(learner, expected, 2e-5F);
         if (testing::Test::HasFatalFailure()) FAIL() << "at signal " << i;
     }
     EXPECT_EQ(learner.signals(), signals);
@@ -97,7 +94,7 @@ TEST(Learner, IsTheReferenceOnATorusWithTheSignalCounter) {
     compare_runs(shapes::torus_cloud(2000, 0.02), start_of(shapes::torus_grid(10, 6), 0.3), options, 4000);
 }
 
-TEST(Learner, IsTheReferenceByTheLetterOfThePaper) {
+TEST(Learner, IsTheReferenceToTheLetterOfThePaper) {
     LearnerOptions options;
     options.min_wins_per_split = 0;
     options.signals_per_split = 30;
@@ -199,7 +196,7 @@ TEST(Learner, ReachesItsTargetOnAnOpenMeshToo) {
     }
 }
 
-/// Notes the fractions it is told of.
+/// Checks the fractions reported to it.
 class Fractions : public Progress {
 public:
     bool operator()(double fraction, const char* text) override {
@@ -232,7 +229,7 @@ TEST(Learner, ReportsHowMuchOfTheRunIsDone) {
     EXPECT_GT(progress.last, 0.98);
 }
 
-TEST(Learner, ObservesNothingOfAStartThatIsToGrow) {
+TEST(Learner, DoesNotObserveTheStartMesh) {
     const TargetSpace target = target_of(shapes::box_cloud(2000));
     LearnerOptions options;
     options.observe_creases = true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The lazy counters against eager ones that multiply every counter after every signal.
+// The counters with a common scale against eager ones, which are multiplied one by one after every signal.
 #include "vcg_core/learning/utility_counter.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace neuralmesh {
 namespace {
 
-/// A number with an exponent of its own, so that eager decay does not run out of range.
+/// A number with a separate exponent, so that eager decay does not leave its range.
 struct Wide {
     long double mantissa = 0;
     long long exponent = 0;
@@ -47,7 +47,7 @@ struct Wide {
     }
 };
 
-/// Section 3 of the paper to the letter, over all counters at every win.
+/// Section 3 of the paper to the letter: decays all counters at every win.
 struct EagerCounters {
     double decay;
     int maturity;
@@ -82,8 +82,8 @@ struct EagerCounters {
     }
 };
 
-/// Relative error after some hundred updates: mantissa and exponent share 52 bits, so that it grows with the
-/// exponent.
+/// Relative error after some hundred updates. It grows with the exponent, which shares 52 bits with the
+/// mantissa.
 double tolerance(double decay, int wins) {
     const double exponent = wins * -std::log2(decay) + 2;
     return 200 * exponent * 0x1p-52;
@@ -175,7 +175,7 @@ TEST(UtilityCounters, TakeTheSmallerIdAmongEquals) {
     EXPECT_EQ(counters.highest(), 99);
 }
 
-TEST(UtilityCounters, PassOverLastsUntilTheNextWin) {
+TEST(UtilityCounters, DeferLastsUntilTheNextWin) {
     UtilityCounters counters(1, 0);
     counters.resize(10);
     counters.win(3, 5);

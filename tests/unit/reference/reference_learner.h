@@ -23,7 +23,7 @@ inline Positions positions_of(const Network& network) {
     return result;
 }
 
-/// Keeps a network of its own, whose connectivity Network's operations change; decides everything itself.
+/// Uses Network's operations to change connectivity, and its own code to decide on them.
 class ReferenceLearner {
 public:
     ReferenceLearner(Network start, const LearnerOptions& options)
@@ -63,84 +63,84 @@ public:
             deltas_.size() > window ? deltas_.end() - options_.normalization_window : deltas_.begin();
         const double mean =
             std::accumulate(from, deltas_.end(), 0.0) / static_cast<double>(deltas_.end() - from);
-        const double n_delta = mean > 0 ? deltas_.back() / mean : 1;  // eq 3
-        const auto i = static_cast<std::size_t>(w);
-        utility[i] += options_.utility_increment == UtilityIncrement::n_delta ? n_delta : 1;  // eq 4
+        const double n_delta = mean > 0 ? deltas_.back() / mean : 1;                          // eq 3
+        utility[w] += options_.utility_increment == UtilityIncrement::n_delta ? n_delta : 1;  // eq 4
         for (double& counter : utility) counter *= options_.counter_decay;
-        feature[i] = options_.feature_decay * feature[i] + (1 - options_.feature_decay) * n_delta;  // eq 6
-        ++wins[i];
-        won_since_collapse_[i] = true;
+        feature[w] = options_.feature_decay * feature[w] + (1 - options_.feature_decay) * n_delta;  // eq 6
+        ++wins[w];
+        won_since_collapse_[w] = 1;
     }
 
     bool vertex_split() {
-        std::vector<bool> tried(utility.size(), false);
+        PerVertex<char> tried(network_.slot_count(), 0);
         for (;;) {
             VertexId best = -1;
-            for (VertexId v = 0; v < network_.slot_count(); ++v) {
-                const auto i = static_cast<std::size_t>(v);
-                if (!network_.alive(v) || tried[i] || wins[i] < options_.min_wins_per_split || wins[i] == 0)
-                    continue;
-                if (best < 0 || utility[i] > utility[static_cast<std::size_t>(best)]) best = v;
+            for (const VertexId v : network_.vertices()) {
+                if (tried[v] != 0 || wins[v] < options_.min_wins_per_split || wins[v] == 0) continue;
+                if (best < 0 || utility[v] > utility[best]) best = v;
             }
             if (best < 0) return false;
             if (split(best)) return true;
-            tried[static_cast<std::size_t>(best)] = true;
+            tried[best] = 1;
         }
     }
 
     int half_edge_collapse() {
         int removed = 0;
-        for (VertexId v = 0; v < network_.slot_count(); ++v) {
-            const auto i = static_cast<std::size_t>(v);
-            if (!network_.alive(v) || won_since_collapse_[i]) continue;
+        for (const VertexId v : network_.vertices()) {
+            if (won_since_collapse_[v] != 0) continue;
             const VertexId kept = cheapest_collapse(v);
             if (kept < 0) continue;
             network_.collapse(v, kept);
-            utility[i] = 0;
-            wins[i] = 0;
+            utility[v] = 0;
+            wins[v] = 0;
             if (options_.min_wins_per_split != 0) regularise(kept);
             ++removed;
         }
-        won_since_collapse_.assign(won_since_collapse_.size(), false);
+        won_since_collapse_.assign(network_.slot_count(), 0);
         return removed;
     }
 
     const Network& network() const { return network_; }
 
-    std::vector<double> utility;
-    std::vector<double> feature;
-    std::vector<int> wins;
+    PerVertex<double> utility;
+    PerVertex<double> feature;
+    PerVertex<int> wins;
 
 private:
     void grow() {
-        const auto n = static_cast<std::size_t>(network_.slot_count());
+        const int n = network_.slot_count();
         utility.resize(n, 0);
         feature.resize(n, 0);
         wins.resize(n, 0);
-        positions_.resize(network_.slot_count(), vcg::Point3d(0, 0, 0));
-        won_since_collapse_.resize(n, false);
+        positions_.resize(n, vcg::Point3d(0, 0, 0));
+        won_since_collapse_.resize(n, 0);
     }
 
+    /// F_v of eq 5.
     double area(VertexId v) const {
-        const Ring& ring = network_.ring(v);
         double l = 0;
-        for (int i = 0; i < ring.valence; ++i)
-            l += (positions_[ring[i]] - positions_[v]).Norm() / ring.valence;
+        for (const VertexId u : network_.ring(v))
+            l += (positions_[u] - positions_[v]).Norm() / network_.ring(v).valence;
         return l * l;
     }
 
-    bool split(VertexId v) {
-        const Ring ring = network_.ring(v);
-        const int k = ring.valence;
+    int longest_edge(VertexId v) const {
+        const Ring& ring = network_.ring(v);
+        const auto length = [&](int i) { return (positions_[ring[i]] - positions_[v]).Norm(); };
         int longest = 0;
-        for (int i = 1; i < k; ++i)
-            if ((positions_[ring[i]] - positions_[v]).Norm() >
-                (positions_[ring[longest]] - positions_[v]).Norm())
-                longest = i;
-        // Every way to give half of the star away with e in the middle; the most regular valences win.
+        for (int i = 1; i < ring.valence; ++i)
+            if (length(i) > length(longest)) longest = i;
+        return longest;
+    }
+
+    /// Of all halves of the star around its longest edge, the one with the most regular valences: its first
+    /// position in the ring and the number of its edges, 0 if there is none.
+    std::pair<int, int> half_star(VertexId v, int longest) const {
+        const Ring& ring = network_.ring(v);
+        const int k = ring.valence;
         const auto square = [](int x) { return (x - 6) * (x - 6); };
-        int best_first = -1;
-        int best_count = 0;
+        std::pair<int, int> best(-1, 0);
         int least = std::numeric_limits<int>::max();
         for (int back = 1; back <= k / 2; ++back)
             for (int ahead = std::max(1, back - 1); ahead <= std::min(k / 2, back + 1); ++ahead) {
@@ -153,23 +153,27 @@ private:
                                  square(network_.ring(ring[(longest + ahead) % k]).valence + 1);
                 if (cost >= least) continue;
                 least = cost;
-                best_first = first;
-                best_count = edges + 1;
+                best = {first, edges + 1};
             }
-        if (best_first < 0) return false;
-        const VertexId ends[] = {ring[best_first], ring[(best_first + best_count - 1) % k]};
+        return best;
+    }
+
+    bool split(VertexId v) {
+        const Ring ring = network_.ring(v);
+        const int longest = longest_edge(v);
+        const auto [first, count] = half_star(v, longest);
+        if (count == 0) return false;
+        const VertexId ends[] = {ring[first], ring[(first + count - 1) % ring.valence]};
         const vcg::Point3d middle = (positions_[v] + positions_[ring[longest]]) / 2;
-        const VertexId u = network_.split(v, best_first, best_count, vcg::Point3f::Construct(middle));
+        const VertexId u = network_.split(v, first, count, vcg::Point3f::Construct(middle));
         grow();
         positions_[u] = middle;
-        const auto i = static_cast<std::size_t>(v);
-        const auto j = static_cast<std::size_t>(u);
-        const double whole = utility[i];  // shared as F_v to F_u (eq 5)
-        utility[i] = whole * area(v) / (area(v) + area(u));
-        utility[j] = whole - utility[i];
-        feature[j] = feature[i];
-        wins[i] = wins[j] = 0;
-        won_since_collapse_[j] = options_.min_wins_per_split != 0;
+        const double whole = utility[v];  // eq 5
+        utility[v] = whole * area(v) / (area(v) + area(u));
+        utility[u] = whole - utility[v];
+        feature[u] = feature[v];
+        wins[v] = wins[u] = 0;
+        won_since_collapse_[u] = options_.min_wins_per_split != 0;
         if (options_.min_wins_per_split != 0)
             for (const VertexId w : {v, u, ends[1], ends[0]}) regularise(w);
         return true;
@@ -197,7 +201,7 @@ private:
         return n.Normalize();
     }
 
-    /// Flips the edges at v that bring the squared distances of the valences from 6 down, where it is flat.
+    /// Flips edges at v where that lowers the sum of (valence - 6)^2 and the surface is flat.
     void regularise(VertexId v) {
         for (int i = 0; i < network_.ring(v).valence; ++i) {
             const VertexId w = network_.ring(v)[i];
@@ -224,7 +228,7 @@ private:
     Positions positions_;
     std::vector<double> deltas_;
     std::vector<BasicStep> steps_;  ///< of the last batch
-    std::vector<bool> won_since_collapse_;
+    PerVertex<char> won_since_collapse_;
 };
 
 }  // namespace neuralmesh::reference
