@@ -57,7 +57,7 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
 PerVertex<float> counters_of(const Learner& learner, const Network& network,
                              const PerVertex<VertexId>& source, const Settings& settings) {
     if (settings.feature_measure == kCreaseMeasure)
-        return PerVertex<float>(learner.crease_measure().values(learner.network(), network, source.vector()));
+        return learner.crease_measure().values(learner.network(), network, source);
     PerVertex<float> counters(network.slot_count());
     for (const VertexId v : network.vertices())
         counters[v] = learner.feature_counters().value(source.empty() ? v : source[v]);

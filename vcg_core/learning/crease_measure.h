@@ -6,54 +6,50 @@
 
 #include <vcg/space/point3.h>
 
-#include <vector>
-
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
 
-/// The feature statistic of a network that learns without changing its connectivity.
+/// Measures how creased the surface is at each vertex of a network that learns at fixed connectivity.
 ///
-/// The paper's idea, that many reconstructions say more than one (section 3.1), with two statistics in place
-/// of the normal counter: the mean position of every vertex over the moments observed, and the mean over the
-/// same moments of the spread of the face normals around it. From these, at the end:
-/// 1. the face normals of the mean mesh, evened by a few bilateral sweeps, whose width in angle is set by the
-///    median angle between adjacent faces, so by the noise;
-/// 2. for every vertex the two planes that best explain the faces of its two-ring, the angle theta between
-///    them, and the distance d of the vertex from the line where they meet, in mean lengths of its edges;
-/// 3. the strength  s = 3 (2 sin(theta / 2))^2 spread^(1/4)  and  f = s / (1 + max(s - 1, 1/8) (2 d)^2),
-///    which is 1 at half an edge from the line whatever s is, if it is above 1;
-/// 4. where another mesh is shown than was learned, the same from the planes of that: g. It is the sharper of
-///    the two on clean clouds, and the less certain under noise;
-/// 5. the value  sqrt(f^(3/4) g^(1/4)).
+/// Follows the paper's idea that many reconstructions tell more than one (section 3.1). Instead of eq 6's
+/// counter it averages two things over the observed moments: the position of each vertex, and the spread of
+/// the face normals around it. From these averages:
+/// 1. The face normals of the mean mesh are smoothed (FilteredFaces).
+/// 2. Two planes are fitted to the faces of each vertex's two-ring (TwoPlanes): theta is their angle, d the
+///    distance of the vertex from their line of intersection, in mean lengths of its edges.
+/// 3. The strength of the crease is s = 3 (2 sin(theta / 2))^2 spread^(1/4). With the distance it becomes
+///    f = s / (1 + max(s - 1, 1/8) (2 d)^2); if s is above 1, f is 1 at half an edge from the line.
+/// 4. If the fit changed the mesh, g is the same measure with the planes of the fitted mesh: sharper on clean
+///    data, less reliable under noise. Else g = f.
+/// 5. The value is sqrt(f^(3/4) g^(1/4)).
 ///
-/// Values are without dimension, from 0 to 3.5, and comparable between models as they are: dividing by their
-/// mean, as eq 7 does, makes them less so, because the mean depends on how much of the model is crease. 1 is
-/// a single threshold for all models and noise levels of tests/experiments/paper/features.py: "above 1" reads
-/// as "a crease passes within half an edge". A right-angled edge has about 2 on it, a plane or a smooth
-/// surface that the mesh resolves stays well below 1.
+/// Values are dimensionless, from 0 to 3.5. A value above 1 means that a crease passes within half an edge:
+/// this threshold serves all models and noise levels of tests/experiments/paper/features.py. A right-angled
+/// edge has about 2; planes, and smooth surfaces that the mesh resolves, stay well below 1. Dividing by the
+/// mean, as eq 7 does, would make models less comparable, as the mean depends on how much of a model is
+/// crease.
 ///
-/// Memory: 16 bytes per vertex; values() needs about 400 more per vertex while it runs.
+/// Memory: 16 bytes per vertex, and about 400 per vertex while values() runs.
 class CreaseMeasure {
 public:
-    /// Adds the present positions as one moment. All moments must have the same connectivity; to start on
-    /// another one, start a new object. O(vertices x valence); called once for as many signals as there are
-    /// vertices, it takes about a tenth of the time of those.
+    /// Adds the present positions as one moment. All moments must have the same connectivity.
+    /// O(vertices x valence), a tenth of the time of one signal per vertex.
     void observe(const Network& network);
     int moments() const { return moments_; }
 
-    /// The value of every slot of \p learned, the network observed; 0 for free slots. If no moment has been
-    /// observed, the present one is taken. Deterministic. O(vertices).
-    std::vector<float> values(const Network& learned) const;
-    /// The same for \p shown, which was made from \p learned by moving, flipping, and moving vertices
-    /// elsewhere: vertex v of it lies close to vertex origin[v] of \p learned. Distances are those of the
-    /// places and edges in \p shown. An empty \p origin: \p shown is \p learned, perhaps a moment later.
-    std::vector<float> values(const Network& learned, const Network& shown,
-                              const std::vector<VertexId>& origin) const;
+    /// The value of every slot of \p learned, the network observed; 0 for free slots. Without a moment, its
+    /// present positions count as one. O(vertices).
+    PerVertex<float> values(const Network& learned) const;
+    /// The values of \p shown, the network after the fit: its vertex v lies near the vertex source[v] of
+    /// \p learned. Distances are measured from the positions, and in the edges, of \p shown. An empty
+    /// \p source means that \p shown has the vertices and faces of \p learned.
+    PerVertex<float> values(const Network& learned, const Network& shown,
+                            const PerVertex<VertexId>& source) const;
 
 private:
-    std::vector<vcg::Point3f> position_sums_;
-    std::vector<float> spread_sums_;
+    PerVertex<vcg::Point3f> position_sums_;
+    PerVertex<float> spread_sums_;
     int moments_ = 0;
 };
 

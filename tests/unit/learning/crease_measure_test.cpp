@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The feature statistic on shapes whose creases are known.
+// The crease measure on shapes whose creases are known.
 #include "vcg_core/learning/crease_measure.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace neuralmesh {
 namespace {
 
-/// A network that has learned a cloud, with its feature values.
+/// A network that has learned a cloud, with its crease values.
 struct Learned {
     Learned(const shapes::Cloud& cloud, int vertices)
         : target(TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; })) {
@@ -28,32 +28,31 @@ struct Learned {
         Learner learner(target, options, referee::network_of(start));
         NoProgress progress;
         learner.run(100, progress);
-        CreaseMeasure statistic;
+        CreaseMeasure measure;
         Random random(7);
         for (int sweep = 0; sweep < 30; ++sweep) {
             for (int i = 0; i < vertices; ++i) learner.basic_step(target.sample(random));
-            if (sweep >= 6) statistic.observe(learner.network());
+            if (sweep >= 6) measure.observe(learner.network());
         }
         network = learner.network();
-        values = statistic.values(network);
+        values = measure.values(network);
     }
 
     double mean_edge() const {
         double sum = 0;
         int count = 0;
-        for (VertexId v = 0; v < network.slot_count(); ++v) {
-            if (!network.alive(v)) continue;
-            const Ring& ring = network.ring(v);
-            for (int i = 0; i < ring.valence; ++i, ++count)
-                sum += static_cast<double>((network.position(ring[i]) - network.position(v)).Norm());
-        }
+        for (const VertexId v : network.vertices())
+            for (const VertexId u : network.ring(v)) {
+                sum += static_cast<double>((network.position(u) - network.position(v)).Norm());
+                ++count;
+            }
         return sum / count;
     }
 
     TargetSpace target;
     LearnerOptions options;
     Network network;
-    std::vector<float> values;
+    PerVertex<float> values;
 };
 
 /// Distance of \p p from the nearest edge of the cube, whose edges have length 1 / sqrt(3) in the core's
@@ -69,15 +68,14 @@ struct Hits {
     int edges = 0, found = 0, faces = 0, wrong = 0;
 };
 
-/// Vertices within 0.4 edge lengths of a cube's edge are to be above 1, those beyond 1.2 below; between lies
-/// the transition.
+/// Counts vertices within 0.4 edge lengths of a cube's edge, which must be above 1, and beyond 1.2, which
+/// must be below. Between lies the transition.
 Hits hits_on_cube(const Learned& run, double half) {
     Hits hits;
     const double edge = run.mean_edge();
-    for (VertexId v = 0; v < run.network.slot_count(); ++v) {
-        if (!run.network.alive(v)) continue;
+    for (const VertexId v : run.network.vertices()) {
         const double d = distance_from_cube_edge(run.network.position(v), half) / edge;
-        const bool above = run.values[static_cast<std::size_t>(v)] > 1;
+        const bool above = run.values[v] > 1;
         if (d < 0.4) {
             ++hits.edges;
             hits.found += above;
@@ -117,29 +115,28 @@ TEST(CreaseMeasure, FindsNothingOnASphere) {
 
 TEST(CreaseMeasure, FindsNothingOnAPlane) {
     const Network network = referee::network_of(shapes::grid(12, 9));
-    CreaseMeasure statistic;
-    statistic.observe(network);
-    for (const float value : statistic.values(network)) EXPECT_LT(value, 1e-3F);
+    CreaseMeasure measure;
+    measure.observe(network);
+    for (const float value : measure.values(network)) EXPECT_LT(value, 1e-3F);
 }
 
 TEST(CreaseMeasure, IsIndifferentToScale) {
     const Learned run(shapes::box_cloud(20000), 500);
     Network large = run.network;
-    for (VertexId v = 0; v < large.slot_count(); ++v)
-        if (large.alive(v)) large.set_position(v, run.network.position(v) * 8);
+    for (const VertexId v : run.network.vertices()) large.set_position(v, run.network.position(v) * 8);
     CreaseMeasure of_small;
     CreaseMeasure of_large;
     of_small.observe(run.network);
     of_large.observe(large);
     EXPECT_EQ(of_small.moments(), 1);
-    const std::vector<float> a = of_small.values(run.network);
-    const std::vector<float> b = of_large.values(large);
+    const PerVertex<float> a = of_small.values(run.network);
+    const PerVertex<float> b = of_large.values(large);
     EXPECT_GT(*std::max_element(a.begin(), a.end()), 1.0F);
-    for (std::size_t v = 0; v < a.size(); ++v) EXPECT_NEAR(a[v], b[v], 1e-4F);
+    for (VertexId v = 0; v < a.size(); ++v) EXPECT_NEAR(a[v], b[v], 1e-4F);
 }
 
-/// Without a moment the present one counts; a shown vertex takes its planes from its origin, its place from
-/// itself.
+/// Without a moment, the present positions count as one. A shown vertex has the planes of its source, but its
+/// own distance from their line.
 TEST(CreaseMeasure, JudgesAShownVertexWhereItLies) {
     const Learned run(shapes::box_cloud(40000), 1500);
     const CreaseMeasure none;
@@ -148,10 +145,10 @@ TEST(CreaseMeasure, JudgesAShownVertexWhereItLies) {
     EXPECT_EQ(none.values(run.network), one.values(run.network));
 
     const double half = 0.5 / std::sqrt(3.0);
-    std::vector<VertexId> origin(static_cast<std::size_t>(run.network.slot_count()));
+    PerVertex<VertexId> source(run.network.slot_count());
     VertexId nearest = -1;
     for (VertexId v = 0; v < run.network.slot_count(); ++v) {
-        origin[static_cast<std::size_t>(v)] = v;
+        source[v] = v;
         const vcg::Point3f p = run.network.position(v);
         // In the middle of an edge along x.
         if (std::abs(p[0]) > 0.1F || p[1] < 0 || p[2] < 0) continue;
@@ -164,8 +161,8 @@ TEST(CreaseMeasure, JudgesAShownVertexWhereItLies) {
     const vcg::Point3f p = moved.position(nearest);
     const auto edge = static_cast<float>(run.mean_edge());
     moved.set_position(nearest, p - vcg::Point3f(0, edge, 0));
-    const float there = one.values(run.network)[static_cast<std::size_t>(nearest)];
-    const float aside = one.values(run.network, moved, origin)[static_cast<std::size_t>(nearest)];
+    const float there = one.values(run.network)[nearest];
+    const float aside = one.values(run.network, moved, source)[nearest];
     EXPECT_GT(there, 1.0F);
     EXPECT_LT(aside, 0.5F * there);
 }
