@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-# Static analysis of our sources; ends with 1 where there is a finding:
-#   tests/analyse.sh [FILE...]    files under vcg_core/, filter_neuralmesh/ and tests/; none: all of them
-# clang-tidy by .clang-tidy, as the preset "clang" compiles them (a plugin's once for every host), then cppcheck.
-# Needs what `./run.sh build` has fetched, and Debian's clang, clang-tidy and cppcheck; 10 to 50 seconds of processor time
-# for most files, more for the adapters.
+# Static analysis of our sources; ends with 1 if there is a finding:
+#   tests/analyse.sh [FILE...]    files in vcg_core/, filter_neuralmesh/ and tests/; default: all
+# Runs clang-tidy with the options of the preset "clang" (on a plugin's file once for each host), then cppcheck. Needs
+# `./run.sh build` before, and Debian's clang, clang-tidy and cppcheck. Most files take 10 to 50 seconds of processor
+# time, the adapters more.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 for tool in clang++ clang-tidy cppcheck; do
@@ -14,7 +14,7 @@ for tool in clang++ clang-tidy cppcheck; do
 done
 files=("$@")
 if [ $# = 0 ]; then
-    # Without bench/cgal/, which is compiled only where CGAL is.
+    # bench/cgal/ is left out: it is compiled only if CGAL is installed.
     mapfile -t files < <(
         find vcg_core filter_neuralmesh tests -name "*.cpp" -not -path "tests/bench/cgal/*" | sort)
 fi

@@ -2,16 +2,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-# The benchmarks of two commits, side by side:
+# Compares the benchmarks of two commits:
 #   tests/bench/compare.sh REV_A REV_B [FILTER]
-# builds both in build/compare/, runs the benchmarks whose names match the regular expression FILTER (default:
-# whole Basic Steps and growth) in turns, so that both see the same load, and prints ratios of processor time:
-# negative where B is faster. Needs Debian's libbenchmark-tools and what `./run.sh test` installs.
+# builds both in build/compare/ and runs the benchmarks whose names match the regular expression FILTER (default:
+# whole Basic Steps and growth). The two commits alternate, so that both meet the same load. Prints relative
+# differences of processor time, negative where B is faster. Needs `./run.sh test` before, and Debian's
+# libbenchmark-tools.
 set -euo pipefail
 [ $# -ge 2 ] || { sed -n '5,10s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 cd "$(git -C "$(dirname "$0")" rev-parse --show-toplevel)"
 compare=/usr/share/benchmark/compare.py
-python="$PWD/build/venv/bin/python"  # its scipy is compare.py's, too
+python="$PWD/build/venv/bin/python"  # compare.py needs its scipy
 [ -e "$compare" ] || { echo "$compare is missing: install libbenchmark-tools." >&2; exit 1; }
 [ -x "$python" ] || { echo "$python is missing: ./run.sh test makes it." >&2; exit 1; }
 filter="${3:-^(basic_step|growth)}"
@@ -19,7 +20,7 @@ turns="${TURNS:-5}"
 folder="$PWD/build/compare"
 mkdir -p "$folder"
 
-# Builds the benchmarks of a commit in a work tree of its own; says where the program is.
+# built REV: builds the benchmarks of a commit in a separate work tree; prints the path of the program.
 built() {
     local commit tree
     commit="$(git rev-parse --verify --quiet "$1^{commit}")" || { echo "There is no commit $1." >&2; exit 1; }
@@ -31,7 +32,7 @@ built() {
     echo "$tree/build/tests/bench_learning"
 }
 
-# One benchmark file out of the turns of each: the same names repeat, which compare.py takes for repetitions.
+# joined FILE...: one benchmark file from several; compare.py takes repeated names for repetitions.
 joined() {
     "$python" - "$@" <<'END'
 import json, sys

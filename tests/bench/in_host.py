@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Seconds in a host (pymeshlab): the neural mesh against what people use today, on the Stanford bunny's points.
+"""Seconds in a host (pymeshlab): the neural mesh and common methods, on the points of the Stanford bunny.
 
     in_host.py --plugin LIBRARY.so [--cgal build/tests/cgal_peers] [--turns 3] [--out FILE.json]
 
-prints the least of several turns of each, in processes of their own, one after the other: 10,000 vertices by every
-method with their ratios and errors (the sum of both RMS directions, in % of the diagonal); a preview of 1,000; and how
-much of a run with 100,000 vertices is spent outside the core, on copying layers (a million points) and on the host's
-callback.
+runs each method several times, in separate processes, one at a time, and prints the least time: 10,000 vertices by
+each method, with ratios and errors (the sum of both RMS directions, in % of the diagonal); a preview of 1,000
+vertices; and the share of a run with 100,000 vertices and a million points that is spent outside the core, on copying
+layers and on the host's callback.
 """
 
 import argparse
@@ -29,7 +29,7 @@ CGAL = ("advancing-front", "alpha-wrap")
 
 
 def bunny_clouds(folder):
-    """The vertices of the bunny that comes with Debian's glmark2-data, and a million points of its surface."""
+    """The vertices of the bunny in Debian's glmark2-data, and a million points of its surface."""
     vertices, faces = models.load_model("bunny")
     meshes = pymeshlab.MeshSet(verbose=False)
     meshes.add_mesh(pymeshlab.Mesh(vertices))
@@ -51,7 +51,7 @@ def fastest(method, cloud, folder, count, options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--plugin", required=True)
-    parser.add_argument("--cgal", help="the program cgal_peers, to time CGAL, too")
+    parser.add_argument("--cgal", help="the program cgal_peers; with it CGAL is timed as well")
     parser.add_argument("--turns", type=int, default=3)
     parser.add_argument("--out", type=Path)
     options = parser.parse_args()

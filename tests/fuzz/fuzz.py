@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Runs the fuzz targets of build/fuzz in turn, from the kept corpus, and says what they found.
+"""Runs the fuzz targets of build/fuzz in turn, starting from the kept corpus, and reports the findings.
 
     cmake --preset fuzz && cmake --build --preset fuzz --target fuzz_network fuzz_settings fuzz_cloud
     tests/fuzz/fuzz.py --minutes 60
 
-What reaches new code is kept in build/fuzz/inputs/TARGET from one run to the next, inputs that break a promise in
-build/fuzz/findings. Such an input, as a line of corpus/TARGET.txt, is a test from then on (--hex FILE prints it).
+Inputs that reach new code are kept in build/fuzz/inputs/TARGET for the next run, inputs that break a promise in
+build/fuzz/findings. Added to corpus/TARGET.txt as a line (--hex FILE prints it), such an input becomes a test.
 """
 
 import argparse
@@ -28,7 +28,7 @@ MINUTES_SHORTEST_TURN = 0.2
 
 
 def unpack(target):
-    """The kept inputs as the files that libFuzzer starts from."""
+    """Writes the kept inputs as files for libFuzzer; returns their folder."""
     folder = BUILD / "inputs" / target
     folder.mkdir(parents=True, exist_ok=True)
     for line in (HERE / "corpus" / f"{target}.txt").read_text().splitlines():
@@ -39,7 +39,7 @@ def unpack(target):
 
 
 def fuzz(target, minutes):
-    """One turn; returns the executions, the minutes of processor time, and whether a promise was broken."""
+    """One turn; returns executions, minutes of processor time, and whether a promise was broken."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     findings = BUILD / "findings"
     findings.mkdir(exist_ok=True)
@@ -57,7 +57,7 @@ def fuzz(target, minutes):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--minutes", type=float, default=60, help="of processor time, in all; each target gets its share")
+    parser.add_argument("--minutes", type=float, default=60, help="of processor time, for all targets together")
     parser.add_argument("--targets", nargs="+", choices=TARGETS, default=TARGETS)
     parser.add_argument("--hex", metavar="FILE", type=Path, help="print an input as a line of the corpus, and end")
     options = parser.parse_args()
@@ -66,7 +66,7 @@ def main():
         return 0
     totals = {target: [0, 0.0, 0] for target in options.targets}
     while (left := options.minutes - sum(worked for _, worked, _ in totals.values())) > 0:
-        # A turn is of the clock: on a busy machine it works less, and there will be more of them.
+        # Turns are measured in wall time; on a busy machine they do less, and more of them follow.
         turn = max(MINUTES_SHORTEST_TURN, min(MINUTES_PER_TURN, left / len(options.targets)))
         for target in options.targets:
             executions, worked, broken = fuzz(target, turn)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""What the host tests share: the build folder, the hosts with our plugin in them, clouds and the table of parameters."""
+"""Fixtures of the host tests: the build folder, hosts with our plugin, clouds, and the table of parameters."""
 
 import os
 import subprocess
@@ -16,8 +16,7 @@ sys.path.insert(0, str(ROOT / "tests" / "hosts"))
 for folder in ("accuracy", "paper", "pictures"):
     sys.path.insert(0, str(ROOT / "tests" / "experiments" / folder))
 
-# Before any OpenMP is loaded: threads that wait for work without sleeping make Poisson five times slower on a
-# machine that has other work, too.
+# Set before any OpenMP is loaded: threads that wait in a busy loop make Poisson five times slower on a busy machine.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 import input_hosts  # noqa: E402
@@ -25,13 +24,13 @@ import meshlabserver  # noqa: E402
 import models  # noqa: E402
 
 PYTHON_NAME = input_hosts.PYTHON_NAME
-# Made in code, or from a Debian package that run.sh installs; all closed and of genus 0.
+# Made in code, or from a Debian package that run.sh installs; all are closed and of genus 0.
 MODELS = ("sphere", "cup", "filleted-cube", "crossed-cylinders", "bunny")
 CLOUD_POINTS = 20_000
 
 
 def write_points(path, points, faces=()):
-    """A PLY in single precision, so that float and double hosts read the same numbers."""
+    """Writes a PLY in single precision, so that float and double hosts read the same numbers."""
     header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}",
               *(f"property float {axis}" for axis in "xyz"), f"element face {len(faces)}",
               "property list uchar int vertex_indices", "end_header", ""]
@@ -53,7 +52,7 @@ def build():
 
 @pytest.fixture(scope="session")
 def server(build, tmp_path_factory):
-    """A folder with a meshlabserver 2020.09 that has our plugin."""
+    """A folder with meshlabserver 2020.09 and our plugin."""
     return meshlabserver.make_folder(tmp_path_factory.mktemp("server") / "meshlab", meshlabserver.plugin_path(build))
 
 
@@ -67,7 +66,7 @@ def pymeshlab(build):
 
 @pytest.fixture
 def meshes(pymeshlab):
-    """A MeshSet of the test's own."""
+    """A new MeshSet."""
     return input_hosts.new_mesh_set(pymeshlab)
 
 
@@ -100,7 +99,7 @@ def parameters(build):
 
 
 def out_of_range(build):
-    """(id, value) with one value below and one above the range of each number, and NaN for the reals."""
+    """(id, value) with a value below and one above the range of each number, and NaN for real ones."""
     cases = []
     for name, kind, low, high, _, _ in parameters(build):
         if kind == "RichInt":

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""From a cloud to a neural mesh with a picture of it: what `./run.sh demo` does once all is built."""
+"""Makes a neural mesh of a cloud, and a picture of it: `./run.sh demo` after the build."""
 
 import argparse
 import subprocess
@@ -33,8 +33,8 @@ def parsed():
 
 
 def bunny_points():
-    """The points of the bunny in Debian's glmark2-data, as a cloud. (Its file as it is trips an assertion in
-    MeshLab 2020.09's reader.)"""
+    """Writes the points of the bunny in Debian's glmark2-data as a cloud. The file itself fails an assertion in
+    MeshLab 2020.09's reader."""
     lines = BUNNY.read_text().splitlines()
     points = [line.split(maxsplit=1)[1] for line in lines if line.startswith("v ")]
     header = ["ply", "format ascii 1.0", f"element vertex {len(points)}",
@@ -44,21 +44,21 @@ def bunny_points():
     return BUNNY_POINTS
 
 
-def error_of(build, arguments, told):
-    """How far the mesh is off, in words."""
-    # The bunny's own surface is known; else the file itself is all there is to compare with.
+def error_of(build, arguments, report):
+    """The error of the mesh, in words."""
+    # The bunny's surface is known; a cloud of the user's can be compared with itself only.
     reference, name = (arguments.cloud, arguments.cloud.name) if arguments.cloud else (BUNNY, "the bunny's surface")
     try:
         found = meshlabserver.check_mesh(build, arguments.out, reference)
     except meshlabserver.CheckError as error:
-        return (f"{told['rms_error']:.4f} % of the diagonal from the points to the mesh, as the filter says; the way "
-                f"back is not measured, as vcglib by itself does not read this format ({error})")
+        return (f"{report['rms_error']:.4f} % of the diagonal from the points to the mesh, as the filter reports; the "
+                f"distance back is not measured, because vcglib alone does not read this format ({error})")
     return (f"{found['rms_to_mesh']:.4f} % of the diagonal from {name} to the mesh, "
             f"{found['rms_to_reference']:.4f} % back")
 
 
 def draw(mesh):
-    """A picture of the mesh beside it, as MeshLab draws it."""
+    """Makes a picture of the mesh with MeshLab, in the same folder."""
     picture = mesh.with_suffix(".png")
     subprocess.run([sys.executable, str(PICTURE), str(mesh), str(picture), "--style", "flat-lines", "--color"], check=True)
     return picture
@@ -73,15 +73,15 @@ def main():
     script = meshlabserver.write_script(build, build / "demo.mlx", target_vertices=arguments.vertices)
     print(f"== Learning {cloud} in meshlabserver: {arguments.vertices} vertices", flush=True)
     try:
-        told = meshlabserver.reconstruct(folder, cloud.resolve(), script.resolve(), arguments.out.resolve(),
+        report = meshlabserver.reconstruct(folder, cloud.resolve(), script.resolve(), arguments.out.resolve(),
                                          timeout=None)
     except meshlabserver.ServerError as error:
-        sys.exit(f"{error}\nmeshlabserver made no mesh of {cloud}; what it said is above.")
+        sys.exit(f"{error}\nmeshlabserver made no mesh of {cloud}; its output is above.")
     found = meshlabserver.check_mesh(build, arguments.out)
     closed = "closed" if found["watertight"] else f"{found['boundary_loops']} boundary loops"
     print(f"{'vertices':12}{found['vertices']}\n{'faces':12}{found['faces']}, {closed}, genus {found['genus']}\n"
-          f"{'signals':12}{told['signals']}\n{'seconds':12}{told['seconds']:.2f}\n"
-          f"{'RMS error':12}{error_of(build, arguments, told)}")
+          f"{'signals':12}{report['signals']}\n{'seconds':12}{report['seconds']:.2f}\n"
+          f"{'RMS error':12}{error_of(build, arguments, report)}")
     print(f"{'mesh':12}{arguments.out}\n{'picture':12}{draw(arguments.out)}")
 
 

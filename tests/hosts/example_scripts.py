@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Writes the scripts in filter_neuralmesh/scripts/ anew from the table of parameters.
+"""Writes the scripts in filter_neuralmesh/scripts/ from the table of parameters.
 
     tests/hosts/example_scripts.py BUILD_FOLDER
 
-meshlabserver 2020.09 aborts unless a script lists every parameter, so each of them does. Run this after a
-parameter has been added or a default has changed; test_scripts.py compares."""
+Each lists every parameter, because meshlabserver 2020.09 aborts otherwise. Run this after a change of a parameter or
+a default; test_scripts.py compares."""
 
 import sys
 from pathlib import Path
@@ -16,7 +16,7 @@ import meshlabserver
 
 FOLDER = Path(__file__).resolve().parents[2] / "filter_neuralmesh" / "scripts"
 
-# File name -> what differs from the defaults.
+# File name -> values that differ from the defaults.
 EXAMPLES = {
     "reconstruct": {},
     "preview": {"target_vertices": 2000},

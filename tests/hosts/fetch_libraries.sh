@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-# Puts the libraries of a MeshLab of another Debian release into the user's cache, for library_hosts.py:
+# Fetches the libraries of the MeshLab of another Debian release into the user's cache, for library_hosts.py:
 #
-#   fetch_libraries.sh RELEASE SUITE FOLDER    RELEASE: 2022.02 or 2025.07, SUITE: where it is looked for first
+#   fetch_libraries.sh RELEASE SUITE FOLDER    RELEASE: 2022.02 or 2025.07, SUITE: searched for it first
 #
-# The packages are those of the mirror this system installs from, found by apt under a configuration of its own,
-# checked against the archive's signature and sums, and unpacked; nothing is installed. No root rights are needed.
-# About 200 MB on disk. Prints nothing when all is there already.
+# apt, with a separate configuration, finds the packages on this system's mirror and checks the archive's signature and
+# the checksums. They are unpacked, not installed; no root rights are needed. Takes 200 MB on disk. Prints nothing if
+# the folder is complete.
 set -euo pipefail
 release="$1" folder="$3"
 [ -e "$folder.complete" ] && exit 0
@@ -29,7 +29,7 @@ echo "Fetching the libraries of MeshLab $release from $mirror"
 . "$here/private_apt.sh"
 choose_suite "$release" "$2"
 
-# Libraries alone: programs and drivers are not run.
+# Only libraries are unpacked; programs and drivers are not run.
 sed "s/'//g" uris | awk '$2 ~ /^(lib|meshlab_)/ && $2 !~ /^(libllvm|libgl1-mesa|libperl|libsystemd)/ {print $1, $2, $4}' > wanted
 while read -r uri file sum; do
     /usr/lib/apt/apt-helper -qq download-file "$uri" "cache/archives/$file" "$sum" 2> log ||

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-# The filter in the window of the installed MeshLab 2020.09:
+# Runs the filter in the window of the installed MeshLab 2020.09:
 # gui_2020_09.sh [PLUGIN [CLOUD [OUT]]]
-# Leaves meshlab_2020.09_dialog.png and meshlab_2020.09_result.png in the folder OUT (default out/gui).
+# Saves meshlab_2020.09_dialog.png and meshlab_2020.09_result.png in the folder OUT (default out/gui).
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 project=$(cd "$here/../.." && pwd)

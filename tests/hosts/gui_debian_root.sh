@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-# Makes a root directory of another Debian release with its MeshLab in it, for GUI tests:
+# Makes a root directory of another Debian release with its MeshLab, for GUI tests:
 #
-#   gui_debian_root.sh RELEASE SUITE FOLDER      RELEASE: 2022.02 or 2025.07, SUITE: where it is looked for first
+#   gui_debian_root.sh RELEASE SUITE FOLDER      RELEASE: 2022.02 or 2025.07, SUITE: searched for it first
 #
-# About 800 MB and two minutes; a folder that is complete already is left as it is. Needs root and
-# the package debootstrap. Packages come from the mirror this system uses, or from $DEBIAN_MIRROR.
+# Takes 800 MB and two minutes; a complete folder is not changed. Needs root and the package debootstrap. Packages come
+# from this system's mirror, or from $DEBIAN_MIRROR.
 set -eu
 
 release=$1
@@ -31,9 +31,9 @@ if [ -z "$mirror" ]; then
 fi
 
 if [ ! -e "$folder.debootstrapped" ]; then
-    # An interrupted attempt leaves a half-made folder beside its mark; anything else there is not ours.
+    # A half-made folder with this mark was left by an interrupted run; any other folder is not ours.
     if [ -e "$folder.started" ]; then
-        # It may also have left the system's own /proc and /dev mounted there.
+        # The interrupted run may have left /proc and /dev mounted there.
         if grep -q " $folder/" /proc/mounts; then
             echo "gui_debian_root: something is mounted in $folder; unmount it first: grep $folder /proc/mounts" >&2
             exit 1
@@ -53,12 +53,12 @@ if [ ! -e "$folder.debootstrapped" ]; then
     debootstrap --variant=minbase "$suite" "$folder" "$mirror"
     touch "$folder.debootstrapped"
 fi
-# What MeshLab's plugins are linked to beyond the package's own dependencies; without them MeshLab greets
-# with a list of plugins it could not load. Names differ between releases, so missing ones are skipped.
+# Libraries that MeshLab's plugins need and its package does not depend on; without them MeshLab starts with a list of
+# plugins that it could not load. Their names differ between releases, so unknown ones are skipped.
 cat >"$folder/tmp/install_meshlab.sh" <<'INSTALL'
 set -eu
 export DEBIAN_FRONTEND=noninteractive
-# A mirror that lags behind serves a release file past its date.
+# The release file of a mirror that lags behind may be past its date.
 apt-get -o Acquire::Check-Valid-Until=false update
 packages=meshlab
 for package in libgomp1 libmuparser2v5 libqhull-r8.0 lib3ds-1-3 libopenctm1 libmpfr6 libxerces-c3.2; do

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Uses the filter as a person does: opens a cloud in MeshLab's window, finds the filter with the
-filter search, looks at its dialog, applies it, looks at the result. Keeps a screenshot of both.
+"""Uses the filter in MeshLab's window: opens a cloud, finds the filter by the filter search, opens its dialog and
+applies it. Saves screenshots of the dialog and of the result.
 
     gui_filter.py --plugin libfilter_neuralmesh.so --cloud CLOUD.ply --out FOLDER
     gui_filter.py --root FOLDER ...      the MeshLab installed in a Debian root directory (needs root)
 
-Fails when MeshLab does not load the plugin, the filter reports a failure, or the result shows no colours.
+Fails if MeshLab does not load the plugin, the filter reports a failure, or the result shows no colours.
 """
 
 import argparse
@@ -28,8 +28,8 @@ from meshlab_picture import LIBRARIES, PLUGINS, program_copy  # noqa: E402
 
 FILTER = "Surface Reconstruction: Neural Mesh"
 SCREEN = (1440, 1080)
-# A picture of a mesh painted by a colour ramp has thousands of pixels of strong colour; MeshLab's own
-# background and log area are cut away or blue, see count_colorful().
+# A mesh coloured by its counter has thousands of pixels of strong colour; MeshLab's background and log area have
+# none that count_colorful() counts.
 COLORFUL_PIXELS = 3000
 
 SETTINGS = """[General]
@@ -39,7 +39,7 @@ checkForUpdate=false
 lastTimeMeshLabVersionCheckedOnStart=Tue Jan 1 2999
 """
 
-# A private mount namespace: the bind mounts vanish with the program, whatever ends it.
+# Run in a private mount namespace, so that the bind mounts end with the program.
 ENTER_ROOT = """
 mount --rbind /dev "$0/dev" && mount -t proc proc "$0/proc" &&
 mkdir -p "$0/tmp/.X11-unix" && mount --bind /tmp/.X11-unix "$0/tmp/.X11-unix" &&
@@ -48,7 +48,7 @@ exec chroot "$0" sh -c 'cd "$0" && exec meshlab cloud.ply' /tmp/neural_mesh_gui
 
 
 def all_plugins(plugin):
-    """MeshLab's own plugins but the one program_copy() brings anyway, and ours."""
+    """MeshLab's plugins, except the one that program_copy() adds, and ours."""
     own = [path for path in sorted(PLUGINS.glob("*.so")) if path.name not in ("libio_base.so", plugin.name)]
     return own + [plugin]
 
@@ -74,7 +74,7 @@ def start_in_root(session, root, plugin, cloud):
     home.chmod(0o700)
     (home / "config" / "VCG" / "MeshLab_64bit_fp.conf").write_text(SETTINGS)
     shutil.copy(cloud, home / "cloud.ply")
-    # Plugins of ours from an earlier run would be loaded as well.
+    # Plugins that an earlier run has copied would be loaded as well.
     for earlier in (root / PLUGINS.relative_to("/")).glob("libfilter_neuralmesh*"):
         earlier.unlink()
     if plugin.resolve().parent != PLUGINS:
@@ -120,7 +120,7 @@ def open_filter(session, main_window, name):
 
 
 def lay_out(session, dialog):
-    """Puts the dialog over the layer list, tall enough for all parameters; the cloud stays in view."""
+    """Moves the dialog over the layer list, tall enough for all parameters; the cloud stays visible."""
     width, top = 440, 66
     place = (session.width - width - 6, top, width, session.height - top - 6)
 
@@ -137,7 +137,7 @@ def press(session, dialog, column):
 
 
 def apply_filter(session, dialog, seconds):
-    """Presses Apply and waits for MeshLab's word that the filter ran; throws when it failed."""
+    """Presses Apply and waits until MeshLab logs that the filter ran; throws if it failed."""
     def finished():
         session.check_alive()
         if session.windows("Filter Failure|Filtering Error|Uncaught|Error"):
@@ -148,7 +148,7 @@ def apply_filter(session, dialog, seconds):
 
 
 def count_colorful(picture, size):
-    """Pixels of the drawing area with a strong colour that is not the blue and red of MeshLab itself."""
+    """Pixels of the drawing area with a strong colour other than MeshLab's blue and red."""
     width, height = size
     area = np.asarray(picture.crop((2, 160, width - 2, 160 + height - 260)).convert("RGB")).astype(int)
     red, green, blue = area[..., 0], area[..., 1], area[..., 2]
@@ -156,7 +156,7 @@ def count_colorful(picture, size):
 
 
 def wait_for_main_window(session):
-    """MeshLab's main window; throws when it greets with plugins it could not load instead."""
+    """MeshLab's main window; throws if MeshLab lists plugins that it could not load instead."""
     def look():
         session.check_alive()
         if session.windows("^Error while loading plugins"):
@@ -166,7 +166,7 @@ def wait_for_main_window(session):
 
 
 def run(session, options):
-    """The steps after the program's start; returns the lines of its log that speak of the filter."""
+    """The steps after the start of the program; returns the lines of its log about the filter."""
     out = Path(options.out)
     out.mkdir(parents=True, exist_ok=True)
     window = wait_for_main_window(session)
@@ -180,7 +180,7 @@ def run(session, options):
     press(session, dialog, 0)
     wait_until(lambda: not session.windows("^" + re.escape(options.filter) + "$"), "the dialog to close", 10)
     size = drawing_area(session, window)
-    # The cloud's points lie in the new surface: the eye beside the first layer hides them.
+    # The points of the cloud lie in the new surface; the eye beside the first layer hides them.
     session.click(size[0] + 36, 111)
     session.click(size[0] + 130, 143)  # the new layer is the current one
     session.keys(window, "shift+h")  # hides the trackball's circle

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-# The filter in a MeshLab of another Debian release: gui_in_root.sh VERSION SUITE [PLUGIN [CLOUD [OUT]]]
+# Runs the filter in the MeshLab of another Debian release: gui_in_root.sh VERSION SUITE [PLUGIN [CLOUD [OUT]]]
 # Called by gui_2022_02.sh and gui_2025_07.sh.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""A program with windows, run and steered where nobody looks: a virtual X display of its
-own, keys and clicks through xdotool, and every step waited for by looking for its effect.
+"""Runs and controls a program with windows on a virtual X display: keys and clicks by xdotool, each step followed by
+waiting for its effect.
 
 Needs the Debian packages xvfb, xdotool and libgl1-mesa-dri, and Pillow for screenshots.
 """
@@ -20,7 +20,7 @@ POLL_SECONDS = 0.05
 
 
 class GuiError(RuntimeError):
-    """Something did not show up on the display in time; the message says what."""
+    """Something did not appear on the display in time; the message says what."""
 
 
 def require_programs(*names):
@@ -44,7 +44,7 @@ def wait_until(condition, what, seconds=30.0):
 
 
 def stop(process):
-    """Ends a child process and whatever it started (it leads its own process group)."""
+    """Ends a child process, which leads a process group, and the processes that it started."""
     for sig in (signal.SIGTERM, signal.SIGKILL):
         if process.poll() is None:
             with contextlib.suppress(ProcessLookupError):
@@ -68,7 +68,7 @@ class GuiSession(contextlib.AbstractContextManager):
         self.log_path = os.path.join(self.directory, "program.log")
         self._program = None
         read_end, write_end = os.pipe()
-        # -displayfd: the server picks a free display number itself and reports it.
+        # With -displayfd the server chooses a free display number and reports it.
         self._server = subprocess.Popen(
             ["Xvfb", "-displayfd", str(write_end), "-screen", "0", f"{width}x{height}x24",
              "-dpi", "96", "-nolisten", "tcp", "+extension", "GLX", "-noreset"],
@@ -89,7 +89,7 @@ class GuiSession(contextlib.AbstractContextManager):
         shutil.rmtree(self.directory, ignore_errors=True)
 
     def environment(self, **extra):
-        """The program's environment: software OpenGL, English, settings of its own."""
+        """The program's environment: software OpenGL, English, separate settings."""
         result = dict(os.environ, DISPLAY=self.display, LIBGL_ALWAYS_SOFTWARE="1", LC_ALL="C.UTF-8",
                       HOME=self.directory, XDG_CONFIG_HOME=os.path.join(self.directory, "config"),
                       XDG_RUNTIME_DIR=self.directory, QT_QPA_PLATFORM="xcb", QT_STYLE_OVERRIDE="fusion",
@@ -170,7 +170,7 @@ class GuiSession(contextlib.AbstractContextManager):
         return ImageGrab.grab(xdisplay=self.display)
 
     def steady_screenshot(self, seconds=20.0, still_for=0.35):
-        """The screen once it has not changed for `still_for` seconds: drawing has come to rest.
+        """The screen after it has not changed for `still_for` seconds.
 
         Shorter than half the blinking of a text cursor, which must not count as a change.
         """

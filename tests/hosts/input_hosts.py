@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Handing the layers of inputs.py to the filter in every host, and what has to be true of what comes back."""
+"""Runs the filter in each host on the layers of inputs.py, and checks the results."""
 
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
@@ -20,24 +20,24 @@ HOSTS = (SERVER, *(f"library {release}" for release in library_hosts.RELEASES), 
 
 @dataclass
 class Outcome:
-    sentence: str = ""  # the refusal
+    sentence: str = ""  # the error message; empty: the layer was learned
     host: str = ""
     mesh: object = None  # the file of the result
-    origin: tuple = (0, 0, 0)  # of its coordinates: the translation in the result's matrix, which no such file holds
-    told: dict = None
-    unchanged: bool = True  # the input layer; True also where the host ends before it can be asked
+    origin: tuple = (0, 0, 0)  # the translation in the result's matrix, which the file does not contain
+    report: dict = None
+    unchanged: bool = True  # the input layer; True also if the host ended before it could be compared
 
     def mesh_in_single_precision(self, layer):
-        """(coordinates, faces), the same in all hosts; None if there is no mesh."""
+        """(coordinates, faces), to be equal in all hosts; None if there is no mesh."""
         if self.mesh is None:
             return None
         vertices, faces = models.load_mesh(self.mesh)
-        # A host in double precision counts from the world's origin even where the others do not.
+        # A host in double precision has world coordinates where others are relative to an origin.
         return (vertices - np.subtract(layer.origin, self.origin)).astype("f4"), faces
 
 
 def origin_in(host, layer):
-    """Where the host's result is to be counted from; in double precision nothing is lost in world coordinates."""
+    """The expected origin of the result's coordinates; double precision needs no other than zero."""
     return (0, 0, 0) if host == PYMESHLAB else tuple(layer.origin)
 
 
@@ -59,14 +59,14 @@ ALL_ATTRIBUTES = ("vc", "vq", "vf", "fc", "ff", "wt", "mp")
 
 
 def write_project(path, matrix, *files):
-    """A MeshLab project of layers under one matrix."""
+    """Writes a MeshLab project of layers with one matrix."""
     rows = "\n".join(" ".join(f"{x:g}" for x in row) + " " for row in matrix)
     path.write_text(PROJECT.format(layers="".join(PROJECT_LAYER.format(file=file, matrix=rows) for file in files)))
     return path
 
 
 def _server_input(layer, folder):
-    """The layer twice, as a comparison for itself; the second is the current one."""
+    """The layer twice, so that its copy can be compared with it; the second is current."""
     files = [inputs.write_ply(layer, folder / name) for name in ("layer.ply", "copy.ply")]
     if (layer.matrix == np.eye(4)).all():
         return ["-i", *files]
@@ -76,7 +76,7 @@ def _server_input(layer, folder):
 def in_server(build, server, layer, folder):
     script = meshlabserver.write_script(build, folder / "script.mlx", **parameters_of(layer))
     if layer.deleted.any():
-        # This host leaves what it deletes in the layer, marked as deleted.
+        # This host keeps deleted vertices in the layer, marked as deleted.
         text = script.read_text().replace("<FilterScript>", '<FilterScript>\n <filter name="Delete Selected Vertices"/>', 1)
         script.write_text(text)
     out, kept, copy = (folder / name for name in ("out.ply", "kept.ply", "kept_copy.ply"))
@@ -96,11 +96,11 @@ def in_server(build, server, layer, folder):
     assert out.exists() and kept.exists(), text
     same = kept.read_bytes() == copy.read_bytes() if not layer.deleted.any() else True
     origin = _translation_of_last(project) if moved else (0, 0, 0)
-    return Outcome(host=SERVER, mesh=out, origin=origin, told=meshlabserver.figures(text), unchanged=same)
+    return Outcome(host=SERVER, mesh=out, origin=origin, report=meshlabserver.figures(text), unchanged=same)
 
 
 def _translation_of_last(project):
-    """That in the matrix of a project's last layer; the rest of it must be no change."""
+    """The translation in the matrix of a project's last layer; the matrix must have no other part."""
     text = ElementTree.parse(project).getroot().findall(".//MLMatrix44")[-1].text
     return _translation_in(np.array(text.split(), dtype=float).reshape(4, 4))
 
@@ -114,8 +114,8 @@ def _translation_in(matrix):
 # --- pymeshlab ---------------------------------------------------------------------------------------------------
 
 
-# pymeshlab 2025.7 goes on logging into the MeshSet in which a filter, any filter, has raised, and crashes when it is
-# gone. So MeshSets are kept.
+# After a filter has raised, pymeshlab 2025.7 logs into that MeshSet for ever, and crashes if it has been deleted. So
+# all MeshSets are kept.
 _kept = []
 
 
@@ -125,7 +125,7 @@ def new_mesh_set(pymeshlab):
 
 
 def state(meshes):
-    """All that can be asked of every layer, in comparable form."""
+    """All properties of each layer that pymeshlab exposes, in comparable form."""
     layers = []
     for mesh in meshes:
         has = (mesh.has_vertex_scalar(), mesh.has_vertex_color(), mesh.has_face_color(), mesh.has_wedge_tex_coord())
@@ -148,7 +148,7 @@ def _load(pymeshlab, layer, folder):
     else:
         meshes.load_new_mesh(str(inputs.write_ply(layer, folder / "layer.ply")))
     if layer.deleted.any():
-        # The number of selected vertices, by which the host goes, is not read from a file.
+        # The reader does not set the number of selected vertices, which the host's filter uses.
         meshes.compute_selection_by_condition_per_vertex(condselect=f"vi >= {layer.deleted.argmax()}")
         meshes.meshing_remove_selected_vertices()
     if not (layer.matrix == np.eye(4)).all():
@@ -168,7 +168,7 @@ def in_pymeshlab(pymeshlab, layer, folder):
         return kept and state(meshes)[0][0] == before[0][0]
 
     try:
-        told = meshes.apply_filter(PYTHON_NAME, **parameters_of(layer))
+        report = meshes.apply_filter(PYTHON_NAME, **parameters_of(layer))
     except pymeshlab.PyMeshLabException as error:
         sentence = str(error).split("Details: ", 1)[1].strip()
         return Outcome(sentence=sentence, unchanged=unchanged() and state(meshes) == before)
@@ -176,7 +176,7 @@ def in_pymeshlab(pymeshlab, layer, folder):
     out = folder / "out.ply"
     meshes.save_current_mesh(str(out))
     origin = _translation_in(meshes.current_mesh().transform_matrix())
-    return Outcome(host=PYMESHLAB, mesh=out, origin=origin, told=told, unchanged=unchanged())
+    return Outcome(host=PYMESHLAB, mesh=out, origin=origin, report=report, unchanged=unchanged())
 
 
 # --- the libraries of 2022.02 and 2025.07 ------------------------------------------------------------------------
@@ -185,19 +185,20 @@ def in_pymeshlab(pymeshlab, layer, folder):
 def in_library(build, release, layer, folder):
     out = folder / "out.off"
     plugin = meshlabserver.plugin_path(build, f"meshlab-{release}")
-    told, = library_hosts.outcomes(library_hosts.run(build, release, plugin, inputs.write_layer(layer, folder / "layer.txt"), out))
-    learned = not told["sentence"]
-    assert (told["layers"], told["current"]) == ((3, "Neural Mesh") if learned else (2, "layer"))
-    return Outcome(sentence=told["sentence"], host=f"library {release}", mesh=out if learned else None, told=told,
-                   origin=_translation_in(np.array(told["matrix"]).reshape(4, 4)) if learned else (0, 0, 0),
-                   unchanged=told["unchanged"])
+    file = inputs.write_layer(layer, folder / "layer.txt")
+    report, = library_hosts.outcomes(library_hosts.run(build, release, plugin, file, out))
+    learned = not report["sentence"]
+    assert (report["layers"], report["current"]) == ((3, "Neural Mesh") if learned else (2, "layer"))
+    return Outcome(sentence=report["sentence"], host=f"library {release}", mesh=out if learned else None, report=report,
+                   origin=_translation_in(np.array(report["matrix"]).reshape(4, 4)) if learned else (0, 0, 0),
+                   unchanged=report["unchanged"])
 
 
-# --- the judge ---------------------------------------------------------------------------------------------------
+# --- the checks ---------------------------------------------------------------------------------------------------
 
 
 def try_out(build, server, pymeshlab, host, layer, folder):
-    """Hands the layer to the host. AssertionError: a promise is broken."""
+    """Runs the filter on the layer in the host. AssertionError: a promise is broken."""
     if host == SERVER:
         return in_server(build, server, layer, folder)
     if host == PYMESHLAB:
@@ -205,25 +206,25 @@ def try_out(build, server, pymeshlab, host, layer, folder):
     return in_library(build, host.split()[1], layer, folder)
 
 
-def judge(build, layer, outcome):
-    """AssertionError where the outcome is not what inputs.py asks for. Writes beside the result."""
+def check(build, layer, outcome):
+    """AssertionError if the outcome is not the expected one. Writes a file beside the result."""
     assert outcome.unchanged, "the input layer has changed"
     if layer.refused:
-        assert layer.refused in outcome.sentence, outcome.sentence or "it was learned"
+        assert layer.refused in outcome.sentence, outcome.sentence or "the layer was learned"
         return
     assert not outcome.sentence, outcome.sentence
-    told = outcome.told
+    report = outcome.report
     origin = tuple(float(x) for x in outcome.origin)
-    assert origin == origin_in(outcome.host, layer), f"coordinates are counted from {origin}"
+    assert origin == origin_in(outcome.host, layer), f"the origin of the coordinates is {origin}"
     points = layer.followed_points() - origin
     file = outcome.mesh.with_name("points.ply")
     models.save_ply(file, points)
     found = meshlabserver.check_mesh(build, outcome.mesh, file)
-    assert found["vertices"] == told["vertices"] == layer.target
-    assert told["stop_reason"] == 0 and told["boundary_loops"] == 0
+    assert found["vertices"] == report["vertices"] == layer.target
+    assert report["stop_reason"] == 0 and report["boundary_loops"] == 0
     assert found["watertight"] and found["oriented"], "no closed, oriented surface"
     assert found["non_manifold_edges"] == found["non_manifold_vertices"] == found["unreferenced_vertices"] == 0
-    assert (found["genus"], found["components"]) == (told["genus"], told["components"])
+    assert (found["genus"], found["components"]) == (report["genus"], report["components"])
     assert (found["components"], found["genus"]) == (layer.components, layer.genus), (
         f"{found['components']} components of genus {found['genus']}")
     assert found["rms_to_mesh"] < layer.rms, f"the points are {found['rms_to_mesh']} % from the mesh"
@@ -231,31 +232,32 @@ def judge(build, layer, outcome):
     # Hosts in single precision round the coordinates of the result.
     rounding = np.spacing(np.abs(points).max().astype("f4"))
     per_cent = 100 / np.linalg.norm(np.ptp(points, 0))
-    _judge_error_told(layer, told["rms_error"], found["rms_to_mesh"], per_cent * rounding)
+    _check_reported_error(layer, report["rms_error"], found["rms_to_mesh"], per_cent * rounding)
     vertices, faces = models.load_mesh(outcome.mesh)
-    _judge_volume(layer, vertices, faces)
-    _judge_place(layer, points, vertices, rounding)
+    _check_volume(layer, vertices, faces)
+    _check_place(layer, points, vertices, rounding)
 
 
-def _judge_error_told(layer, told, measured, rounding):
-    """All in %. The filter measures at samples of the points, hence the allowance."""
-    assert told >= 0
+def _check_reported_error(layer, report, measured, rounding):
+    """All in %. The tolerance is for the filter's measuring at samples of the points."""
+    assert report >= 0
     if layer.outliers or (layer.faces and layer.parameters.get("draw_from_faces", True)):
-        return  # of samples of the faces, or with outliers among the points: check_mesh has other points
-    assert abs(told - measured) < .05 * measured + .001 + rounding, f"it tells {told} %, where {measured} % is measured"
+        return  # the filter measures samples of the faces, or outliers as well; check_mesh measures other points
+    tolerance = .05 * measured + .001 + rounding
+    assert abs(report - measured) < tolerance, f"{report} % is reported, {measured} % is measured"
 
 
-def _judge_volume(layer, vertices, faces):
+def _check_volume(layer, vertices, faces):
     expected = layer.world_volume()
     if expected is None:
         return
     a, b, c = np.moveaxis((vertices - vertices.mean(0))[faces], 1, 0)
     volume = np.einsum("ij,ij->", a, np.cross(b, c)) / 6
-    assert abs(volume - expected) < layer.within * expected, f"it encloses {volume}, not {expected}"
+    assert abs(volume - expected) < layer.within * expected, f"the enclosed volume is {volume}, not {expected}"
 
 
-def _judge_place(layer, points, vertices, rounding):
-    """All vertices finite and in the box of the points, somewhat larger, and across it."""
+def _check_place(layer, points, vertices, rounding):
+    """All vertices are finite, inside the enlarged box of the points, and span it."""
     assert np.isfinite(vertices).all(), "vertices that are not finite"
     low, high = points.min(0), points.max(0)
     margin = layer.margin * np.linalg.norm(high - low) + rounding

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The layers that a host may hand to the filter, good and bad, each small, with what has to come of it."""
+"""Small layers, valid and invalid, that a host may pass to the filter, each with the expected result."""
 
 import functools
 from dataclasses import dataclass, field
@@ -17,31 +17,31 @@ BALL = 4 / 3 * np.pi
 
 @dataclass
 class Input:
-    """One layer. Every array has one row for each of the points or faces; faces may have more than three corners."""
+    """One layer. Arrays have one row per point or face; faces may have more than three corners."""
 
     points: np.ndarray
     faces: list = field(default_factory=list)
-    refused: str = ""  # words of the sentence that refuses it; empty: it is learned
+    refused: str = ""  # words of the error message; empty: the layer is learned
     selected_points: np.ndarray = None
     selected_faces: np.ndarray = None
-    deleted: np.ndarray = None  # points that are marked as deleted, and still there
+    deleted: np.ndarray = None  # points that are marked as deleted but still stored
     matrix: np.ndarray = field(default_factory=lambda: np.eye(4))
     textured: bool = False
-    outliers: int = 0  # the last points, which the mesh has to leave alone
+    outliers: int = 0  # the number of last points, which the mesh must not follow
     parameters: dict = field(default_factory=dict)
     target: int = 250
-    # What the mesh has to be; the defaults are a ball's. Per cent are of the diagonal of followed_points().
+    # The expected mesh; the defaults are those of a ball. Percentages are of the diagonal of followed_points().
     components: int = 1
     genus: int = 0
-    volume: float = BALL  # enclosed, before the matrix; None: the points are a sheet or a thread, which enclose nothing
-    within: float = .03  # how much of the volume may be missing or too much
+    volume: float = BALL  # enclosed, before the matrix is applied; None: nothing is enclosed (a sheet, a line)
+    within: float = .03  # relative tolerance of the volume
     rms: float = .12  # from the points to the mesh, %
-    far: float = 2.0  # the largest distance from the mesh to the points, %; between points there is nothing to measure
-    margin: float = .05  # how far the mesh may lie outside the points' box, in diagonals of it
-    origin: tuple = (0, 0, 0)  # where a float host counts the result's coordinates from
+    far: float = 2.0  # the largest distance from the mesh to the points, %
+    margin: float = .05  # how far the mesh may exceed the points' box, in its diagonals
+    origin: tuple = (0, 0, 0)  # of the result's coordinates in a float host
 
     def __post_init__(self):
-        # In single precision, so that float and double hosts get the same numbers.
+        # Single precision, so that float and double hosts get the same numbers.
         self.points = np.asarray(self.points, dtype="f4").reshape(-1, 3)
         none = np.zeros(len(self.points), dtype=bool)
         self.deleted = none if self.deleted is None else self.deleted
@@ -50,16 +50,16 @@ class Input:
             self.selected_faces = np.zeros(len(self.faces), dtype=bool)
 
     def quality(self):
-        """Numbers that are in the layer's quality already."""
+        """The quality that the layer has before the filter runs."""
         return (np.arange(len(self.points)) % 97).astype("f4")
 
     def colors(self):
-        """Colours that are in the layer already, RGBA from 0 to 255."""
+        """The colours that the layer has before the filter runs, RGBA from 0 to 255."""
         steps = np.arange(len(self.points))
         return np.column_stack([steps % 251, steps % 13 * 19, steps % 7 * 36, steps * 0 + 255]).astype("u1")
 
     def triangles(self):
-        """(corners, input face, bits of the edges that are none of the input face) of the faces cut into fans."""
+        """(corners, input face, bits of the new edges) of the faces split into fans of triangles."""
         cut = []
         for index, face in enumerate(self.faces):
             last = len(face) - 1
@@ -69,7 +69,7 @@ class Input:
         return cut
 
     def learned_points(self):
-        """Those that the filter is to draw its signals from, in world coordinates."""
+        """The points from which the filter draws its signals, in world coordinates."""
         chosen = ~self.deleted
         only_selected = self.parameters.get("selected_only", False)
         if self.faces and self.parameters.get("draw_from_faces", True):
@@ -82,7 +82,7 @@ class Input:
         return points @ self.matrix[:3, :3].T + self.matrix[:3, 3]
 
     def followed_points(self):
-        """Those that the mesh has to be near to, each once, in world coordinates."""
+        """The distinct points that the mesh must be near, in world coordinates."""
         points = self.learned_points()
         return np.unique(points[:len(points) - self.outliers], axis=0)
 
@@ -98,7 +98,7 @@ def moved(*translation):
 
 
 def ball(count=2000, radius=1.0, centre=(0, 0, 0)):
-    """Points spread evenly over a sphere."""
+    """Points distributed evenly over a sphere."""
     steps = np.arange(count)
     z = 1 - (2 * steps + 1) / count
     turn = GOLDEN_TURN * steps
@@ -147,37 +147,38 @@ def _clouds(random):
         "all equal": Input([[1, 2, 3]] * 100, refused="4 distinct"),
         "three distinct, repeated": Input(corners[:3] * 50, refused="3 distinct"),
         "on a line": Input(line, refused="straight line"),
-        "a line, rounded": Input(line + [5000, -3000, 1000], volume=None),  # single precision makes a thread of it
+        # Rounding to single precision moves these points off the line.
+        "a line, rounded": Input(line + [5000, -3000, 1000], volume=None),
         "not finite": Input(broken, refused="3 of the 500"),
-        # Nothing says where the surface is between so few points. It goes through them, and holds some of what is
-        # between them: four hold 1/6, five 1/2, or 1/3 without the corner at the origin.
+        # So few points do not determine the surface between them. Four enclose a volume of 1/6, five of 1/2, or of 1/3
+        # without the corner at the origin.
         "4 points": Input(corners, target=50, volume=1 / 6, within=.2, far=45, margin=.15),
         "five points, 200 times": Input((corners + [[1, 1, 1]]) * 200, target=100, volume=5 / 12, within=.25, far=52),
         "in a plane": Input(square(), volume=None, rms=.6),
         "in a slanting plane": Input(square() @ [[1, 0, 1], [0, 1, 1], [0, 0, 1]], volume=None, rms=.6),
-        # Finer than any shell of the whole can be: each cluster is a component, its shape is not asked for.
+        # Smaller than the resolution of any shell of the whole: each cluster is a component, of any shape.
         "two far clusters": Input(np.vstack([ball(1000, .01), ball(1000, .01, (100, 0, 0))]), target=300, components=2,
                                   volume=None),
-        # The convex hull of so few holds 3.79, and a place on the ball is up to 10.1 % from them.
+        # The convex hull of 60 points has a volume of 3.79; the ball is up to 10.1 % away from them.
         "duplicates": Input(np.repeat(ball(60), 100, axis=0), volume=3.79, rms=1, far=11),
         "size 1e-9": Input(ball() * 1e-9, volume=BALL * 1e-27),
         "size 1e+9": Input(ball() * 1e9, volume=BALL * 1e27),
         "size 1e+30": Input(ball() * 1e30, volume=BALL * 1e90),
         "offset 1e+7": Input(ball(2000, 1000) + [1e7, -1e7, 1e7], volume=BALL * 1e9),
-        # Single precision leaves a lattice of whole numbers: 2.8 % is what it moves points off a plane by, 16.7 % the
-        # diagonal of a cell.
+        # In single precision these coordinates are whole numbers: rounding moves points off a plane by 2.8 %, and the
+        # diagonal of a cell of that lattice is 16.7 %.
         "offset 1e+7, small": Input(ball(2000, 3) + [1e7, -1e7, 1e7], volume=27 * BALL, within=.15, rms=2.8, far=16.7),
         "aspect 1 : 1e-3": Input(ball() * [1, 1e-3, 1e-3], volume=None),
         "aspect 1 : 1 : 1e-5": Input(ball() * [1, 1, 1e-5], volume=None),
         "1 % gross outliers": Input(np.vstack([ball(), far_off]), outliers=20),
         "1 % near outliers": Input(np.vstack([ball(), far_off / 20]), outliers=20),
         "noise of 2 %": Input(noisy, rms=1.9, far=4),
-        # A bowl; the few points of the other half are too far apart to be a surface. On a sheet the fit lifts vertices
-        # off by up to half an edge, which is .2 of 3.5.
+        # The result is a bowl: the few points of the other half are too far apart for a surface. On a sheet the fit
+        # moves vertices off by up to half an edge, which is .2 of 3.5.
         "density 1000 : 1": Input(np.vstack([whole[dense], stray]), outliers=len(stray), volume=None, rms=.6, far=6),
-        # What a scanner missed: the ball is there all the same.
+        # Scanners put points that they did not measure into one place.
         "most in one point": Input(np.vstack([ball(), np.repeat(ball()[:1], 20000, axis=0)])),
-        # Points throughout a cube do not say where its surface is.
+        # Points throughout a cube do not determine its surface.
         "filled": Input(random.random((3000, 3)), volume=.5, within=.5, rms=4, far=7),
         "deleted vertices": Input(np.vstack([ball(), ball(200, 9)]), deleted=np.arange(2200) >= 2000),
         "selected points": Input(np.vstack([ball(), ball(2000, 1, (5, 0, 0))]),
@@ -205,7 +206,7 @@ def _meshes():
     half = [face for face in faces if vertices[list(face), 2].mean() > 0]
     broken = vertices.copy()
     broken[5, 1] = NAN
-    ball_of_faces = functools.partial(Input, rms=.14, far=3)  # its vertices lie farther apart than the balls' points
+    ball_of_faces = functools.partial(Input, rms=.14, far=3)  # its vertices are farther apart than the balls' points
     return {
         "mesh": ball_of_faces(vertices, faces),
         "mesh's vertices": ball_of_faces(vertices, faces, parameters={"draw_from_faces": False}),
@@ -230,10 +231,10 @@ def all_inputs():
 
 
 def write_ply(layer, path):
-    """The layer as a PLY file, without what a file cannot hold (the matrix, deleted points)."""
+    """Writes the layer as a PLY file, which cannot contain its matrix and deleted points."""
     points = np.empty(len(layer.points), dtype=[("xyz", "<f4", 3), ("quality", "<f4"), ("color", "u1", 4), ("flags", "<i4")])
     points["xyz"], points["quality"], points["color"] = layer.points, layer.quality(), layer.colors()
-    # Deleting is left to the host's own filter, which deletes what is selected.
+    # The host deletes the selected vertices by its own filter.
     points["flags"] = np.where(layer.selected_points | layer.deleted, SELECTED, 0)
     header = ["ply", "format binary_little_endian 1.0"]
     if layer.textured:
@@ -255,7 +256,7 @@ def write_ply(layer, path):
 
 
 def write_layer(layer, path):
-    """The layer as library_host.cpp reads it: word by word, with all that a layer can hold."""
+    """Writes the whole layer in the text format that library_host.cpp reads."""
     lines = ["matrix " + " ".join(repr(float(x)) for x in layer.matrix.ravel())]
     for p, q, c, selected, deleted in zip(layer.points, layer.quality(), layer.colors(), layer.selected_points,
                                           layer.deleted):

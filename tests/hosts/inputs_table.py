@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Every input of inputs.py in every host, as a table, with the failures counted:
+"""Prints a table of every input of inputs.py in every host, with the number of failures:
 
     build/venv/bin/python tests/hosts/inputs_table.py [--build DIR] [WORD...]
 
-WORDs choose inputs whose name holds one of them. The exit code is 1 if anything failed.
+WORDs select the inputs whose name contains one of them. The exit code is 1 if anything failed.
 """
 
 import argparse
@@ -23,14 +23,14 @@ import meshlabserver  # noqa: E402
 
 
 def cell(build, server, pymeshlab, host, layer):
-    """(word for the table, what is wrong)"""
+    """(entry of the table, the failure)"""
     try:
         with tempfile.TemporaryDirectory() as folder:
             outcome = input_hosts.try_out(build, server, pymeshlab, host, layer, Path(folder))
-            input_hosts.judge(build, layer, outcome)
-    except Exception as problem:  # whatever it is, it is a failure of this cell and not of the table
+            input_hosts.check(build, layer, outcome)
+    except Exception as problem:  # any exception is a failure of this cell only
         return "FAILED", f"{type(problem).__name__}: {problem}"
-    return ("sentence" if outcome.sentence else f"{outcome.told['rms_error']:.2f} %"), ""
+    return ("sentence" if outcome.sentence else f"{outcome.report['rms_error']:.2f} %"), ""
 
 
 def main():
@@ -53,7 +53,7 @@ def main():
             cells += len(row)
             print(f"{name:26}" + "".join(f"{word:>24}" for word, _ in row), flush=True)
             problems += [f"{name}, {host}: {problem}" for host, (_, problem) in zip(input_hosts.HOSTS, row) if problem]
-    print(f"{len(problems)} of {cells} failed; a figure is the error told, in % of the diagonal")
+    print(f"{len(problems)} of {cells} failed; numbers are the reported errors, in % of the diagonal")
     print("\n".join(problems))
     return 1 if problems else 0
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""MeshLab 2022.02 and 2025.07 without a window: library_host.cpp run by the libraries of Debian trixie and sid.
+"""Runs library_host.cpp with the libraries of MeshLab 2022.02 and 2025.07, of Debian trixie and sid.
 
-They are fetched on first use, and no root rights are needed: the releases' own loader runs the program."""
+The libraries are fetched on first use. No root rights are needed: each release's own loader starts the program."""
 
 import functools
 import json
@@ -20,7 +20,7 @@ RELEASES = tuple(sorted(SUITES))
 
 @functools.lru_cache
 def libraries_of(release):
-    """The folder with the release's libraries, in the user's cache. RuntimeError: they cannot be had, and why."""
+    """The folder of the release's libraries, in the user's cache. RuntimeError says why they cannot be fetched."""
     folder = CACHE / "libraries" / release
     script = Path(__file__).resolve().with_name("fetch_libraries.sh")
     done = subprocess.run([str(script), release, SUITES[release], str(folder)], stdout=subprocess.PIPE,
@@ -50,6 +50,6 @@ def run_2020(build, plugin):
 
 
 def outcomes(done):
-    """The JSON objects that the runs have printed; the process must have come to its end."""
+    """The JSON objects that the runs have printed. AssertionError: the process has failed."""
     assert done.returncode == 0, f"ended with code {done.returncode}: {done.stderr or done.stdout}"
     return [json.loads(line) for line in done.stdout.splitlines()]

@@ -6,9 +6,9 @@
 
     /usr/bin/python3 tests/hosts/memcheck.py [--build DIR]
 
-Prints every error, and every leak, whose stack passes through the plugin, and ends with 1 if there is one. What the
-host, Qt and the OpenGL driver do among themselves is counted and left to them. Takes half a minute on an idle machine. Needs the Debian
-packages valgrind and xvfb.
+Prints each error and leak whose stack passes through the plugin, and ends with 1 if there is one. Errors of the host,
+Qt and the OpenGL driver alone are only counted. Takes half a minute on an idle machine. Needs the Debian packages
+valgrind and xvfb.
 """
 
 import argparse
@@ -29,9 +29,8 @@ TARGET = 50
 
 
 def write_cloud(path, count=25 * TARGET):
-    """A ball of points, as a text file that meshlabserver reads. It encloses space and has points enough for each
-    vertex, so that nothing is left out: a sheet would be learned without smoothing, a cloud of fewer points
-    without the vertices that are learned beyond the target and taken out again."""
+    """Writes points on a sphere as a text file. A closed surface with this many points per vertex runs all of the
+    filter: a sheet would be learned without smoothing, fewer points without vertices beyond the target."""
     points = []
     for i in range(count):
         z, turn = 1 - (2 * i + 1) / count, 2.399963229728653 * i
@@ -47,7 +46,7 @@ def checked_run(build, folder, report, **parameters):
     """Runs the filter under memcheck; returns what meshlabserver printed."""
     server = meshlabserver.make_folder(folder / "meshlab", meshlabserver.plugin_path(build))
     script = meshlabserver.write_script(build, folder / "script.mlx", **parameters)
-    # softpipe: the other software drivers compile their code while they run, which takes memcheck minutes.
+    # The other software drivers compile shaders at run time, which takes minutes under memcheck.
     variables = dict(meshlabserver.environment(server), DISPLAY=meshlabserver.display(), GALLIUM_DRIVER="softpipe")
     command = ["valgrind", "--tool=memcheck", "--leak-check=full", "--show-leak-kinds=definite", "--num-callers=40",
                "--xml=yes", f"--xml-file={report}", str(server / "meshlabserver"),
@@ -65,7 +64,7 @@ def stack_of(error):
 
 
 def judge(report):
-    """(errors through the plugin as text, number of all errors)"""
+    """(errors whose stack passes through the plugin, as text; number of all errors)"""
     errors = ElementTree.parse(report).getroot().findall("error")
     ours = []
     for error in errors:
@@ -76,12 +75,12 @@ def judge(report):
     return ours, len(errors)
 
 
-# The defaults, and what they leave out.
+# The defaults, and the options that they do not use.
 VARIANTS = ({}, {"start_mesh": 1, "feature_measure": 1, "select_features": True})
 
 
 def check(build, parameters):
-    """Runs the filter once. Returns (a line about it, errors through the plugin)."""
+    """Runs the filter once. Returns (a line about the run, errors whose stack passes through the plugin)."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
         text = checked_run(build, Path(folder), report, target_vertices=TARGET, settling_signals_per_vertex=0, threads=2,
@@ -89,7 +88,7 @@ def check(build, parameters):
         ours, all_errors = judge(report)
     figures = meshlabserver.figures(text)
     if figures["warnings"] != 0:
-        raise meshlabserver.ServerError(f"The cloud was learned as something else than a ball:\n{text[-3000:]}")
+        raise meshlabserver.ServerError(f"The filter has warned about the cloud:\n{text[-3000:]}")
     return (f"{figures['vertices']} vertices after {figures['signals']} signals: {len(ours)} errors in the plugin, "
             f"{all_errors - len(ours)} elsewhere"), ours
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Running the filter in meshlabserver 2020.09 without touching the installed MeshLab.
+"""Runs the filter in meshlabserver 2020.09 without changing the installed MeshLab.
 
-meshlabserver looks for plugins beside its own binary, so a copy of it gets a folder of its own with
-the format plugins and ours. Standard library only: run.sh's demo uses this, too."""
+meshlabserver loads plugins from beside its binary, so a copy of it is made in a folder with the format plugins and
+ours. Uses the standard library only, because `./run.sh demo` installs no other."""
 
 import atexit
 import functools
@@ -16,13 +16,13 @@ from pathlib import Path
 
 INSTALLED = Path("/usr/bin/meshlabserver")
 LIBRARIES = Path("/usr/lib/x86_64-linux-gnu/meshlab")
-# Every format that MeshLab reads, and the filters that tests and users put before ours.
+# All file formats of MeshLab, and the filters that tests run before ours.
 NEIGHBOURS = ("libio_*.so", "libfilter_func.so", "libfilter_layer.so", "libfilter_select.so")
 HOST = "meshlab-2020.09"
 
 
 class ServerError(RuntimeError):
-    """meshlabserver did not do what it was asked; the message holds what it said."""
+    """meshlabserver failed; the message is its output."""
 
 
 class CheckError(RuntimeError):
@@ -34,8 +34,8 @@ def plugin_path(build, host=HOST):
 
 
 def make_folder(folder, plugin):
-    """A folder with a meshlabserver that finds `plugin`; made anew at each call. It must not be called bin, where
-    Debian's MeshLab looks elsewhere."""
+    """Makes `folder`, replacing an old one, with a meshlabserver that finds `plugin`. It must not be named bin: from
+    there Debian's MeshLab loads plugins from another place."""
     folder = Path(folder)
     shutil.rmtree(folder, ignore_errors=True)
     (folder / "plugins").mkdir(parents=True)
@@ -49,15 +49,15 @@ def make_folder(folder, plugin):
 
 
 def environment(folder):
-    """Variables under which the word `meshlabserver` means the one in `folder`."""
+    """Environment variables with which the command `meshlabserver` is the one in `folder`."""
     return dict(os.environ, PATH=f"{folder}:{os.environ['PATH']}", LD_LIBRARY_PATH=str(LIBRARIES),
                 XDG_RUNTIME_DIR=str(folder), LC_ALL="C.UTF-8")
 
 
 @functools.lru_cache(maxsize=1)
 def display():
-    """An X server without a screen, started once and ended with this program: xvfb-run would start one for each
-    call, and now and then fails to clean up behind it."""
+    """The display of an X server without a screen, which is started once and ends with this program. xvfb-run would
+    start one for each call, and sometimes fails to end it."""
     reading, writing = os.pipe()
     xvfb = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x1024x24", "-nolisten", "tcp"],
                             pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -80,8 +80,8 @@ def run(folder, *arguments, timeout=600):
 
 def reconstruct(folder, cloud, script, out, timeout=600):
     """Runs `script` on `cloud` and saves the result with quality, colour and selection flags.
-    Returns the figures in the log. The exit code tells nothing of a failed save, so the file is looked at.
-    `timeout` in seconds; None: a user who asks for a million vertices waits for them."""
+    Returns the figures in the log. ServerError: it failed, or saved no file, which the exit code does not show.
+    `timeout` in seconds; None: no limit."""
     out = Path(out)
     out.unlink(missing_ok=True)
     code, text = run(folder, "-i", cloud, "-o", out, "-m", "vq", "vc", "vf", "-s", script, timeout=timeout)
@@ -94,7 +94,7 @@ MEASURES = ("rms_error", "mean_counter", "topology_confidence", "seconds")  # th
 
 
 def figures(text):
-    """The figures of a run that the filter has written into the log, as a dictionary."""
+    """The figures that the filter has written to the log, as a dictionary."""
     lines = [line for line in text.splitlines() if "vertices=" in line and "stop_reason=" in line]
     if not lines:
         raise ServerError(text)
@@ -112,7 +112,7 @@ def write_script(build, path, **values):
 
 
 def check_mesh(build, mesh, reference=None):
-    """What vcglib says of a mesh file (tests/hosts/check_mesh.cpp), as a dictionary. CheckError: it cannot read one."""
+    """The measures of check_mesh.cpp for a mesh file, as a dictionary. CheckError: vcglib cannot read a file."""
     files = [str(mesh)] + ([str(reference)] if reference else [])
     done = subprocess.run([str(Path(build) / "tests" / "check_mesh"), *files], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True, errors="replace", check=False)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-# For other scripts to read in with ".": apt under a configuration of its own, as if nothing were installed, on a mirror
-# that $mirror names; what it knows lies in the working folder. No root rights are needed.
+# Sourced by other scripts: apt with a separate configuration, as if no package were installed, on the mirror $mirror.
+# Its state is kept in the working folder. No root rights are needed.
 
-# The suites that hold a MeshLab by now; which release moves on from year to year, so they are asked for it.
+# The suites that may contain the wanted MeshLab; which one does changes over the years.
 suites="trixie forky sid experimental"
 
 private_apt() {
@@ -15,8 +15,9 @@ private_apt() {
         -o Acquire::Check-Valid-Until=false -o Acquire::Languages=none "$@"
 }
 
-# choose_suite RELEASE SUITE: sets $suite to SUITE, or else the first other one, whose meshlab is of RELEASE, and leaves
-# private_apt on it and in uris what an installation would fetch; fails with a sentence if there is none.
+# choose_suite RELEASE SUITE: sets $suite to the first suite, beginning with SUITE, whose meshlab is of RELEASE, and
+# configures private_apt for it. Writes the packages that an installation would fetch to the file uris. Fails with an
+# error message if there is no such suite.
 choose_suite() {
     release=$1
     preferred=$2
@@ -32,10 +33,10 @@ choose_suite() {
         seen="$seen $suite"
         rm -rf state cache
         mkdir -p state/lists/partial cache/archives/partial
-        # What experimental lacks is in sid.
+        # experimental is incomplete without sid.
         echo "deb [signed-by=$keys] $mirror $suite main" > sources.list
         [ "$suite" != experimental ] || echo "deb [signed-by=$keys] $mirror sid main" >> sources.list
-        # A mirror that lags behind serves a release file past its date, hence Check-Valid-Until above.
+        # Check-Valid-Until is off because the release file of a mirror that lags behind may be past its date.
         if private_apt update > log 2>&1 &&
             private_apt install --print-uris --no-install-recommends --target-release "$suite" meshlab > uris 2> log &&
             grep -q "meshlab_$release" uris; then

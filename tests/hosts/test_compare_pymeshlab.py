@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The neural mesh against Screened Poisson + Quadric Edge Collapse in pymeshlab, on a set small enough for every
-test run, and the measuring tools themselves on surfaces whose error is known. The large tables are made by
-tests/experiments/accuracy/compare_accuracy.py."""
+"""The neural mesh compared with Screened Poisson + Quadric Edge Collapse in pymeshlab on a few models, and the
+measuring tools on surfaces of known error. The large tables are by tests/experiments/accuracy/compare_accuracy.py."""
 
 import numpy as np
 import pymeshlab
@@ -42,7 +41,7 @@ def test_measures_on_concentric_spheres():
         assert found[measure] == pytest.approx(expected, rel=0.02), measure
     assert found["normal_error"] < 1 and not found["inside_out"]
     assert found["self_intersecting_faces"] == 0
-    assert found == evaluate.evaluate(*shapes.sphere(1.01), truth), "the same mesh, other figures"
+    assert found == evaluate.evaluate(*shapes.sphere(1.01), truth), "the same mesh gives other figures"
 
 
 def test_measures_see_a_web_a_hole_and_a_wrong_side():
@@ -86,18 +85,18 @@ def plugin(build):
 
 
 def cloud_rms(cloud, mesh):
-    """From the points of the cloud to the mesh, % of the cloud's diagonal."""
+    """RMS distance from the points of the cloud to the mesh, in % of the cloud's diagonal."""
     meshes = pymeshlab.MeshSet(verbose=False)
     meshes.load_new_mesh(str(cloud))
     meshes.load_new_mesh(str(mesh))
     every = {"samplevert": True, "samplenum": meshes.mesh(0).vertex_number(), "maxdist": pymeshlab.PercentageValue(100)}
-    told = meshes.get_hausdorff_distance(sampledmesh=0, targetmesh=1, **every)
-    return 100 * told["RMS"] / meshes.mesh(0).bounding_box().diagonal()
+    report = meshes.get_hausdorff_distance(sampledmesh=0, targetmesh=1, **every)
+    return 100 * report["RMS"] / meshes.mesh(0).bounding_box().diagonal()
 
 
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory, plugin):
-    """measured(method, name, noise, seed): measures of one method on a model's cloud, each made once."""
+    """measured(method, name, noise, seed): the measures of a method on a model's cloud, cached."""
     made = {}
 
     def one(method, name, noise=0.0, seed=None):
@@ -140,8 +139,8 @@ def test_exact_closed_and_of_the_right_topology(learned, name):
     assert ours["backward_max"] <= 3 * ours["forward_max"], "a web or a spike"
 
 
-THIN = pytest.mark.xfail(strict=True, reason="with 2,000 vertices the wall is half an edge thick, and a signal is won by "
-                                             "the nearest vertex on either side of it")
+THIN = pytest.mark.xfail(strict=True, reason="with 2,000 vertices the wall is half an edge thick, and the nearest "
+                                             "vertex to a signal may be on its other side")
 
 
 @pytest.mark.parametrize("name", ["bunny", "torus", "linked-tori", "two-spheres", pytest.param("cup", marks=THIN)])
@@ -156,14 +155,14 @@ def test_closer_to_the_truth_than_the_peer(learned, peer, name, noise, bound):
     assert learned(name, noise)["sum_rms"] <= bound * peer(name, noise)["sum_rms"]
 
 
-def test_the_filter_tells_the_truth_about_its_mesh(learned):
+def test_the_reported_figures_are_those_of_the_mesh(learned):
     ours = learned("linked-tori")
-    told = ours["report"]
+    report = ours["report"]
     for key in ("vertices", "faces", "genus", "components"):
-        assert told[key] == ours[key], key
-    assert told["boundary_loops"] == 0
-    # Of the very points that were learned: closer than the surface between them. Both are of 20,000 samples.
-    assert told["rms_error"] == pytest.approx(ours["cloud_rms"], rel=0.05)
+        assert report[key] == ours[key], key
+    assert report["boundary_loops"] == 0
+    # Both are measured at 20,000 of the learned points, which are closer than the surface between them.
+    assert report["rms_error"] == pytest.approx(ours["cloud_rms"], rel=0.05)
 
 
 def test_seeds_change_the_mesh_and_not_its_quality(learned):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The paper's experiments in a form small enough for every test run: its table, what drives its figures, features
-and termination. `./run.sh figures` makes the full ones."""
+"""Small forms of the paper's experiments: its table, the data of its figures, features and termination. `./run.sh
+figures` makes the full ones."""
 
 import json
 import subprocess
@@ -48,7 +48,7 @@ def test_kept_rows_are_taken_again_and_only_those(tmp_path):
     assert paper_runs.Kept(path, program).row(make, seed=1) == {"row": 3}
 
 
-# --- the core as a command ----------------------------------------------------------------------------------------
+# --- learn, the core as a program ---------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
@@ -170,20 +170,20 @@ def test_rounded_edges_are_no_creases(feature_rows):
 # --- termination --------------------------------------------------------------------------------------------------
 
 
-def test_the_stop_criterion_speaks_of_the_mesh_and_eq_4_does_not(build, learn, tmp_path):
+def test_the_stop_criterion_depends_on_the_mesh_and_eq_4_does_not(build, learn, tmp_path):
     paper_termination.main(["--learn", str(learn), "--trace", str(build / "tests" / "counter_trace"), "--out",
                             str(tmp_path), "--models", "bunny,filleted-cube", "--samples", "50000", "--most", "5000",
                             "--thresholds", ".25"])
-    told = json.loads((tmp_path / "termination.json").read_text())
-    for trace in told["traces"].values():
+    results = json.loads((tmp_path / "termination.json").read_text())
+    for trace in results["traces"].values():
         assert len(trace) == 4
         # 1 a signal on average, less 5 % of the sum: 0.95 / 0.05.
         assert [line["sum_eq4"] for line in trace] == pytest.approx([19] * 4, rel=0.25)
         turns = [line["mean_turn"] for line in trace]
         assert turns[-1] < 0.6 * turns[0]
-    rows = told["rows"]
+    rows = results["rows"]
     assert all(row["stopped"]["stop_reason"] == paper_termination.CONVERGED for row in rows)
-    # The bunny needs more vertices for normals as good; with as many for both, they are less alike.
+    # The bunny needs more vertices for the same quality of normals; with equal numbers the qualities differ more.
     assert paper_termination.spread([row["stopped"]["vertices"] for row in rows]) > 2
     off = [row for row in rows if row["fit"] == "fit off"]
     assert all(paper_termination.spread([row["stopped"][error] for row in off]) <

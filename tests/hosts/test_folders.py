@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The documented ways to treat a whole folder of clouds, run as they are documented."""
+"""The documented scripts that make meshes of a folder of clouds."""
 
 import shutil
 import subprocess
@@ -42,7 +42,7 @@ def test_meshlabserver_with_gnu_parallel(build, server, folder):
 
 
 def test_pymeshlab_with_a_process_pool(build, folder):
-    """And with a cloud that cannot be learned between the others."""
+    """One of the clouds cannot be learned."""
     write_points(folder / "clouds" / "c_point.ply", [[1, 2, 3]])
     plugin = meshlabserver.plugin_path(build, "pymeshlab-2025.7")
     done = subprocess.run([sys.executable, str(EXAMPLES / "folder_pymeshlab.py"), str(plugin)], cwd=folder, check=False,

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Every layer of inputs.py in every host: a right mesh or a sentence, the same in all of them, and the layer as it
-was. inputs_table.py prints the same as a table."""
+"""Every layer of inputs.py in every host: the result is a correct mesh or an error message, the same in all hosts, and
+the layer is unchanged. inputs_table.py prints this as a table."""
 
 from html import escape
 
@@ -18,7 +18,7 @@ COUNTS = ("vertices", "faces", "signals", "splits", "collapses", "genus", "compo
 
 @pytest.fixture(scope="module")
 def first_of():
-    """What came of each input in the first host."""
+    """The result of each input in the first host."""
     return {}
 
 
@@ -31,16 +31,16 @@ def assert_alike(one, other):
 
 @pytest.mark.parametrize("host", input_hosts.HOSTS)
 @pytest.mark.parametrize("name", INPUTS)
-def test_a_right_mesh_or_a_sentence(build, server, pymeshlab, first_of, tmp_path, name, host):
+def test_a_correct_mesh_or_an_error_message(build, server, pymeshlab, first_of, tmp_path, name, host):
     layer = INPUTS[name]
     outcome = input_hosts.try_out(build, server, pymeshlab, host, layer, tmp_path)
-    came = (outcome.sentence or [outcome.told[key] for key in COUNTS], outcome.mesh_in_single_precision(layer))
-    assert_alike(came, first_of.setdefault(name, came))
-    input_hosts.judge(build, layer, outcome)
+    result = (outcome.sentence or [outcome.report[key] for key in COUNTS], outcome.mesh_in_single_precision(layer))
+    assert_alike(result, first_of.setdefault(name, result))
+    input_hosts.check(build, layer, outcome)
 
 
 def condition_in(sentence):
-    """What the sentence tells the user to select by."""
+    """The condition of selection that the error message advises."""
     return sentence.split("the condition ")[1].split(",")[0]
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""valgrind finds nothing wrong with the plugin in meshlabserver."""
+"""valgrind finds no error of the plugin in meshlabserver."""
 
 import memcheck
 import pytest
@@ -12,7 +12,7 @@ REPORT = """<valgrindoutput><error><kind>UninitCondition</kind><what>Conditional
 
 
 @pytest.mark.parametrize("inner, expected", [(memcheck.PLUGIN, 1), ("libQt5Core.so.5", 0)])
-def test_errors_below_the_plugin_are_its_own(tmp_path, inner, expected):
+def test_an_error_with_the_plugin_on_its_stack_is_the_plugins(tmp_path, inner, expected):
     (tmp_path / "report.xml").write_text(REPORT.format(inner=inner))
     ours, all_errors = memcheck.judge(tmp_path / "report.xml")
     assert (len(ours), all_errors) == (expected, 1)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""MeshLab 2020.09: sentences for bad parameters and for no input at all; test_inputs.py has the layers."""
+"""MeshLab 2020.09: error messages for invalid parameters and without a layer; test_inputs.py has the layers."""
 
 import meshlabserver
 from conftest import out_of_range
@@ -10,7 +10,7 @@ FAILED = 255
 
 
 def assert_refused(code, text, words):
-    """The filter failed with a sentence in the log, and nothing worse happened."""
+    """The filter failed with one sentence in the log, and the host did not crash."""
     assert code == FAILED, text
     assert "Problem with filter: Surface Reconstruction: Neural Mesh" in text
     lines = [line for line in text.splitlines() if words in line and not line.startswith("LOG")]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""What the plugins are as files: hardened, closed but for Qt's entry points, and in need of nothing but their host,
-Qt and the compiler's libraries."""
+"""The plugin files: hardened, with no exported symbols but Qt's entry points, and dependent on their host, Qt and the
+compiler's libraries only."""
 
 import subprocess
 from pathlib import Path
@@ -12,7 +12,7 @@ import meshlabserver
 import pytest
 
 HOSTS = ("meshlab-2020.09", "meshlab-2022.02", "meshlab-2025.07", "pymeshlab-2025.7")
-# Whose classes the adapters call; anything else without a version would be a symbol of ours that is missing.
+# The classes that the adapters use; any other undefined symbol without a version would be a missing one of ours.
 MESHLAB_CLASSES = ("FilterPlugin", "GLLogStream", "MeshDocument", "MeshLabApplication", "MeshLabPluginLogger",
                    "MeshModel", "RichBool", "RichEnum", "RichFloat", "RichInt", "RichParameterList")
 LIBRARIES = ("libmeshlab-common.so", "libQt5Core.so.5", "libQt5Widgets.so.5", "libstdc++.so.6", "libm.so.6",
@@ -20,7 +20,7 @@ LIBRARIES = ("libmeshlab-common.so", "libQt5Core.so.5", "libQt5Widgets.so.5", "l
 VERSIONS = ("Qt_5", "GLIBCXX_", "CXXABI_", "GCC_", "GLIBC_")
 
 
-def told_by(*command):
+def output_of(*command):
     return subprocess.run([str(word) for word in command], check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
@@ -35,17 +35,17 @@ def plugin(build, host):
 
 
 def undefined(plugin, *options):
-    """(kind, symbol) of what the host's process has to bring along; weak ones (w) may be missing."""
-    return [line.split(None, 1) for line in told_by("nm", "-D", "-u", *options, plugin).splitlines()]
+    """(kind, symbol) of the undefined symbols; weak ones (w) may be missing in the host."""
+    return [line.split(None, 1) for line in output_of("nm", "-D", "-u", *options, plugin).splitlines()]
 
 
 def test_only_qts_entry_points_can_be_called(plugin):
-    names = told_by("nm", "-D", "--defined-only", plugin)
+    names = output_of("nm", "-D", "--defined-only", plugin)
     functions = [line.split()[2] for line in names.splitlines() if line.split()[1] == "T"]
     assert sorted(functions) == ["qt_plugin_instance", "qt_plugin_query_metadata"]
 
 
-def test_nothing_is_missing_but_what_the_host_has(plugin):
+def test_all_undefined_symbols_are_of_the_host_or_of_libraries(plugin):
     strong = [symbol for kind, symbol in undefined(plugin, "-C") if kind == "U"]
     assert any("@" in symbol for symbol in strong)
     for symbol in strong:
@@ -65,24 +65,24 @@ def library_of(host):
 
 @pytest.mark.parametrize("host", ["meshlab-2020.09", "pymeshlab-2025.7"], indirect=True)
 def test_the_hosts_library_has_what_is_missing(plugin, host):
-    """The other two hosts are not installed; test_library_hosts.py loads their plugins, all bound at once."""
+    """The other hosts are not installed; test_library_hosts.py loads their plugins with immediate binding."""
     offered = {line.split()[-1].split("@")[0] for line in
-               told_by("nm", "-D", "--defined-only", library_of(host)).splitlines()}
+               output_of("nm", "-D", "--defined-only", library_of(host)).splitlines()}
     missing = {symbol for kind, symbol in undefined(plugin) if kind == "U" and "@" not in symbol} - offered
     assert not missing
 
 
 def test_it_needs_no_other_library_and_searches_no_folder(plugin, host):
-    dynamic = told_by("readelf", "-dW", plugin)
+    dynamic = output_of("readelf", "-dW", plugin)
     needed = [line.split("[")[1].rstrip("]") for line in dynamic.splitlines() if "(NEEDED)" in line]
     assert set(needed) <= set(LIBRARIES)
-    # Where the host lends its symbols itself, linking its library by name would tie the plugin to a place.
+    # The later hosts provide their symbols when they load a plugin; a dependency would bind it to a path.
     assert ("libmeshlab-common.so" in needed) == (host in ("meshlab-2020.09", "pymeshlab-2025.7"))
     assert "RPATH" not in dynamic and "RUNPATH" not in dynamic
 
 
 def test_it_is_hardened(plugin):
-    dynamic, segments = told_by("readelf", "-dW", plugin), told_by("readelf", "-lW", plugin)
+    dynamic, segments = output_of("readelf", "-dW", plugin), output_of("readelf", "-lW", plugin)
     assert "BIND_NOW" in dynamic and "TEXTREL" not in dynamic
     assert "GNU_RELRO" in segments
     stack = next(line for line in segments.splitlines() if "GNU_STACK" in line)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""pymeshlab: results as a dictionary, sentences as exceptions, an untouched MeshSet after them, and the same mesh as
-in meshlabserver to the last bit."""
+"""pymeshlab: results as a dictionary, errors as exceptions that leave the MeshSet unchanged, and the same mesh as in
+meshlabserver, bit by bit."""
 
 import subprocess
 import sys
@@ -28,34 +28,34 @@ def learn(meshes, **values):
 def test_exact_count_sound_mesh_and_the_full_dictionary(build, meshes, model, tmp_path, name):
     cloud, _ = model(name)
     meshes.load_new_mesh(str(cloud))
-    told = learn(meshes, target_vertices=1500, select_features=True)
+    report = learn(meshes, target_vertices=1500, select_features=True)
     learned = meshes.current_mesh()
 
-    assert set(told) == {*COUNTS, *MEASURES}
-    assert all(type(told[key]) is int for key in COUNTS) and all(type(told[key]) is float for key in MEASURES)
-    assert learned.vertex_number() == told["vertices"] == 1500
-    assert learned.face_number() == told["faces"] == 2996
-    selected = learned.vertex_selection_array().copy()  # the next filter uses the selection for itself
+    assert set(report) == {*COUNTS, *MEASURES}
+    assert all(type(report[key]) is int for key in COUNTS) and all(type(report[key]) is float for key in MEASURES)
+    assert learned.vertex_number() == report["vertices"] == 1500
+    assert learned.face_number() == report["faces"] == 2996
+    selected = learned.vertex_selection_array().copy()  # the next filter changes the selection
     topology = meshes.get_topological_measures()
     assert topology["is_mesh_two_manifold"] and topology["boundary_edges"] == 0
-    assert topology["genus"] == told["genus"] == 0 and topology["connected_components_number"] == 1
-    assert 0.9 <= told["topology_confidence"] <= 1
+    assert topology["genus"] == report["genus"] == 0 and topology["connected_components_number"] == 1
+    assert 0.9 <= report["topology_confidence"] <= 1
     assert topology["unreferenced_vertices"] == 0
-    assert told["stop_reason"] == 0 and told["signals"] > 0 and told["splits"] > 0 and told["seconds"] > 0
+    assert report["stop_reason"] == 0 and report["signals"] > 0 and report["splits"] > 0 and report["seconds"] > 0
     assert learned.has_vertex_scalar() and learned.has_vertex_color()
     counters = learned.vertex_scalar_array()
-    assert counters.min() >= 0 and told["mean_counter"] == pytest.approx(counters.mean(), rel=1e-4)
-    assert selected.sum() == told["feature_vertices"] > 0
-    assert (selected == (counters > 1.0 * told["mean_counter"])).mean() > 0.999
+    assert counters.min() >= 0 and report["mean_counter"] == pytest.approx(counters.mean(), rel=1e-4)
+    assert selected.sum() == report["feature_vertices"] > 0
+    assert (selected == (counters > 1.0 * report["mean_counter"])).mean() > 0.999
     assert (learned.transform_matrix() == np.eye(4)).all()
     assert learned.label() == "Neural Mesh"
 
 
 def test_every_vertex_is_accounted_for(meshes, model):
-    """From the tetrahedron, without the fit: each split adds a vertex, each collapse takes one away."""
+    """From the tetrahedron, without the fit: each split adds a vertex, each collapse removes one."""
     meshes.load_new_mesh(str(model("bunny")[0]))
-    told = learn(meshes, target_vertices=1500, start_mesh=1, fit_to_points=False)
-    assert told["vertices"] == 4 + told["splits"] - told["collapses"] == 1500
+    report = learn(meshes, target_vertices=1500, start_mesh=1, fit_to_points=False)
+    assert report["vertices"] == 4 + report["splits"] - report["collapses"] == 1500
 
 
 def test_the_input_layer_stays_and_the_result_is_current(meshes, model):
@@ -108,12 +108,12 @@ def test_selected_only_learns_the_selected_part(pymeshlab, meshes, draw_from_fac
 
 
 def test_a_mesh_with_faces_is_drawn_over_its_area(pymeshlab, meshes):
-    """A tetrahedron of four vertices has nothing but its faces to learn from."""
+    """Four vertices are too few for a cloud, so the points must come from the faces."""
     tetrahedron = pymeshlab.Mesh(np.array([[1.0, 1, 1], [-1, -1, 1], [-1, 1, -1], [1, -1, -1]]),
                                  np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]))
     meshes.add_mesh(tetrahedron)
-    told = learn(meshes, target_vertices=500)
-    assert told["vertices"] == 500 and told["rms_error"] < 1
+    report = learn(meshes, target_vertices=500)
+    assert report["vertices"] == 500 and report["rms_error"] < 1
 
 
 LIST_PARAMETERS = """import pymeshlab, sys
@@ -167,17 +167,17 @@ print(meshes.apply_filter(sys.argv[3], target_vertices=100)["warnings"])
 
 
 def test_warnings_are_counted_and_logged(build, tmp_path):
-    """A sheet is learned with warnings, a ball without. In a process of its own: after
-    MeshSets that are not verbose a verbose one prints nothing here."""
+    """A sheet is learned with warnings, a ball without. In a separate process, because after quiet MeshSets a verbose
+    one prints nothing."""
     plugin = str(meshlabserver.plugin_path(build, "pymeshlab-2025.7"))
     counted = []
     for points in (inputs.square(), inputs.ball()):
         cloud = tmp_path / "cloud.ply"
         inputs.write_ply(inputs.Input(points), cloud)
-        told = subprocess.run([sys.executable, "-c", LEARN_AND_LOG, plugin, str(cloud), PYTHON_NAME], check=True,
+        report = subprocess.run([sys.executable, "-c", LEARN_AND_LOG, plugin, str(cloud), PYTHON_NAME], check=True,
                               capture_output=True, text=True)
-        counted.append(int(told.stdout.split()[-1]))
-        log = told.stdout + told.stderr
+        counted.append(int(report.stdout.split()[-1]))
+        log = report.stdout + report.stderr
         assert log.count("LOG: 1 ") == counted[-1], log  # the host's number for a warning
     assert counted[0] > 0 and counted[1] == 0
 

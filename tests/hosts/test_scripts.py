@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The example scripts: complete, and each run in meshlabserver 2020.09 with its result judged by vcglib."""
+"""The example scripts: up to date, and run in meshlabserver 2020.09; vcglib checks the results."""
 
 import re
 
@@ -12,7 +12,7 @@ import pytest
 NAMES = sorted(example_scripts.EXAMPLES)
 
 
-def test_every_script_is_what_the_table_of_parameters_says(build, tmp_path):
+def test_every_script_agrees_with_the_table_of_parameters(build, tmp_path):
     found = sorted(path.stem for path in example_scripts.FOLDER.glob("*.mlx"))
     assert found == NAMES, "run tests/hosts/example_scripts.py"
     for name in NAMES:
@@ -21,7 +21,7 @@ def test_every_script_is_what_the_table_of_parameters_says(build, tmp_path):
             f"{name}.mlx is out of date: run tests/hosts/example_scripts.py"
 
 
-def test_a_script_that_names_no_parameter_of_ours_is_not_written(build, tmp_path):
+def test_a_script_with_an_unknown_parameter_is_not_written(build, tmp_path):
     with pytest.raises(Exception, match="write_mlx"):
         meshlabserver.write_script(build, tmp_path / "wrong.mlx", target_vertexes=5)
 
@@ -31,31 +31,31 @@ def test_script_runs_and_its_result_is_sound(build, server, model, tmp_path, nam
     cloud, surface = model("bunny")
     source = surface if name == "vertices_of_a_mesh" else cloud
     script = example_scripts.FOLDER / f"{name}.mlx"
-    told = meshlabserver.reconstruct(server, source, script, tmp_path / "out.ply")
+    report = meshlabserver.reconstruct(server, source, script, tmp_path / "out.ply")
     found = meshlabserver.check_mesh(build, tmp_path / "out.ply", surface)
     wanted = int(re.search(r'name="target_vertices" value="(\d+)"', script.read_text()).group(1))
 
-    assert found["vertices"] == told["vertices"] == wanted
-    assert found["faces"] == told["faces"] == 2 * wanted - 4
-    assert told["stop_reason"] == 0
+    assert found["vertices"] == report["vertices"] == wanted
+    assert found["faces"] == report["faces"] == 2 * wanted - 4
+    assert report["stop_reason"] == 0
     assert found["watertight"] and found["oriented"]
     assert (found["non_manifold_edges"], found["non_manifold_vertices"], found["unreferenced_vertices"]) == (0, 0, 0)
     assert (found["genus"], found["components"], found["boundary_loops"]) == (0, 1, 0)
-    assert (told["genus"], told["components"], told["boundary_loops"]) == (0, 1, 0)
+    assert (report["genus"], report["components"], report["boundary_loops"]) == (0, 1, 0)
     assert found["volume"] > 0, "the faces look inwards"
     assert found["quality"] and found["color"]
-    # An edge of the mesh is about 170 / sqrt(vertices) % of the diagonal, and the error falls with its square.
+    # The mean edge is about 170 / sqrt(vertices) % of the diagonal; the error is proportional to its square.
     bound = 0.08 * 10000 / wanted
     assert found["rms_to_mesh"] <= bound and found["rms_to_reference"] <= bound
-    assert told["rms_error"] <= bound
+    assert report["rms_error"] <= bound
     if example_scripts.EXAMPLES[name].get("select_features"):
-        assert 0 < found["selected"] == told["feature_vertices"] < wanted
+        assert 0 < found["selected"] == report["feature_vertices"] < wanted
     else:
         assert found["selected"] == 0
 
 
 def test_valences_are_those_of_a_good_mesh(build, server, model, tmp_path):
-    """Of the mesh as learned: the edges that the fit swaps follow the data, whatever the valences."""
+    """Without the fit, whose edge flips follow the data and not the valences."""
     cloud, _ = model("bunny")
     for utility_counter in (0, 1):
         script = meshlabserver.write_script(build, tmp_path / "s.mlx", utility_counter=utility_counter,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""A plugin in a host it is not built for is refused with a sentence, and never runs."""
+"""A plugin in a host for which it is not built is refused with an error message, and does not run."""
 
 import subprocess
 import sys
@@ -15,7 +15,7 @@ HOSTS = ("meshlab-2020.09", "meshlab-2022.02", "meshlab-2025.07", "pymeshlab-202
 
 @pytest.mark.parametrize("host", HOSTS[1:])
 def test_meshlab_2020_loads_no_later_plugin(build, model, tmp_path, host):
-    """Its loader misses the later interface, says so, names the file, and does without the filter."""
+    """Its loader reports that it cannot load the file, and the host runs without the filter."""
     plugin = meshlabserver.plugin_path(build, host)
     folder = meshlabserver.make_folder(tmp_path / "meshlab", plugin)
     script = meshlabserver.write_script(build, tmp_path / "s.mlx", target_vertices=100)
@@ -27,8 +27,8 @@ def test_meshlab_2020_loads_no_later_plugin(build, model, tmp_path, host):
 
 
 @pytest.mark.parametrize("kind, built", [("older_release", "2020.07 (float)"), ("other_scalar", "2020.09 (double)")])
-def test_meshlab_2020_is_told_by_the_plugin_itself(build, model, tmp_path, kind, built):
-    """This host would run them into its memory; it checks nothing."""
+def test_the_plugin_itself_refuses_to_run_in_meshlab_2020(build, model, tmp_path, kind, built):
+    """This host does not check plugins; running these would corrupt its memory."""
     plugin = build / "tests" / "wrong_plugins" / kind / "libfilter_neuralmesh.so"
     folder = meshlabserver.make_folder(tmp_path / "meshlab", plugin)
     script = meshlabserver.write_script(build, tmp_path / "s.mlx", target_vertices=100)

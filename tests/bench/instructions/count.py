@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Counts the instructions per signal of the learning loop with callgrind and holds them against the recorded figure.
+"""Counts the instructions per signal of the learning loop with callgrind and compares them with the recorded count.
 
-    count.py build/tests/learning_loop            fails when a signal costs over 5 % more than recorded
-    count.py --record build/tests/learning_loop   makes the present figure the recorded one
+    count.py build/tests/learning_loop            fails if they are over 5 % more than recorded
+    count.py --record build/tests/learning_loop   records the present count
 
-Instructions, unlike seconds, are the same on a busy machine. The program is compiled for one instruction set, so
-that they are the same on any machine, too; only what Learner::run() calls is counted. The figure belongs to Debian
-12's compiler: record it anew when that, or the work that a signal is meant to do, changes.
+Instructions, unlike seconds, do not depend on the load of the machine, nor on its processor, because the program is
+compiled for one instruction set. Only Learner::run() and its callees are counted. The recorded count is that of
+Debian 12's compiler: record it again after a change of the compiler or an intended change of the work per signal.
 """
 
 import argparse
@@ -34,7 +34,7 @@ def instructions_per_signal(program):
             sys.exit(f"{program} under callgrind ended with {done.returncode}:\n{done.stderr}")
         total = int(re.search(r"^(?:totals|summary): (\d+)", counts.read_text(), re.MULTILINE).group(1))
     signals = int(done.stdout)
-    # Next to nothing counted means that the toggle has missed the loop, not that it has become cheap.
+    # So few instructions mean that callgrind has not found the function.
     if total < 100 * signals:
         sys.exit(f"callgrind has counted only {total} instructions for {signals} signals: is Learner::run() inlined?")
     return total / signals
@@ -42,7 +42,7 @@ def instructions_per_signal(program):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--record", action="store_true", help="write the figure instead of comparing with it")
+    parser.add_argument("--record", action="store_true", help="record the count instead of comparing it")
     parser.add_argument("program")
     options = parser.parse_args()
     now = instructions_per_signal(options.program)

@@ -2,15 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The whole table of accuracy and topology beside its goals, and whether they are met.
+"""The table of accuracy and topology, with the goals and whether they are met.
 
     accuracy_table.py --plugin LIBRARY.so | --ours-command 'PROGRAM' [--data FOLDER] [--out FOLDER] [--minutes N]
     accuracy_table.py --plugin LIBRARY.so --small
 
-Every result is kept in OUT/kept, ours under the sum of the program: a run that was broken off, or ended after
---minutes, goes on where it stood, and the tables say how many runs they are made of. --small takes models made in
-code and a few runs; it ends with code 1 if a genus or number of components is wrong, a seed is stuck, a case is
-more than 1.2 times as far off as the peer, or a run fails. Without a data folder the public models stand in.
+Results are kept in OUT/kept, ours under the checksum of the program, so an interrupted run, or one that --minutes
+ended, continues where it stopped; the tables say how many runs they contain. --small does a few runs on models made
+in code. It ends with code 1 if a genus or a number of components is wrong, a seed is stuck, an error is more than
+1.2 times the peer's, or a run fails. Without a data folder the public models are used.
 """
 
 import argparse
@@ -31,10 +31,10 @@ from compare_accuracy import by_case, geometric_mean, table, topology_right
 
 TABLE_MODELS = ("bunny", "koala", "fandisk", "kitten", "rocker-arm", "eight", "block", "genus3")
 SMALL_MODELS = ("torus", "two-spheres", "linked-tori", "filleted-cube")
-# The others' parts come closer than noise of .3 % leaves apart in 20,000 points.
+# In 20,000 points with noise of .3 % the parts of the other models cannot be sentences apart.
 SMALL_NOISY_MODELS = ("torus", "filleted-cube")
 PEERS = ("poisson", "poisson-smooth")
-EXTRA_TOPOLOGY = ("turbine",)  # not in the score
+EXTRA_TOPOLOGY = ("turbine",)  # not counted in the goal
 TOPOLOGY_SAMPLES = (20_000, 200_000)
 
 # Goals: ratios over a peer, largest backward over largest forward distance, % of the faces.
@@ -49,14 +49,14 @@ def parse(arguments):
     parser.add_argument("--ours-command", help="instead of the plugin: PROGRAM IN.ply OUT.ply key=value...")
     parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
     parser.add_argument("--out", type=Path, default=Path("build/experiments"))
-    parser.add_argument("--minutes", type=float, default=float("inf"), help="begin no run after that long")
+    parser.add_argument("--minutes", type=float, default=float("inf"), help="start no run later than this")
     parser.add_argument("--seeds", type=compare_accuracy.numbers(int), default=[1, 2, 3, 4, 5])
     parser.add_argument("--noise", type=compare_accuracy.numbers(float), default=[0, .3, .1, .6])
     parser.add_argument("--vertices", type=compare_accuracy.numbers(int), default=[500, 2000, 10000])
     parser.add_argument("--models", type=compare_accuracy.numbers(str), help="names of models.py")
-    parser.add_argument("--peers", type=compare_accuracy.numbers(str), default=list(PEERS), help="the first leads")
+    parser.add_argument("--peers", type=compare_accuracy.numbers(str), default=list(PEERS), help="the goals are over the first")
     parser.add_argument("--only", choices=["accuracy", "topology"], help="one of the two tables")
-    parser.add_argument("--small", action="store_true", help="the quick form, for the tests")
+    parser.add_argument("--small", action="store_true", help="a few quick runs, for the tests")
     options = parser.parse_args(arguments)
     if not (options.plugin or options.ours_command):
         parser.error("Give --plugin or --ours-command: the table is about them.")
@@ -79,7 +79,7 @@ def parse(arguments):
 
 
 def kept(options, key, make):
-    """The rows under the key, made if they are not there and there is time; else none."""
+    """The rows kept under the key; else those of make(), or none when the time is over."""
     name = hashlib.sha256(json.dumps(key, sort_keys=True).encode()).hexdigest()[:16]
     path = options.out / "kept" / f"{name}.json"
     if not path.exists():
@@ -105,7 +105,7 @@ def with_samples(options, samples):
 
 
 def accuracy_rows(options, note):
-    """All rows, of the first seed for all models and noises before the second one's."""
+    """All rows; every model and noise with the first seed before any with the second."""
     rows = []
     for seed in options.seeds:
         for noise in options.noise:
@@ -127,7 +127,7 @@ def verdict(figure, goal):
 
 
 def peer_columns(mine, theirs, cases, noise, vertices):
-    """Score with its goal, worst model, time with its goal; of the cases that the peer has a mesh for."""
+    """Score with its goal, worst model, time with its goal, over the cases for which the peer made a mesh."""
     pairs = [(row, theirs[key][0]) for key in cases if key in theirs for row in mine[key]]
     if not pairs:
         return ["-"] * 3
@@ -175,7 +175,7 @@ def accuracy_table(rows, options):
 
 
 def case_table(rows, options):
-    """Every case with the scores of the seeds: worst over median."""
+    """Each case with the scores of its seeds: median, and worst over median."""
     mine, peer = by_case(rows, "neural"), by_case(rows, options.peers[0])
     header = ["model", "noise %", "vertices", "seeds", "median error", "worst / median", f"over {options.peers[0]}"]
     lines = []
@@ -214,21 +214,21 @@ def topology_table(options, note):
 
 
 def faults(rows, options):
-    """What must never be, as sentences."""
-    told = [f"{r['method']} failed for {r['model']}, noise {r['noise']:g} %: {r['error']}"
+    """One sentence for each result that must not occur."""
+    sentences = [f"{r['method']} failed for {r['model']}, noise {r['noise']:g} %: {r['error']}"
             for r in rows if "error" in r]
     mine, peer = by_case(rows, "neural"), by_case(rows, options.peers[0])
     for key, own in mine.items():
         case = f"{key[0]}, noise {key[1]:g} %, {key[2]} vertices"
-        told += [f"{case}, seed {r['seed']}: components {r['components']} and genus {r['genus']} are wrong."
+        sentences += [f"{case}, seed {r['seed']}: components {r['components']} and genus {r['genus']} are wrong."
                  for r in own if not topology_right(r)]
         if worst_over_median(own) > STUCK:
-            told.append(f"{case}: a seed is stuck, {worst_over_median(own):.2f} times the median.")
+            sentences.append(f"{case}: a seed is stuck, {worst_over_median(own):.2f} times the median.")
         if key in peer:
             ratio = max(r["sum_rms"] for r in own) / peer[key][0]["sum_rms"]
             if ratio > WORST_RATIO:
-                told.append(f"{case}: {ratio:.2f} times the error of {options.peers[0]}.")
-    return told
+                sentences.append(f"{case}: {ratio:.2f} times the error of {options.peers[0]}.")
+    return sentences
 
 
 def main(arguments=None):

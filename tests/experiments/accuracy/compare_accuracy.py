@@ -2,15 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Neural meshes against what people use today, on the same clouds: accuracy, topology, time, memory.
+"""Neural meshes compared with common methods on the same clouds: accuracy, topology, time, memory.
 
     compare_accuracy.py --plugin LIBRARY.so | --ours-command 'PROGRAM'   [--data FOLDER] [--out FOLDER]
 
-prints a table (markdown) and writes OUT/accuracy.md and OUT/accuracy.json. Without ours: the peers alone. The peers'
-results are kept in OUT/cache, so that only ours is run anew; delete the folder to measure them again.
+prints a table (markdown) and writes OUT/accuracy.md and OUT/accuracy.json. Without a plugin or command only the peers
+are measured. Their results are kept in OUT/cache; delete the folder to measure them again.
 
-The score of a run is the sum of both RMS directions (evaluate.py). A "ratio" is ours over the first peer's of
---peers, on the same cloud; over several models it is the geometric mean.
+The score of a run is the sum of both RMS directions (evaluate.py). A "ratio" is our score over that of the first of
+--peers on the same cloud; over several models it is the geometric mean.
 """
 
 import argparse
@@ -26,7 +26,7 @@ import evaluate
 import models
 import peers
 
-# Raise when a change of the peers or the measures makes kept results wrong.
+# Raise this after a change of the peers or the measures that makes cached results wrong.
 CACHE_VERSION = 2
 
 
@@ -43,7 +43,7 @@ def parse(arguments):
     parser.add_argument("--vertices", type=numbers(int), default=[500, 2000, 10000])
     parser.add_argument("--noise", type=numbers(float), default=[0, 0.1, 0.3, 0.6], help="%% of the diagonal")
     parser.add_argument("--samples", type=int, default=200_000, help="points of the cloud")
-    parser.add_argument("--seeds", type=numbers(int), default=[1], help="of ours; the cloud has its own")
+    parser.add_argument("--seeds", type=numbers(int), default=[1], help="of our runs; the cloud has a seed of its own")
     parser.add_argument("--cloud-seed", type=int, default=1)
     parser.add_argument("--peers", type=numbers(str), default=["poisson"], help=f"of {', '.join(peers.PEERS)}")
     parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
@@ -63,7 +63,7 @@ def parse(arguments):
 
 
 class Case:
-    """One cloud: a model, its truth and the file of points, both made only when they are needed."""
+    """A model with noise: its true surface and the file of its cloud, both made on first use."""
 
     def __init__(self, name, noise, options):
         self.name, self.noise, self.options = name, noise, options
@@ -91,8 +91,8 @@ class Case:
         return path
 
     def rows(self, method, counts, seed=None, **ours):
-        """Runs a method for all counts and measures the results. A run that fails gives rows with its error."""
-        truth = self.truth()  # a model that cannot be had is the caller's trouble, not a failure of the method
+        """Runs a method for all counts and measures the results. A failed run gives rows with its error."""
+        truth = self.truth()  # a model that is not available is no failure of the method
         folder = self.folder / (method if seed is None else f"{method}-{seed}")
         try:
             figures = peers.run(method, self.cloud(), folder, counts, **ours)
@@ -110,7 +110,7 @@ class Case:
 
 
 def peer_rows(case, peer, counts, cache):
-    """The rows of a peer, from the cache where they are there."""
+    """The rows of a peer, from the cache if possible."""
     known = {}
     for n in counts:
         name = json.dumps({"peer": peer, "target": n, "version": CACHE_VERSION, **case.key()}, sort_keys=True)
@@ -243,9 +243,9 @@ def main(arguments=None):
         sys.exit(str(error))
     text, summaries = report(rows, options)
     options.out.mkdir(parents=True, exist_ok=True)
-    told = {"samples": options.samples, "settings": options.set, "cloud_seed": options.cloud_seed}
+    conditions = {"samples": options.samples, "settings": options.set, "cloud_seed": options.cloud_seed}
     (options.out / f"{options.name}.json").write_text(
-        json.dumps({"options": told, "summary": summaries, "rows": rows}, indent=1))
+        json.dumps({"options": conditions, "summary": summaries, "rows": rows}, indent=1))
     (options.out / f"{options.name}.md").write_text(text + "\n")
     print(text)
 

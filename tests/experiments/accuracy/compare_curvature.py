@@ -2,17 +2,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The per-vertex counter against MeshLab's curvature filters: which ranks the places of a surface best?
+"""The per-vertex counter compared with MeshLab's curvature filters: which ranks the vertices best by curvature?
 
     compare_curvature.py --plugin LIBRARY.so | --ours-command 'PROGRAM'   [--data FOLDER] [--out FOLDER]
 
-The judge is the true surface: at each vertex, how far its true normals spread within a fixed ball (two mean edge
-lengths in radius). That is defined at creases, too, and needs no second derivatives. Reported is Spearman's rank
-correlation with that spread, of
-- the counter that the filter leaves in the quality,
+The reference is the spread of the true surface's normals within a ball around each vertex, of a radius of two mean
+edge lengths. It is defined at creases, and needs no second derivatives. The table has Spearman's rank correlation of
+that spread with
+- the counter that the filter writes to the quality,
 - MeshLab's curvature filters on the same final mesh,
 - the best of those filters on the mesh that Screened Poisson + Quadric Edge Collapse make of the same cloud,
-and the correlation of the counter with the filters themselves. OUT/curvature.md and OUT/curvature.json.
+and the correlation of the counter with the filters. Writes OUT/curvature.md and OUT/curvature.json.
 """
 
 import json
@@ -30,7 +30,7 @@ import peers
 MODELS = ("bunny", "fandisk", "rocker-arm", "block", "feline")
 PUBLIC = ("bunny", "fandisk", "armadillo", "anchor")
 
-# name: (filter, its arguments). All give curvature with a sign, of which the size counts here.
+# name: (filter, its arguments). Their curvatures are signed; their absolute values are compared.
 CURVATURES = {
     "curvedness": ("compute_curvature_principal_directions_per_vertex",
                    {"method": "Quadric Fitting", "curvcolormethod": "CurvedNess", "autoclean": False}),
@@ -48,11 +48,11 @@ def read_with_quality(path):
 
 
 def filter_values(meshes, name):
-    """The size of one of MeshLab's curvatures at each vertex of the current mesh, or None if the filter refuses."""
+    """The absolute value of one of MeshLab's curvatures at each vertex, or None if the filter refuses the mesh."""
     function, arguments = CURVATURES[name]
     try:
         meshes.apply_filter(function, **arguments)
-    except pymeshlab.PyMeshLabException:  # a mesh that is no manifold has no such curvature
+    except pymeshlab.PyMeshLabException:  # the mesh is not a manifold
         return None
     return np.abs(np.nan_to_num(meshes.current_mesh().vertex_scalar_array(), posinf=0, neginf=0))
 
@@ -79,7 +79,7 @@ def mean_edge(vertices, faces):
 
 
 def correlation(a, b):
-    """Spearman's rank correlation; None where there is nothing to rank."""
+    """Spearman's rank correlation; None if one of the two is constant."""
     if a is None or b is None or np.ptp(a) == 0 or np.ptp(b) == 0:
         return None
     return float(spearmanr(a, b).statistic)

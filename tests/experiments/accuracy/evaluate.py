@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""How far a mesh is from a true surface, and what its topology is.
+"""Measures the distance of a mesh from a true surface, and its topology.
 
     evaluate.py MESH TRUE [--samples 100000] [--json]
 
 Lengths are percentages of the bounding-box diagonal of the true surface. "Forward" is true surface to mesh
-(what is missing), "backward" mesh to true surface (what is too much: webs, spikes). Distances are MeshLab's
-Hausdorff filter, exact from each sample to the nearest triangle; the samples are uniform over the area under a
-fixed seed, so the figures of a mesh are always the same.
+(large where the mesh misses parts), "backward" mesh to true surface (large at webs and spikes). MeshLab's Hausdorff
+filter gives the exact distance from each sample to the nearest triangle. The samples are uniform over the area with a
+fixed seed, so the results are reproducible.
 """
 
 import argparse
@@ -66,7 +66,7 @@ def evaluate(vertices, faces, truth):
         "sum_rms": (forward["RMS"] + backward["RMS"]) * percent,
     }
     result["normal_error"], result["inside_out"] = _normal_error(truth, points, face_normals(vertices, faces)[of_face])
-    # The filter drops a sample beyond its search distance without a word.
+    # The filter silently drops samples beyond its search distance.
     if forward["n_samples"] != truth.samples or backward["n_samples"] != truth.samples:
         result["lost_samples"] = 2 * truth.samples - forward["n_samples"] - backward["n_samples"]
     meshes.set_current_mesh(3)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The true surfaces of the experiments, with what is known of their topology, and clouds drawn from them.
+"""The true surfaces of the experiments with their known topology, and clouds drawn from them.
 
 Three kinds of model: made in code, public ones from Debian packages, and files of a data folder
 (argument, or the environment variable NEURAL_MESH_DATA). A model may have several sources; the first one
-that can be had is taken. Everything random is numpy's PCG64 under a given seed.
+that is available is used. All random numbers are numpy's PCG64 with a given seed.
 """
 
 import os
@@ -22,7 +22,7 @@ import shapes
 
 
 class ModelError(RuntimeError):
-    """A model cannot be had; the message says what to install or set."""
+    """A model is not available; the message says what to install or set."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ _CGAL = "deb:libcgal-demo:usr/share/doc/libcgal-dev/data.tar.gz!data/meshes/"
 MODELS = {
     model.name: model
     for model in (
-        # Debian packages (the first source that is there is taken, so a data folder saves the download)
+        # Debian packages (the first available source is used, so a data folder saves the download)
         Model("bunny", 0, 1, ("deb:glmark2-data:usr/share/glmark2/models/bunny.obj",
                               "data:mesh/bunny_closed_35k.ply")),
         Model("asteroid", 0, 1, ("deb:glmark2-data:usr/share/glmark2/models/asteroid-high.3ds",)),
@@ -81,12 +81,12 @@ MODELS = {
     )
 }
 
-# The closed models that the comparison tables are made of.
+# The closed models of the comparison tables.
 TABLE_MODELS = ("bunny", "koala", "dino", "fandisk", "kitten", "rocker-arm", "eight", "feline", "block", "genus3")
-# Those that anybody can have: Debian packages and code.
+# Publicly available: from Debian packages, or made in code.
 PUBLIC_MODELS = ("bunny", "fandisk", "dino", "armadillo", "homer", "knot", "femur", "elephant", "anchor")
 CODE_MODELS = ("sphere", "torus", "linked-tori", "two-spheres", "cup", "filleted-cube", "crossed-cylinders")
-# The ones whose genus and number of components are checked.
+# Those whose genus and number of components are checked.
 TOPOLOGY_MODELS = ("bunny", "koala", "fandisk", "kitten", "rocker-arm", "eight", "feline", "block", "genus3",
                    "linked-tori", "two-spheres", "cup")
 
@@ -128,7 +128,7 @@ def package_file(package, member):
 
 def _unpacked_package(package, scratch):
     try:
-        # apt's sandbox user cannot write into a private folder and would only warn about it.
+        # Without this option apt warns that its sandbox user cannot write into a private folder.
         subprocess.run(["apt-get", "-q", "-o", "APT::Sandbox::User=root", "download", package], cwd=scratch,
                        check=True, capture_output=True, text=True)
         deb = next(scratch.glob("*.deb"))

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""What people use today to get a mesh of N vertices from a cloud, all in pymeshlab, and the neural mesh itself.
+"""Common methods in pymeshlab that make a mesh of N vertices from a cloud, and the neural mesh.
 
-Each runs in a process of its own, so that its peak memory is its own and a crash is a result like any other:
+Each runs in a separate process, so that peak memory is measured per method and a crash is reported as a result:
 
     peers.py METHOD CLOUD.ply FOLDER vertices=500,2000,10000 [plugin=LIBRARY.so] [key=value...]
 
@@ -12,6 +12,7 @@ writes FOLDER/N.ply for every N and prints one JSON object {N: {seconds, cpu_sec
 files is not timed.
 """
 
+import argparse
 import json
 import os
 import re
@@ -39,7 +40,7 @@ def reconstruct_poisson(meshes, _count):
 
 
 def reconstruct_poisson_smooth(meshes, _count):
-    """The same as somebody would tune it for noise: normals over 30 neighbours, 10 samples a node, specks removed."""
+    """The same, tuned for noise: normals from 30 neighbours, 10 samples per node, small components removed."""
     meshes.compute_normal_for_point_clouds(k=30)
     meshes.generate_surface_reconstruction_screened_poisson(depth=8, samplespernode=10)
     meshes.meshing_remove_connected_component_by_diameter(mincomponentdiag=pymeshlab.PercentageValue(5))
@@ -49,15 +50,15 @@ def reconstruct_ball_pivoting(meshes, count):
     """Poisson-disk thinning to four times the vertices, normals, Ball Pivoting, small holes closed.
 
     Straight on a random cloud Ball Pivoting takes minutes and leaves thousands of holes; thinning first is what
-    MeshLab's users are told to do.
+    MeshLab's users are used_file to do.
     """
     meshes.generate_sampling_poisson_disk(samplenum=4 * count, subsample=True)
     meshes.compute_normal_for_point_clouds()
     meshes.generate_surface_reconstruction_ball_pivoting()
     meshes.meshing_repair_non_manifold_edges()
     meshes.meshing_close_holes(maxholesize=100)
-    # Anew from its arrays, as after saving and loading: with what Ball Pivoting leaves in the flags of the elements
-    # Quadric Edge Collapse often collapses nothing.
+    # Rebuilt from its arrays, as by saving and loading: with the flags that Ball Pivoting leaves, Quadric Edge
+    # Collapse often collapses nothing.
     mesh = meshes.current_mesh()
     meshes.add_mesh(pymeshlab.Mesh(mesh.vertex_matrix(), mesh.face_matrix()))
 
@@ -71,7 +72,7 @@ PEERS = {
 
 
 class Clock:
-    """Wall and processor time of a stretch of work, in seconds."""
+    """Wall time and processor time since its construction, in seconds."""
 
     def __init__(self):
         self.wall, self.cpu = time.perf_counter(), time.process_time()
@@ -89,7 +90,7 @@ def decimated(meshes, count):
     """
     source = meshes.current_mesh_id()
     meshes.generate_copy_of_current_mesh()
-    # Points that no face uses would be counted here and be gone after the collapse.
+    # Points that no face uses would be counted here, but the collapse removes them.
     meshes.meshing_remove_unreferenced_vertices()
     seconds = (0.0, 0.0)
     if meshes.current_mesh().vertex_number() <= count:
@@ -118,7 +119,7 @@ def decimated(meshes, count):
 
 
 def _peak_mb():
-    """The most memory this process ever held. Not getrusage's, which counts the parent's before exec, too."""
+    """Peak memory of this process. getrusage() would include the parent's before exec."""
     return int(re.search(r"VmHWM:\s*(\d+)", Path("/proc/self/status").read_text()).group(1)) / 1024
 
 
@@ -187,7 +188,7 @@ def run(method, cloud, folder, counts, plugin=None, command=None, settings=None,
         return {n: _run_command([*shlex.split(command), str(cloud), str(folder / f"{n}.ply"), f"target_vertices={n}",
                                  *extra], timeout) for n in counts}
     words = [sys.executable, str(Path(__file__).resolve()), method, str(cloud), str(folder)]
-    # One process each for ours, whose runs share nothing; a peer's share the reconstruction.
+    # A peer's runs share one reconstruction; ours share nothing, so each has a process.
     jobs = [[n] for n in counts] if plugin else [counts]
     results = {}
     for job in jobs:
@@ -198,31 +199,30 @@ def run(method, cloud, folder, counts, plugin=None, command=None, settings=None,
 
 
 def _run_command(words, timeout):
-    """Times a command as a whole, files included, unless it prints its own seconds as JSON or as 'seconds: X'."""
+    """Times a whole command, file access included, unless it prints its seconds as JSON or as 'seconds: X'."""
     output, used = _started(words, timeout)
     own = re.search(r'"?\bseconds"?\s*[:=]\s*([0-9.eE+-]+)', output)
     return {"seconds": float(own.group(1)) if own else used["wall"], "cpu_seconds": used["cpu"],
             "peak_mb": used["peak_mb"], "output": output.strip()}
 
 
-# Stands between us and the process measured: a child's peak memory includes what its parent held when it was started,
-# and that is little here.
+# A small process that starts the measured one: a child's peak memory includes its parent's at the start.
 _LAUNCHER = """
 import json, os, sys
 pid = os.posix_spawnp(sys.argv[2], sys.argv[2:], os.environ)
 _, status, usage = os.wait4(pid, 0)
-with open(sys.argv[1], "w") as told:
+with open(sys.argv[1], "w") as file:
     json.dump({"code": os.waitstatus_to_exitcode(status), "cpu": usage.ru_utime + usage.ru_stime,
-               "peak_mb": usage.ru_maxrss / 1024}, told)
+               "peak_mb": usage.ru_maxrss / 1024}, file)
 """
 
 
 def _started(words, timeout):
     """Runs a process to its end. Returns its standard output and {wall, cpu, peak_mb}."""
     with tempfile.TemporaryDirectory() as scratch:
-        told = Path(scratch, "used.json")
+        used_file = Path(scratch, "used.json")
         clock = Clock()
-        process = subprocess.Popen([sys.executable, "-I", "-S", "-c", _LAUNCHER, told, *words], text=True,
+        process = subprocess.Popen([sys.executable, "-I", "-S", "-c", _LAUNCHER, used_file, *words], text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
         try:
             output, errors = process.communicate(timeout=timeout)
@@ -233,9 +233,9 @@ def _started(words, timeout):
                 raise PeerError(f"{' '.join(words[:3])} took longer than {timeout} seconds.") from None
             raise
         used = {"wall": clock.read()[0]}
-        if not told.exists():
+        if not used_file.exists():
             raise PeerError(f"{words[0]} could not be started: {errors.strip()[-200:]}")
-        used.update(json.loads(told.read_text()))
+        used.update(json.loads(used_file.read_text()))
         if used["code"] != 0:
             raise PeerError(f"{' '.join(words[:3])} ended with code {used['code']}: "
                             f"{(errors.strip() or output.strip())[-500:]}")
@@ -243,14 +243,19 @@ def _started(words, timeout):
 
 
 def main(arguments):
-    method, cloud, folder, *rest = arguments
-    settings = dict(word.split("=", 1) for word in rest)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("method", choices=[*PEERS, "neural"])
+    parser.add_argument("cloud")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("settings", nargs="+", metavar="key=value", help="vertices=..., plugin=..., parameters of ours")
+    options = parser.parse_args(arguments)
+    settings = dict(word.split("=", 1) for word in options.settings)
     counts = [int(n) for n in settings.pop("vertices").split(",")]
     plugin = settings.pop("plugin", None)
-    if method == "neural":
-        results = run_plugin(cloud, Path(folder), counts, plugin, settings)
+    if options.method == "neural":
+        results = run_plugin(options.cloud, options.folder, counts, plugin, settings)
     else:
-        results = run_peer(method, cloud, Path(folder), counts)
+        results = run_peer(options.method, options.cloud, options.folder, counts)
     print(json.dumps(results))
 
 

@@ -17,7 +17,7 @@ def _grid_faces(rows, columns, wrap_rows, wrap_columns):
 
 
 def merged(*parts):
-    """Several surfaces as one, without joining them."""
+    """Several surfaces as one mesh; they are not joined."""
     starts = np.cumsum([0] + [len(v) for v, _ in parts[:-1]])
     return np.vstack([v for v, _ in parts]), np.vstack([f + s for (_, f), s in zip(parts, starts)])
 
@@ -52,7 +52,7 @@ def two_spheres():
 
 
 def revolved(profile, around=256):
-    """The closed surface that a profile (radius, height), from axis to axis, makes around the z axis."""
+    """The closed surface of revolution about the z axis of a profile (radius, height) from axis to axis."""
     profile = np.asarray(profile, dtype=float)
     u = np.arange(around) * 2 * np.pi / around
     ring = profile[1:-1]

@@ -2,19 +2,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Feature detection: what learning knows against every analysis of the final mesh and of the cloud.
+"""Feature detection: the learned counters compared with analyses of the final mesh and of the cloud.
 
     features.py --learn build/tests/learn [--data FOLDER] [--out FOLDER]
 
-Prints a table (markdown) and writes OUT/features.md and OUT/features.json. A run that was interrupted goes on where
-it stopped (OUT/features/rows.jsonl).
+Prints a table (markdown) and writes OUT/features.md and OUT/features.json. An interrupted run continues where it
+stopped (OUT/features/rows.jsonl).
 
-Truth: the edges of the true mesh with an angle of more than 30 degrees between their faces. A vertex of the
-result is a feature if it lies within half a mean length of its own edges from one. F1 is given at the best
-threshold (for each model, noise level and measure its own, found with the truth) and, for the crease measure,
-at its one default of 1. Two columns say how far that truth can be found at all: the *oracle* knows the true normals
-of 400,000 points of the true surface and takes, for every vertex, the largest angle between two within half an edge;
-the *oracle mesh* knows the true normals of the mesh's faces, as the best analysis of a final mesh could.
+True features are the edges of the true mesh with an angle of more than 30 degrees between their faces. A vertex of
+the result is a feature if its distance from one is at most half the mean length of the edges at the vertex. F1 is
+given at the best threshold (found with the truth, for each model, noise level and measure) and, for the crease
+measure, also at its default threshold of 1. Two columns are upper bounds: the *oracle* takes, for each vertex, the
+largest angle between two of 400,000 true normals within half an edge; the *oracle mesh* analyses the final mesh with
+the true normals of its faces.
 """
 
 import argparse
@@ -44,7 +44,7 @@ NEIGHBOURS = (20, 40, 80)
 
 
 def half_filleted_cube(fillet=0.2):
-    """The cube [-1, 1]^3 with the four upright edges rounded by a radius of fillet, the others sharp."""
+    """The cube [-1, 1]^3 with its four upright edges rounded with radius fillet, the others sharp."""
     arc = np.linspace(0, np.pi / 2, 25)
     corners = ((1, 1, 0), (-1, 1, np.pi / 2), (-1, -1, np.pi), (1, -1, 1.5 * np.pi))
     outline = np.vstack([np.column_stack([x * (1 - fillet) + fillet * np.cos(arc + start),
@@ -78,7 +78,7 @@ def inner_edges(faces):
 
 
 class Creases:
-    """The creases of a true mesh; distance() from them."""
+    """The creases of a true mesh, and the distance from them."""
 
     def __init__(self, vertices, faces):
         v, index = np.unique(np.round(vertices, 9), axis=0, return_inverse=True)
@@ -102,7 +102,7 @@ class Creases:
 
 
 class Mesh:
-    """A result with its two counters, and what can be said of its vertices from it alone."""
+    """A result with its two counters, and the feature measures that use the final mesh only."""
 
     def __init__(self, paths):
         """paths: the same mesh twice, with the normal counter and with the crease measure as its quality."""
@@ -161,7 +161,7 @@ def surface_variation(points, places, neighbours):
 
 
 class Oracle:
-    """The true normals everywhere."""
+    """Normals of the true surface at 400,000 points."""
 
     def __init__(self, vertices, faces, samples=400_000):
         points, of_face = models.sample_surface(vertices, faces, samples, np.random.default_rng(20030105))
@@ -229,7 +229,7 @@ def judge(mesh, creases, cloud, oracle):
                                   **judged(mesh.measure, truth)}}
     for name, x in measures_of(mesh, cloud, oracle):
         figures[name] = judged(x, truth)
-    # The other reading of "half an edge": of the mesh's mean edge, the same for all vertices.
+    # "Half an edge" as half of the mean edge of the mesh, the same for all vertices.
     even = distance <= 0.5 * mesh.edge_length().mean()
     figures["by mean edge"] = {"default": f1_at(mesh.measure, even, DEFAULT_THRESHOLD),
                                "best": best_f1(mesh.measure, even), "dihedral": best_f1(mesh.dihedral(), even)}
@@ -237,7 +237,7 @@ def judge(mesh, creases, cloud, oracle):
 
 
 class Case:
-    """One model under one noise: its cloud and its truth, made when they are needed."""
+    """A model with noise: its cloud and its true surface, both made on first use."""
 
     def __init__(self, name, noise, options):
         self.name, self.noise, self.options = name, noise, options
@@ -258,7 +258,7 @@ class Case:
         return Creases(*self.surface), self.cloud, Oracle(*self.surface)
 
     def row(self, utility, fit):
-        """Learns twice, for the two counters, and judges."""
+        """Learns twice, once for each counter, and measures the results."""
         truth = self.truth
         paths = [self.folder / f"mesh{measure}.ply" for measure in (0, 1)]
         for measure, path in enumerate(paths):

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The pictures of the documentation and the paper's three figures, drawn by a real MeshLab.
+"""The pictures of the documentation and the paper's three figures, drawn by MeshLab.
 
     paper_figures.py --learn build/tests/learn [--data FOLDER] [--out FOLDER] [--pictures FOLDER]
 
 bunny.png: from points to mesh to counters. fig1.png: density of the mesh against curvature. fig2.png: counters as
-colours. fig3.png: levels of detail. The numbers of the captions go to OUT/figures.json. With a data folder Fig. 3 is
-of Max-Planck and Dino, as in the paper, else of models of Debian's packages.
+colours. fig3.png: levels of detail. The numbers in the captions are written to OUT/figures.json. With a data folder
+Fig. 3 shows Max-Planck and Dino, as in the paper, else models from Debian packages.
 """
 
 import argparse
@@ -65,7 +65,7 @@ SUBJECTS = {subject.name: subject for subject in (
     Subject("elephant", "Elephant", (0.5, 0.2, 1.0)),
     Subject("camel", "Camel", (1.0, 0.15, 0.4)),
 )}
-# With the data folder first; a figure takes the first ones that can be had.
+# Models of the data folder first; a figure shows the first available ones.
 PAIR = ("maxplanck", "dino", "armadillo")
 SIX = ("bunny", "maxplanck", "dino", "feline", "koala", "fandisk", "armadillo", "elephant", "camel")
 
@@ -80,7 +80,7 @@ class Studio:
             folder.mkdir(parents=True, exist_ok=True)
 
     def had(self, names, count):
-        """The first `count` subjects of which the model can be had."""
+        """The first `count` subjects whose model is available."""
         found = []
         for name in names:
             if len(found) < count and paper_runs.can_be_had(name, self.options.data):
@@ -153,7 +153,7 @@ def mean_curvature(vertices, faces):
 
 
 def density_correlation(mesh, truth, curvature):
-    """Spearman's rank correlation of the mesh's vertex density with the true surface's mean curvature around."""
+    """Spearman's rank correlation of vertex density with the mean curvature of the true surface nearby."""
     vertices, faces = models.load_mesh(mesh)
     areas = vertex_areas(vertices, faces)
     radius = float(np.median(np.sqrt(areas)))
@@ -175,8 +175,8 @@ def painted(path, vertices, faces, values, low, high):
 
 
 def fig1(studio):
-    """Where the surface bends the mesh is dense: the captions are the correlation of density with curvature."""
-    rows, captions, told = [], [], {}
+    """The mesh is dense where curvature is high: captions give the correlation of density and curvature."""
+    rows, captions, numbers_of_model = [], [], {}
     for subject in studio.had(PAIR, 2):
         truth, faces = studio.surface(subject)
         curvature = mean_curvature(truth, faces)
@@ -188,14 +188,14 @@ def fig1(studio):
                                     ("signal counter, with fit", 1, 1)):
             mesh, _ = studio.mesh(subject, 4000, utility_counter=utility, fit_to_points=fit)
             made[label] = mesh, density_correlation(mesh, truth, curvature)
-        told[subject.name] = {label: correlation for label, (_, correlation) in made.items()}
+        numbers_of_model[subject.name] = {label: correlation for label, (_, correlation) in made.items()}
         shown = list(made)[:3]
         *wires, _ = subject.pictures([*(made[label][0] for label in shown), colored], "wireframe", line_width=0.6)
         rows.append([*wires, subject.pictures([colored], "smooth", True)[0]])
         captions.append([*(f"{label}: {made[label][1]:+.2f}" for label in shown), "mean curvature"])
     ramp = [tuple(int(255 * c) for c in colormaps["viridis"](x)[:3]) for x in np.linspace(0, 1, 128)]
     studio.sheet("fig1", rows, captions, Legend("mean curvature", ramp, "low", "high"), (380, 380))
-    studio.numbers["fig1"] = told
+    studio.numbers["fig1"] = numbers_of_model
 
 
 def fig2(studio):
@@ -212,14 +212,14 @@ def fig2(studio):
 
 def fig3(studio):
     """Levels of detail, with the processor time of each on one thread."""
-    rows, captions, told = [], [], {}
+    rows, captions, numbers_of_model = [], [], {}
     for subject in studio.had(PAIR, 2):
         made = [studio.mesh(subject, level, threads=1) for level in studio.options.levels]
         rows.append(subject.pictures([mesh for mesh, _ in made], "flat"))
         captions.append([f"{report['vertices']:,} vertices, {report['processor_seconds']:.1f} s" for _, report in made])
-        told[subject.name] = {"points": subject.points, "levels": [report for _, report in made]}
+        numbers_of_model[subject.name] = {"points": subject.points, "levels": [report for _, report in made]}
     studio.sheet("fig3", rows, captions, size=(320, 320))
-    studio.numbers["fig3"] = told
+    studio.numbers["fig3"] = numbers_of_model
 
 
 def parse(arguments):
@@ -242,16 +242,17 @@ def main(arguments=None):
         sys.exit(f"There is no figure '{unknown[0]}': there are {', '.join(makers)}.")
     for name in options.figures:
         makers[name](studio)
-    told = options.out / "figures.json"
-    earlier = json.loads(told.read_text()) if told.exists() else {}
-    told.write_text(json.dumps({**earlier, **studio.numbers}, indent=1))  # figures may be made one by one
-    for name, told in studio.numbers.get("fig1", {}).items():
+    numbers_file = options.out / "figures.json"
+    earlier = json.loads(numbers_file.read_text()) if numbers_file.exists() else {}
+    # One figure may be made without the others.
+    numbers_file.write_text(json.dumps({**earlier, **studio.numbers}, indent=1))
+    for name, numbers_of_model in studio.numbers.get("fig1", {}).items():
         print(f"fig1, {name}: correlation of density with curvature " +
-              ", ".join(f"{label} {value:+.2f}" for label, value in told.items()))
-    for name, told in studio.numbers.get("fig3", {}).items():
-        print(f"fig3, {name}, {told['points']:,} points: " +
+              ", ".join(f"{label} {value:+.2f}" for label, value in numbers_of_model.items()))
+    for name, numbers_of_model in studio.numbers.get("fig3", {}).items():
+        print(f"fig3, {name}, {numbers_of_model['points']:,} points: " +
               ", ".join(f"{level['vertices']:,} vertices in {level['processor_seconds']:.1f} processor seconds, RMS "
-                        f"{level['rms_error']:.4f} %" for level in told["levels"]))
+                        f"{level['rms_error']:.4f} %" for level in numbers_of_model["levels"]))
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""What the paper's table and figures share: its models or their stand-ins, runs of the core, vertex normals.
+"""Shared by the scripts of this folder: models, runs of the core, vertex normals, rows kept on disk.
 
-The paper's own model files are not public. Of Max-Planck, Dino and Brain the data folder (NEURAL_MESH_DATA)
-has others that show the same; without it there are the models of Debian's packages.
+The model files of the paper are not public. The data folder (NEURAL_MESH_DATA) has other meshes of Max-Planck, Dino
+and Brain; without it models from Debian packages are used.
 """
 
 import hashlib
@@ -45,7 +45,7 @@ def surface(name, data=None):
 
 
 def can_be_had(name, data=None):
-    """True if surface() finds the model without a data folder that is not there; it may download a package."""
+    """Whether surface() can provide the model. May download a package."""
     try:
         surface(name, data)
         return True
@@ -72,7 +72,7 @@ def learn(program, cloud, out, **settings):
 
 
 def check(program, mesh, reference):
-    """vcglib's topology checks and Hausdorff sampler on a mesh, as check_mesh.cpp prints them."""
+    """Topology and Hausdorff distances of a mesh by vcglib, as check_mesh.cpp prints them."""
     return json.loads(output_of([program, mesh, reference]).stdout)
 
 
@@ -87,7 +87,7 @@ def vertex_normals(vertices, faces):
 
 
 def samples_with_normals(vertices, faces, count, seed):
-    """Points uniform over the area, and there the vertex normals interpolated as a renderer does."""
+    """Points uniform over the area, with the vertex normals interpolated over the faces."""
     points, of_face = models.sample_surface(vertices, faces, count, np.random.default_rng(seed))
     origin, corner1, corner2 = (vertices[faces[of_face, k]] for k in range(3))
     edges = np.stack([corner1 - origin, corner2 - origin], axis=2)
@@ -103,7 +103,7 @@ def samples_with_normals(vertices, faces, count, seed):
 
 
 class SmoothNormals:
-    """A true surface as a judge of vertex normals."""
+    """A true surface, to measure the error of vertex normals."""
 
     def __init__(self, vertices, faces, samples=evaluate.NORMAL_SAMPLES):
         self.points, self.normals = samples_with_normals(vertices, faces, samples, 20030103)
@@ -127,7 +127,7 @@ def digest(data):
 
 
 class Kept:
-    """The rows of an experiment on disk, so that an interrupted run goes on where it stopped.
+    """The rows of an experiment on disk, so that an interrupted run continues where it stopped.
 
     Rows that another build of the program made, or from another cloud or other settings, are not taken again: all
     that is part of the key. One JSON object a line; a line that was being written when the run ended is left out.
@@ -146,7 +146,7 @@ class Kept:
             self.rows[found["key"]] = found["row"]
 
     def row(self, make, **key):
-        """The row under the key, made by make() if it is not there."""
+        """The row under the key; make() makes it if it is missing."""
         word = json.dumps({**key, "program": self.program}, sort_keys=True)
         if word not in self.rows:
             self.rows[word] = make()

@@ -2,15 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Table 1 of the paper, made again: the error of adaptive and non-adaptive neural meshes.
+"""Table 1 of the paper reproduced: the error of adaptive and non-adaptive neural meshes.
 
     paper_table1.py --learn build/tests/learn --check build/tests/check_mesh [--data FOLDER] [--out FOLDER]
 
-A mesh's vertices are the cloud, as in the paper; the error is the RMS distance from the mesh to the result by
-vcglib's Hausdorff sampler (the heir of the paper's Metro) in % of the bounding-box diagonal. Three variants:
-to the letter of the paper; with maturity, the one rule that keeps growth from stalling; and the filter's defaults.
-Also the error of the normals. Writes OUT/table1.md and OUT/table1.json, and prints the first. A run that was
-interrupted goes on where it stopped (OUT/table1.rows.jsonl), so the table can be made in pieces.
+The cloud consists of the vertices of a mesh, as in the paper. The error is the RMS distance from that mesh to the
+result, in % of the bounding-box diagonal, measured by vcglib's Hausdorff sampler (derived from Metro, which the paper
+used). Three variants: the paper's rules unchanged; with maturity, the rule that keeps growth from stalling; and the
+defaults of the filter. The error of the normals is measured as well. Writes OUT/table1.md and OUT/table1.json, and
+prints the first. An interrupted run continues where it stopped (OUT/table1.rows.jsonl).
 """
 
 import argparse
@@ -34,9 +34,9 @@ VARIANTS = {
 }
 KINDS = {"ad": 0, "nad": 1}  # the parameter utility_counter
 MODELS = ("brain", "maxplanck", "dino", "bunny")
-# Too few vertices to make a cloud for 10,000: its cloud is drawn from the faces.
+# It has too few vertices for a mesh of 10,000, so its cloud is drawn from the faces.
 DRAWN_FROM_FACES = ("brain",)
-# The paper's Table 1, on a Brain that is not public.
+# The paper's Table 1, for its Brain, which is not public.
 PAPER = {
     (500, "ad"): (.732, .724, .732, .729, 3.75), (500, "nad"): (.756, .753, .745, .744, .751),
     (2000, "ad"): (.427, .424, 1.96, .431, .428), (2000, "nad"): (.433, .440, .441, .437, .439),
@@ -44,14 +44,14 @@ PAPER = {
 }
 PAPER_AVERAGES = {(500, "ad"): 1.33, (500, "nad"): .749, (2000, "ad"): .734, (2000, "nad"): .438,
                   (10000, "ad"): .171, (10000, "nad"): .197}  # as printed
-# A run is stuck in a local minimum when its error is this many times the median of its seeds.
+# A run counts as stuck in a local minimum if its error is this many times the median over the seeds.
 STUCK = 2
 
 
 def parse(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--learn", required=True, help="the core as a program (target learn)")
-    parser.add_argument("--check", required=True, help="the referee (target check_mesh)")
+    parser.add_argument("--check", required=True, help="the program that measures (target check_mesh)")
     parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
     parser.add_argument("--out", type=Path, default=Path("out/figures"))
     parser.add_argument("--models", type=numbers(str), default=MODELS)
@@ -166,7 +166,7 @@ def normals_table(rows, options):
 
 
 def letter_text(rows, options):
-    """What happens to the paper's rules when they are followed to the letter, in words with numbers."""
+    """A sentence with numbers on how runs by the paper's unchanged rules ended."""
     sentences = []
     for variant in options.variants:
         runs = runs_of(rows, variant=variant)

@@ -6,11 +6,11 @@
 
     paper_termination.py --learn build/tests/learn --trace build/tests/counter_trace [--data FOLDER] [--out FOLDER]
 
-The first table shows the candidates while meshes grow. With the counters of eq 4 the mean says only how many
-vertices there are: a signal adds 1 on average and the decay takes 5 % of the sum, which therefore stays at 19 whatever
-the mesh is like. With those of eq 6, normalised as they are, it stays at about 1. What falls as the mesh gets
-better is the normal's turn itself: our stop_below_mean_counter, in degrees. The second table says what one value of
-it gives on different models, the third how much more alike that is than one number of vertices. Writes
+The first table shows three criteria while meshes grow. The mean of the eq 4 counters depends on the number of
+vertices only: a signal adds 1 on average and the decay takes 5 % of the sum, which therefore stays at 19 for any mesh.
+The mean of the eq 6 counters stays at about 1, because they are normalised. The turn of the normals, in degrees, does
+fall as the mesh improves; stop_below_mean_counter is a bound on it. The second table has the results of one such
+bound on different models. The third compares their spread with that of runs to one number of vertices. Writes
 OUT/termination.md and OUT/termination.json.
 """
 
@@ -28,7 +28,7 @@ import models
 import paper_runs
 from compare_accuracy import numbers, table
 
-# From smooth to rich; the first four that can be had.
+# From few to many details; the first four that are available.
 MODELS = ("filleted-cube", "kitten", "bunny", "armadillo", "dino")
 COUNT = 4
 CONVERGED = 1  # the stop_reason of eq 8
@@ -38,18 +38,18 @@ FITS = {"fit off": 0, "fit on": 1}
 def parse(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--learn", required=True, help="the core as a program (target learn)")
-    parser.add_argument("--trace", required=True, help="counter_trace.cpp, built")
+    parser.add_argument("--trace", required=True, help="the program of counter_trace.cpp")
     parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
     parser.add_argument("--models", type=numbers(str), default=MODELS)
     parser.add_argument("--thresholds", type=numbers(float), default=(.24, .2, .17), help="in degrees")
     parser.add_argument("--samples", type=int, default=200_000)
-    parser.add_argument("--most", type=int, default=20_000, help="vertices at which growth ends in any case")
+    parser.add_argument("--most", type=int, default=20_000, help="bound on the vertices")
     parser.add_argument("--out", type=Path, default=Path("out/figures"))
     return parser.parse_args(arguments)
 
 
 class Subject:
-    """A model with its cloud on disk and its judge of normals."""
+    """A model, the file of its cloud, and its true normals."""
 
     def __init__(self, name, options):
         self.name, self.options = name, options
@@ -64,7 +64,7 @@ class Subject:
         return [json.loads(line) for line in run.stdout.splitlines()]
 
     def mesh(self, **settings):
-        """One run: where it stopped, why, and how good its normals are."""
+        """One run: its vertices, stop reason and error of the normals."""
         path = self.options.out / "termination_mesh.ply"
         report = paper_runs.learn(self.options.learn, self.cloud, path, **settings)
         angles = self.judge.angles(*models.load_mesh(path))
@@ -73,7 +73,7 @@ class Subject:
 
 
 def measured(options):
-    """Traces, stopped runs, and runs of as many vertices each as the stopped ones have on (geometric) average."""
+    """Traces, stopped runs, and runs that all have the geometric mean of the stopped runs' vertices."""
     options.out.mkdir(parents=True, exist_ok=True)
     kept = paper_runs.Kept(options.out / "termination.rows.jsonl", options.learn)
     names = [name for name in options.models if paper_runs.can_be_had(name, options.data)][:COUNT]

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-# The paper's table and figures, and the screenshots: figures.sh [BUILD [PICTURES [OUT]]]
+# Makes the paper's table and figures, and the screenshots: figures.sh [BUILD [PICTURES [OUT]]]
 #   BUILD     the build folder, configured, with plugins and the virtual environment (default build)
-#   PICTURES  where the pictures go (default screenshots)
-#   OUT       where tables, numbers, clouds and meshes go (default out/figures)
-# Models that are in no Debian package are used if NEURAL_MESH_DATA names a folder that has them. Screenshots of
-# MeshLab 2022.02 and 2025.07 are made if tests/hosts/gui_debian_root.sh has made their root directories.
+#   PICTURES  the folder of the pictures (default screenshots)
+#   OUT       the folder of tables, numbers, clouds and meshes (default out/figures)
+# NEURAL_MESH_DATA may name a folder of models that are in no Debian package. Screenshots of MeshLab 2022.02 and
+# 2025.07 are made if tests/hosts/gui_debian_root.sh has made their root directories.
 set -euo pipefail
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 cd "$here/../../.."
@@ -37,7 +37,7 @@ if [ -e "$roots/trixie.complete" ]; then screenshots gui_2022_02.sh 2022.02; fi
 if [ -e "$roots/sid.complete" ]; then screenshots gui_2025_07.sh 2025.07; fi
 say "Table 1 of the paper"
 "$python" "$here/../paper/paper_table1.py" --learn "$build/tests/learn" --check "$build/tests/check_mesh" --out "$out"
-say "Features against every analysis of the final mesh and of the cloud"
+say "Features by learning, by the final mesh and by the cloud"
 "$python" "$here/../paper/features.py" --learn "$build/tests/learn" --out "$out"
 say "Termination by eq 8"
 "$python" "$here/../paper/paper_termination.py" --learn "$build/tests/learn" --trace "$build/tests/counter_trace" --out "$out"

@@ -2,18 +2,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Pictures of PLY files as MeshLab 2020.09 draws them, made without a screen or a hand.
+"""Pictures of PLY files drawn by MeshLab 2020.09 on a virtual display.
 
-A project file gives MeshLab every mesh as a layer with its own rendering options and a
-transformation that brings it in front of one fixed orthographic camera; MeshLab's own
-"Snap All Layers" then draws them all, free of its decorations, in one start of a second or two.
+In a project file each mesh is a layer with its rendering options and a matrix that places it in front of one fixed
+orthographic camera. MeshLab's "Snap All Layers" then draws them all, without decorations, in one start of one to two
+seconds.
 
     meshlab_picture.py MESH.ply OUT.png [--style smooth+color] [--view 0.3,0.2,1]
     meshlab_picture.py MESH.ply OUT.png --cloud CLOUD.ply --style flat-lines,smooth+color
     meshlab_picture.py A.ply B.ply C.ply OUT.png --style wireframe,smooth+color --captions "500,2000,10000"
 
-Several meshes make one contact sheet, a row for each style, all seen by the camera that fits the
-largest; one mesh in several styles makes one row, after its cloud if that is given.
+Several meshes make a contact sheet with a row for each style, all at the scale that fits the largest. One mesh in
+several styles makes one row, after its cloud if one is given.
 Needs the Debian packages meshlab, xvfb, xdotool, libgl1-mesa-dri, and numpy and Pillow.
 """
 
@@ -40,16 +40,16 @@ STYLES = ("wireframe", "flat", "smooth", "flat-lines", "smooth-lines", "points")
 VIEWS = {"front": (0, 0, 1), "back": (0, 0, -1), "right": (1, 0, 0), "left": (-1, 0, 0),
          "top": (0, 1, 0), "bottom": (0, -1, 0)}
 
-# MeshLab draws with several pixels per pixel of the picture; averaging them smooths the lines.
+# MeshLab draws several pixels for each pixel of the picture; their average smooths the lines.
 SUPERSAMPLING = 3
-# What MeshLab's window needs beside the drawing area: menus, tool bars, frames.
+# Size of the menus, tool bars and frames of MeshLab's window.
 CHROME_HEIGHT = 130
 CHROME_WIDTH = 60
 
 
 @dataclass
 class Picture:
-    """One mesh, how it is drawn and from where.
+    """One mesh with its style and camera.
 
     style: one of STYLES; "wireframe" hides the lines behind the surface.
     color: the file's vertex colours (on the surface, or on the points), else `surface_color`.
@@ -136,7 +136,7 @@ def save_all_layers(session, window):
             session.keys(window, "Escape", "alt+f", "t")
             try:
                 session.wait_for_window("^Save snapshot$", 3)
-            except Exception:  # not ready for the menu yet: the caller tries again
+            except Exception:  # the menu is not ready; the caller tries again
                 session.check_alive()
         return session.windows("^Save snapshot$")
     dialog = wait_until(open_dialog, "MeshLab's snapshot dialog", 40)[-1]

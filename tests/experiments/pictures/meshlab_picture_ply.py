@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The vertices of a PLY file as a numpy table, which is all a picture's camera and legend need.
+"""Reads the vertices of a PLY file into a numpy table, so that the demo needs no mesh library.
 
-Small on purpose: it saves the picture maker, which the demo needs, a mesh library.
+The camera and the legend of a picture need the vertices only.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""What MeshLab 2020.09 reads at its start to draw exactly what was asked: project, view, settings."""
+"""The files from which MeshLab 2020.09 takes what it draws: project, view, settings."""
 
 import os
 from xml.sax.saxutils import quoteattr
@@ -16,8 +16,8 @@ SWITCHES = ("visible", "box info", "edge extra", "edge boundary", "face boundary
             "points fixed color", "wire fixed color", "solid fixed color", "box mesh color",
             "points mesh color", "wire mesh color", "solid mesh color", "dots", "points unlit", "wire unlit",
             "solid unlit", "round points", "points shrink with distance")
-# With OpenGL's and MeshLab's ambient light (0.2 + 0.125) it adds up to 1: a surface that faces the
-# viewer shows its true colour, so that a legend's colours are found again in the picture.
+# With the ambient light of OpenGL and MeshLab (0.2 + 0.125) it adds up to 1, so that a surface that faces the viewer
+# has exactly the colours of the legend.
 LIGHT = (172, 172, 172)
 
 
@@ -79,7 +79,7 @@ def project_text(pictures, matrices, background, supersampling):
         "\n</MeshGroup>\n<RasterGroup/>\n</MeshLabProject>\n"
 
 
-# The camera all layers are brought in front of: orthographic, on the z axis, looking down it.
+# The camera of all layers: orthographic, on the z axis, looking along it.
 VIEW_TEXT = """<!DOCTYPE ViewState>
 <project>
 <VCGCamera TranslationVector="0 0 -40.0816 1" LensDistortion="0 0" ViewportPx="1000 1000"
@@ -88,7 +88,7 @@ VIEW_TEXT = """<!DOCTYPE ViewState>
 <ViewSettings TrackScale="1" NearPlane="0.4008" FarPlane="50"/>
 </project>
 """
-# Half the height, in its own units, of what that camera shows.
+# Half the height of the camera's view, in its units.
 HALF_HEIGHT = 1.75
 
 
@@ -100,7 +100,7 @@ def color_setting(name, rgb):
 
 
 def settings_text(background):
-    """MeshLab's settings: a plain background, a neutral light, no look for newer versions at the start."""
+    """MeshLab's settings: a plain background, a neutral light, no check for newer versions."""
     return ("[General]\n" + color_setting("backgroundBotColor", background)
             + color_setting("backgroundTopColor", background) + color_setting("baseLightDiffuseColor", LIGHT)
             + "dontRemindMeAboutUpgrade=true\ndontRemindMeToSendEmail=true\n"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Rows of pictures on one sheet, with captions and the colour scale they were painted with."""
+"""Rows of pictures on one sheet, with captions and their colour scale."""
 
 from dataclasses import dataclass
 
@@ -24,7 +24,7 @@ class Legend:
 
 
 def legend_of_mesh(path, title, steps=128):
-    """The colour scale a mesh was painted with, read off its vertices' own quality and colours.
+    """The colour scale of a mesh, derived from the quality and colours of its vertices.
 
     So it cannot differ from what the filter did. The ends are where the colour stops changing.
     Throws ValueError when the mesh lacks quality or colours.

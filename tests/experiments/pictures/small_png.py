@@ -4,7 +4,7 @@
 
 """Makes PNG pictures small enough for a repository: small_png.py [--width PIXELS] FILE.png...
 
-A palette of 256 colours, and if asked a smaller width; the files are replaced.
+Replaces each file by one with a palette of 256 colours and, with --width, at most that width.
 """
 
 import argparse
@@ -12,18 +12,18 @@ from pathlib import Path
 
 from PIL import Image
 
-# The white of a background, which averaging makes a little grey.
+# A white background, which averaging has made slightly grey.
 NEARLY_WHITE = 250
 
 
 def make_small(path, width=None):
-    """Replaces the picture by one with a palette; a file that it would make larger keeps its bytes."""
+    """Replaces the picture by one with a palette, unless that makes the file larger."""
     with Image.open(path) as file:
         image = file.convert("RGB")
     if width and width < image.width:
         image = image.resize((width, round(image.height * width / image.width)), Image.LANCZOS)
     before = Path(path).stat().st_size
-    # Maximum coverage keeps rare colours, which median cut gives up for the many shades of the background.
+    # Maximum coverage keeps rare colours; median cut would spend the palette on shades of the background.
     palette = image.quantize(256, method=Image.Quantize.MAXCOVERAGE, kmeans=10)
     palette.putpalette([255 if value >= NEARLY_WHITE else value for value in palette.getpalette()])
     small = image.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-# Every cloud of the folder clouds/ becomes a neural mesh in meshes/, two at a time.
-# Start it where the script reconstruct.mlx lies.
+# Makes a neural mesh in meshes/ of each cloud in clouds/, two at a time.
+# Run it in the folder that contains clouds/ and reconstruct.mlx.
 set -euo pipefail
 mkdir -p meshes
 ls clouds/*.ply | parallel --jobs 2 --halt now,fail=1 \

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Every cloud of the folder clouds/ becomes a neural mesh in meshes/, one process per core.
+"""Makes a neural mesh in meshes/ of each cloud in clouds/, with one process per core.
 
 folder_pymeshlab.py PLUGIN
 """
@@ -13,7 +13,7 @@ import pymeshlab
 
 
 def start(plugin):
-    # One MeshSet for all clouds: pymeshlab 2025.7 crashes when one in which a filter has raised is deleted and
+    # One MeshSet for all clouds: pymeshlab 2025.7 crashes if a MeshSet in which a filter has raised is deleted and
     # another one loads a file.
     global meshes
     pymeshlab.load_plugin(plugin)
@@ -24,11 +24,11 @@ def reconstruct(cloud):
     meshes.clear()
     meshes.load_new_mesh(str(cloud))
     try:
-        told = meshes.apply_filter("generate_surface_reconstruction_neural_mesh", target_vertices=2000, threads=1)
+        report = meshes.apply_filter("generate_surface_reconstruction_neural_mesh", target_vertices=2000, threads=1)
     except pymeshlab.PyMeshLabException as error:
         return f"{cloud.name}: {error}"
     meshes.save_current_mesh(str(Path("meshes") / cloud.name), save_vertex_quality=True)
-    return f"{cloud.name}: {told['vertices']} vertices, RMS {told['rms_error']:.3f} %"
+    return f"{cloud.name}: {report['vertices']} vertices, RMS {report['rms_error']:.3f} %"
 
 
 if __name__ == "__main__":
