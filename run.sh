@@ -185,7 +185,7 @@ run_tests() {
         [[ " ${stages[*]} " = *" $file "* ]] || stages+=("$file")
     done
     say "Running ${#stages[@]} stages of tests, two at a time; each prints its output when it ends"
-    parallel --will-cite --jobs 2 "$here/run.sh" stage ::: "${stages[@]}" ||
+    parallel --will-cite --jobs 2 ./run.sh stage ::: "${stages[@]}" ||
         fail "$? of the stages failed; their output is above."
     say "All tests have passed"
 }

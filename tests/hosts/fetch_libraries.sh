@@ -12,6 +12,11 @@
 set -euo pipefail
 release="$1" folder="$3"
 [ -e "$folder.complete" ] && exit 0
+# Tests run side by side; one fetches, the others wait.
+mkdir -p "$(dirname "$folder")"
+exec 9> "$folder.lock"
+flock 9
+[ -e "$folder.complete" ] && exit 0
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 
 fail() {
