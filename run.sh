@@ -159,6 +159,8 @@ without_passed() { grep -v -e '^ *Start ' -e ' Passed '; }
 # libraries ends that file only.
 stage() {
     say "$1"
+    # OpenMP threads that wait in a busy loop slow Poisson down many times while another stage runs.
+    export OMP_WAIT_POLICY=passive
     TIMEFORMAT="$1: %U s of processor time + %S s of the system, %R s of the clock"
     time case "$1" in
         unit) ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel "$stage_jobs" | without_passed ;;
