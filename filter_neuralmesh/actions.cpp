@@ -111,6 +111,7 @@ std::vector<Figure> figures(const Report& report) {
             count("genus", report.genus),
             count("boundary_loops", report.boundary_loops),
             count("components", report.components),
+            count("outliers", report.outliers),
             count("feature_vertices", report.feature_vertices),
             count("warnings", static_cast<long long>(report.warnings.size())),
             {"rms_error", report.rms_error, false},

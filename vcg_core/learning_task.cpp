@@ -3,9 +3,13 @@
 
 #include "vcg_core/learning_task.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "vcg_core/shell/shell.h"
+#include "vcg_core/target/outlier_removal.h"
 
 namespace neuralmesh {
 
@@ -39,13 +43,50 @@ StartMesh make_shell(const TargetSpace& target, const Settings& settings, Progre
     return shell_of(target, options, random, progress);
 }
 
-/// What remains has a frame of its own, into which the shell is moved.
-void remove_outliers(LearningTask& task, StartMesh& shell) {
+std::string share_of(std::size_t part, std::size_t all) {
+    const double percent = 100 * static_cast<double>(part) / static_cast<double>(all);
+    const long long tenths = std::max(1LL, std::llround(10 * percent));
+    return std::to_string(part) + " of " + std::to_string(all) + " points (" + std::to_string(tenths / 10) +
+           "." + std::to_string(tenths % 10) + " %)";
+}
+
+/// A cloud with a larger share of outliers is more noise than surface.
+constexpr double kMostlyNoise = 0.3;
+
+/// Leaves out the points of \p out, if the others span a surface.
+bool leave_out(LearningTask& task, const std::vector<std::uint8_t>& out) {
+    std::optional<TargetSpace> rest = task.target().without(out);
+    if (!rest) return false;
+    task.outliers += static_cast<int>(std::count(out.begin(), out.end(), 1));
+    task.cleaned = std::move(rest);
+    return true;
+}
+
+void remove_outliers(LearningTask& task, int threads) {
+    const std::vector<vcg::Point3f>& points = task.target().positions();
+    const std::vector<std::uint8_t> out = find_outliers(points, threads);
+    if (out.empty()) return;
+    const auto count = static_cast<std::size_t>(std::count(out.begin(), out.end(), 1));
+    const std::size_t all = points.size();
+    std::string sentence = share_of(count, all);
+    if (!leave_out(task, out)) {
+        sentence += " look like outliers, and the others span no surface: all points were learned.";
+    } else if (static_cast<double>(count) > kMostlyNoise * static_cast<double>(all)) {
+        sentence +=
+            " were left out as outliers. That is unusually many: check the mesh, and switch remove_outliers off "
+            "if it misses parts.";
+    } else {
+        sentence += " were left out as outliers.";
+    }
+    task.warnings.push_back(sentence);
+}
+
+/// A group of points that got no component of the start mesh would be reached by a spike.
+void remove_groups_without_component(LearningTask& task, StartMesh& shell) {
     if (shell.outliers.empty()) return;
-    std::optional<TargetSpace> inliers = task.target().without(shell.outliers);
-    if (!inliers) return;
-    for (vcg::Point3f& p : shell.positions) p = inliers->frame().inside(task.target().frame().outside(p));
-    task.cleaned = std::move(inliers);
+    const Frame before = task.target().frame();
+    if (!leave_out(task, shell.outliers)) return;
+    for (vcg::Point3f& p : shell.positions) p = task.target().frame().inside(before.outside(p));
 }
 
 std::string too_large(const StartMesh& shell, int final_vertices) {
@@ -61,13 +102,14 @@ std::string too_large(const StartMesh& shell, int final_vertices) {
 LearningTask prepare(const TargetSpace& given, const Settings& settings, Progress& progress) {
     LearningTask task(given);
     remove_repeated_points(task);
+    if (settings.remove_outliers && !given.has_faces()) remove_outliers(task, settings.threads);
     if (settings.start_mesh == kTetrahedron) {
         task.network = tetrahedron();
         return task;
     }
     StartMesh shell = make_shell(task.target(), settings, progress);
     task.warnings.insert(task.warnings.end(), shell.warnings.begin(), shell.warnings.end());
-    remove_outliers(task, shell);
+    if (settings.remove_outliers) remove_groups_without_component(task, shell);
     if (static_cast<int>(shell.positions.size()) > settings.target_vertices) {
         task.warnings.push_back(too_large(shell, settings.target_vertices));
         task.network = tetrahedron();

@@ -24,6 +24,7 @@ struct LearningTask {
 
     const TargetSpace& given;
     std::optional<TargetSpace> cleaned;  ///< without repeated points and outliers; empty: all are learned
+    int outliers = 0;                    ///< number of points removed as such
     Network network;
     int landing_signals = 0;  ///< per vertex, before growth, to bring a shell down to the points
     /// False for a sheet, whose start mesh has two layers with nothing between them.
@@ -32,10 +33,10 @@ struct LearningTask {
     std::vector<std::string> warnings;
 };
 
-/// Removes repeated points and outliers from \p given and makes the start mesh that \p settings asks for: the
-/// shell of the cloud, or a tetrahedron. A shell of more than settings.target_vertices vertices is replaced
-/// by a tetrahedron, with a warning. \p given must outlive the result. Fractions of \p progress run from 0
-/// to 1. \throws what shell_of() throws
+/// Removes repeated points and, if settings.remove_outliers is on, outliers from \p given and makes the start
+/// mesh that \p settings asks for: the shell of the cloud, or a tetrahedron. A shell of more than
+/// settings.target_vertices vertices is replaced by a tetrahedron, with a warning. \p given must outlive the
+/// result. Fractions of \p progress run from 0 to 1. \throws what shell_of() throws
 LearningTask prepare(const TargetSpace& given, const Settings& settings, Progress& progress);
 
 }  // namespace neuralmesh

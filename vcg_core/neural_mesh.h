@@ -27,6 +27,7 @@ struct Report {
     /// Confidence in genus and components: the share of the shell radii examined that agree, in [0, 1]. 0 if
     /// learning started from a tetrahedron, whose topology does not depend on the cloud.
     double topology_confidence = 0;
+    int outliers = 0;          ///< points that were not learned because of settings.remove_outliers
     int feature_vertices = 0;  ///< number of ones in NeuralMesh::features
     double rms_error = 0;      ///< learned points to mesh, % of the diagonal of their bounding box
     double mean_counter = 0;   ///< Mean(n_c)

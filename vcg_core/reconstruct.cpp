@@ -85,6 +85,7 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     NeuralMesh mesh;
     mesh.report.warnings = std::move(task.warnings);
     mesh.report.topology_confidence = task.topology_confidence;
+    mesh.report.outliers = task.outliers;
     write_geometry(learned.network, task.target().frame(), mesh);
     write_counters(learned, settings, mesh);
     write_figures(learned, mesh.report);

@@ -82,6 +82,10 @@ std::vector<SettingInfo> mesh_rows() {
         row(&S::selected_only, "selected_only", "Selected only",
             "Learn only the selected part of the layer: its selected faces where points are drawn from "
             "faces, else its selected vertices."),
+        row(&S::remove_outliers, "remove_outliers", "Remove outliers",
+            "Leave out points that lie apart from the surface: single points, clumps and scattered noise. In "
+            "doubt a point stays. Points drawn from faces are never left out. If off, every point is "
+            "learned."),
     };
 }
 

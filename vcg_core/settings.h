@@ -39,6 +39,7 @@ struct Settings {
     bool fit_to_points = true;
     bool draw_from_faces = true;
     bool selected_only = false;
+    bool remove_outliers = true;  ///< only of points; see target/outlier_removal.h
     bool color_by_counter = true;
     bool select_features = false;
     int feature_measure = kFeatureCounter;

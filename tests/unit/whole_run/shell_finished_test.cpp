@@ -4,6 +4,7 @@
 // Whole runs on open, noisy and thin clouds: the finished mesh keeps the components and genus of the shell.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,8 @@ TEST(ShellFinished, GrossOutliersMakeNoComponentsAndDoNotPull) {
         expect_closed(mesh, vertices, 1, 0);
         expect_sphere(mesh, 0.05);
         EXPECT_TRUE(has_warning(mesh, "as outliers"));
+        EXPECT_GE(mesh.report.outliers, 180);
+        EXPECT_LE(mesh.report.outliers, 220);
     }
 }
 
@@ -75,7 +78,7 @@ TEST(ShellFinished, PointsDeepInsideDoNotPull) {
     const NeuralMesh mesh = finished(cloud, 500);
     expect_closed(mesh, 500, 1, 0);
     expect_sphere(mesh, 0.02);
-    EXPECT_TRUE(has_warning(mesh, "200 of 20000 points were ignored as outliers"));
+    EXPECT_TRUE(has_warning(mesh, "of 20000 points (1.0 %) were left out as outliers"));
 }
 
 TEST(ShellFinished, AHalfAThousandTimesSparserIsNoOutlier) {
@@ -85,7 +88,7 @@ TEST(ShellFinished, AHalfAThousandTimesSparserIsNoOutlier) {
     shell_shapes::cut_off(cloud, [&](const vcg::Point3d& p) { return p[2] < 0 && ++below % 1000 != 0; });
     const NeuralMesh mesh = finished(cloud, 500);
     expect_closed(mesh, 500, 1, 0);
-    EXPECT_FALSE(has_warning(mesh, "outliers"));
+    EXPECT_LT(mesh.report.outliers, 30) << "of the 200 sparse points";
 }
 
 TEST(ShellFinished, RepeatedPointsAreLearnedOnce) {
@@ -95,6 +98,19 @@ TEST(ShellFinished, RepeatedPointsAreLearnedOnce) {
     const NeuralMesh mesh = finished(cloud, 250);
     expect_closed(mesh, 250, 1, 0);
     EXPECT_TRUE(has_warning(mesh, "7620 of 7680 points repeat others"));
+}
+
+TEST(ShellFinished, EveryPointIsLearnedIfOutliersAreNotRemoved) {
+    Settings settings;
+    settings.target_vertices = 500;
+    settings.remove_outliers = false;
+    NoProgress progress;
+    const NeuralMesh mesh =
+        reconstruct(soundness::target_of(sphere_with_gross_outliers()), settings, progress);
+    EXPECT_EQ(mesh.report.outliers, 0);
+    double farthest = 0;
+    for (const vcg::Point3d& p : mesh.positions) farthest = std::max(farthest, p.Norm());
+    EXPECT_GT(farthest, 1.5) << "outliers pull at the mesh";
 }
 
 TEST(ShellFinished, FarClumpsOfFewPointsMakeNoComponents) {

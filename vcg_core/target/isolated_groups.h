@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Small clumps of points away from everything else: see outlier_removal.h.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vcg_core/target/nearest_points.h"
+
+namespace neuralmesh {
+
+/// The share of a neighbourhood's extent that is across it, in [0, 1/3]: 0 for points of a plane or a line,
+/// 1/3 for a ball (the surface variation of Pauly et al. 2002). \p points are the places looked at.
+double surface_variation(const NearestPoints& cloud, const std::vector<NearestPoints::Place>& points);
+
+/// Does \p place lie in the plane of \p others, which are all near one plane?
+bool continues_plane(const NearestPoints& cloud, NearestPoints::Place place,
+                     const std::vector<NearestPoints::Place>& others);
+
+/// Sets \p out at the places of clumps that fill space and are isolated. Places where \p out is set already
+/// count as absent. O(n), and O(m log m) for candidates of m points together.
+void mark_isolated_clumps(const NearestPoints& cloud, std::vector<std::uint8_t>& out);
+
+}  // namespace neuralmesh

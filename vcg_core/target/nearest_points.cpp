@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/target/nearest_points.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace neuralmesh {
+namespace {
+
+/// Spreads the low 21 bits of \p x: bit i moves to bit 3 i.
+std::uint64_t spread(std::uint64_t x) {
+    x &= 0x1fffff;
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    x = (x | x << 2) & 0x1249249249249249;
+    return x;
+}
+
+/// Of the \p cells along an axis, that at the fraction \p at of the axis.
+std::uint64_t cell_along(float at, std::uint64_t cells) {
+    const auto last = static_cast<double>(cells - 1);
+    return static_cast<std::uint64_t>(
+        std::clamp(static_cast<double>(at) * static_cast<double>(cells), 0.0, last));
+}
+
+}  // namespace
+
+NearestPoints::NearestPoints(const std::vector<vcg::Point3f>& points) : points_(points) {
+    place_cube();
+    sort_points();
+    build_boxes();
+}
+
+/// A few points very far away must not make all cells too large for the others. Where most points are is told
+/// by about a thousand of them.
+void NearestPoints::place_cube() {
+    constexpr std::size_t kLooked = 1000;
+    constexpr float kSmallPart = 1e-2F;
+    constexpr float kMargin = 1.2F;  // leaves border cells empty, so that opposite borders do not touch
+    const std::size_t stride = points_.size() / kLooked + 1;
+    vcg::Box3f whole;
+    for (const vcg::Point3f& p : points_) whole.Add(p);
+    vcg::Box3f middle;
+    for (int k = 0; k < 3; ++k) {
+        std::vector<float> along;
+        for (std::size_t i = 0; i < points_.size(); i += stride) along.push_back(points_[i][k]);
+        std::sort(along.begin(), along.end());
+        const std::size_t end = along.size() / 20;
+        middle.min[k] = along[end];
+        middle.max[k] = along[along.size() - 1 - end];
+    }
+    const auto longest = [](const vcg::Box3f& box) { return std::max({box.DimX(), box.DimY(), box.DimZ()}); };
+    side_ = 2 * longest(middle);
+    vcg::Point3f centre = middle.Center();
+    if (side_ > kSmallPart * longest(whole) || !(side_ > 0)) {
+        side_ = longest(whole) > 0 ? kMargin * longest(whole) : 1;
+        centre = whole.Center();
+    }
+    corner_ = centre - vcg::Point3f(side_, side_, side_) / 2;
+}
+
+void NearestPoints::sort_points() {
+    int index_bits = 1;
+    while ((std::uint64_t{1} << index_bits) < points_.size()) ++index_bits;
+    levels_ = std::min(21, (64 - index_bits) / 3);
+    index_mask_ = (std::uint64_t{1} << index_bits) - 1;
+    keys_.resize(points_.size());
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+        std::uint64_t code = 0;
+        for (int k = 0; k < 3; ++k) {
+            const float at = (points_[i][k] - corner_[k]) / side_;
+            code |= spread(cell_along(at, std::uint64_t{1} << levels_)) << k;
+        }
+        keys_[i] = code << (64 - 3 * levels_) | i;
+    }
+    std::sort(keys_.begin(), keys_.end());
+}
+
+void NearestPoints::build_boxes() {
+    boxes_.emplace_back((keys_.size() + kLeaf - 1) / kLeaf);
+    for (std::size_t i = 0; i < keys_.size(); ++i) boxes_[0][i / kLeaf].Add(point(static_cast<Place>(i)));
+    while (boxes_.back().size() > 1) {
+        const std::vector<vcg::Box3f>& below = boxes_.back();
+        std::vector<vcg::Box3f> above((below.size() + kBranch - 1) / kBranch);
+        for (std::size_t i = 0; i < below.size(); ++i) above[i / kBranch].Add(below[i]);
+        boxes_.push_back(std::move(above));
+    }
+}
+
+void NearestPoints::nearest(Place place, int k, std::vector<Neighbour>& result) const {
+    result.clear();
+    const auto wanted = std::min(static_cast<std::size_t>(k), keys_.size() - 1);
+    if (wanted == 0) return;
+    const auto add = [&](Place p, float d) {
+        const Neighbour candidate{d, p};
+        if (p == place || (result.size() == wanted && !(candidate < result.front()))) return;
+        if (result.size() == wanted) {
+            std::pop_heap(result.begin(), result.end());
+            result.pop_back();
+        }
+        result.push_back(candidate);
+        std::push_heap(result.begin(), result.end());
+    };
+    const auto bound = [&] {
+        return result.size() < wanted ? std::numeric_limits<float>::infinity()
+                                      : result.front().squared_distance;
+    };
+    visit_near(point(place), add, bound);
+    std::sort_heap(result.begin(), result.end());
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Nearest neighbours within a cloud whose density may vary without bound.
+//
+// The points are sorted along a Z-order curve (Morton 1966). Runs of 16 points have bounding boxes, and every
+// 8 boxes have one above them. vcg::KdTree gives the same answers; this index takes a tenth of its time to
+// build and about 10 bytes per point.
+#pragma once
+
+#include <vcg/space/box3.h>
+#include <vcg/space/point3.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace neuralmesh {
+
+/// The points are addressed by place: their rank along the curve, in [0, size()). Neighbours in space mostly
+/// have close places. Equal points, in any input order, give the same places up to exchange among equals.
+class NearestPoints {
+public:
+    using Place = std::uint32_t;
+
+    struct Neighbour {
+        float squared_distance;
+        Place place;
+        bool operator<(const Neighbour& other) const {
+            return squared_distance != other.squared_distance ? squared_distance < other.squared_distance
+                                                              : place < other.place;
+        }
+    };
+
+    /// Keeps a reference to \p points, fewer than 2^32. O(n log n).
+    explicit NearestPoints(const std::vector<vcg::Point3f>& points);
+
+    Place size() const { return static_cast<Place>(keys_.size()); }
+    /// The index in the input of the point at \p place.
+    std::size_t index(Place place) const { return static_cast<std::size_t>(keys_[place] & index_mask_); }
+    const vcg::Point3f& point(Place place) const { return points_[index(place)]; }
+
+    /// The \p k points nearest to that at \p place, itself excluded, nearest first. Fewer if there are not as
+    /// many. O(k log k + log n) for most points. \p result is overwritten.
+    void nearest(Place place, int k, std::vector<Neighbour>& result) const;
+
+    /// Is a point that \p counts (called with its place) within \p radius of that at \p place?
+    template <class Predicate>
+    bool any_within(Place place, float radius, const Predicate& counts) const;
+
+    /// The octree cell at \p level that holds the point at \p place, as a Z-order code of 3 * level bits. The
+    /// root is a cube around all points or, if most lie in a hundredth of it, around these; points outside
+    /// belong to its outermost cells. Ascends with the place.
+    std::uint64_t cell(Place place, int level) const { return keys_[place] >> (64 - 3 * level); }
+    /// The finest level that cell() knows.
+    int finest_level() const { return levels_; }
+
+private:
+    static constexpr std::size_t kLeaf = 16;   ///< points per box of the lowest level
+    static constexpr std::size_t kBranch = 8;  ///< boxes per box of the next level
+
+    void place_cube();
+    void sort_points();
+    void build_boxes();
+    template <class Visit, class Bound>
+    void visit_near(const vcg::Point3f& centre, const Visit& visit, const Bound& bound) const;
+
+    const std::vector<vcg::Point3f>& points_;
+    vcg::Point3f corner_;  ///< of the root cube
+    float side_ = 1;
+    int levels_ = 0;
+    std::uint64_t index_mask_ = 0;
+    std::vector<std::uint64_t> keys_;             ///< Z-order code above, index below; ascending
+    std::vector<std::vector<vcg::Box3f>> boxes_;  ///< lowest level first
+};
+
+inline float squared_distance(const vcg::Box3f& box, const vcg::Point3f& p) {
+    float sum = 0;
+    for (int k = 0; k < 3; ++k) {
+        const float below = box.min[k] - p[k], above = p[k] - box.max[k];
+        const float d = below > above ? below : above;
+        if (d > 0) sum += d * d;
+    }
+    return sum;
+}
+
+/// Calls visit(place, squared distance) for the points of every box that is not farther than bound(), near
+/// boxes first.
+template <class Visit, class Bound>
+void NearestPoints::visit_near(const vcg::Point3f& centre, const Visit& visit, const Bound& bound) const {
+    struct Node {
+        float squared_distance;
+        std::uint32_t level, box;
+    };
+    Node stack[12 * kBranch];
+    std::size_t height = 0;
+    const auto top = static_cast<std::uint32_t>(boxes_.size() - 1);
+    stack[height++] = {0, top, 0};
+    while (height > 0) {
+        const Node node = stack[--height];
+        if (node.squared_distance > bound()) continue;
+        if (node.level == 0) {
+            const std::size_t end = std::min<std::size_t>(keys_.size(), (node.box + 1) * kLeaf);
+            for (std::size_t i = node.box * kLeaf; i < end; ++i) {
+                const auto place = static_cast<Place>(i);
+                visit(place, (point(place) - centre).SquaredNorm());
+            }
+            continue;
+        }
+        const std::vector<vcg::Box3f>& below = boxes_[node.level - 1];
+        const std::size_t end = std::min(below.size(), (node.box + 1) * kBranch);
+        const std::size_t first = height;
+        for (std::size_t b = node.box * kBranch; b < end; ++b) {
+            const Node child{squared_distance(below[b], centre), node.level - 1,
+                             static_cast<std::uint32_t>(b)};
+            if (child.squared_distance > bound()) continue;
+            std::size_t at = height++;  // farthest first, so that the nearest is popped first
+            for (; at > first && stack[at - 1].squared_distance < child.squared_distance; --at)
+                stack[at] = stack[at - 1];
+            stack[at] = child;
+        }
+    }
+}
+
+template <class Predicate>
+bool NearestPoints::any_within(Place place, float radius, const Predicate& counts) const {
+    bool found = false;
+    const float limit = radius * radius;
+    visit_near(
+        point(place), [&](Place p, float d) { found = found || (d <= limit && counts(p)); },
+        [&] { return found ? -1.0F : limit; });
+    return found;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/target/outlier_removal.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "vcg_core/base/parallel_for.h"
+#include "vcg_core/target/isolated_groups.h"
+#include "vcg_core/target/nearest_points.h"
+
+namespace neuralmesh {
+namespace {
+
+using Place = NearestPoints::Place;
+using Neighbours = std::vector<NearestPoints::Neighbour>;
+
+constexpr int kSpacingNeighbour = 10;  ///< a point's spacing is the distance to this neighbour
+constexpr int kWide = 48, kNarrow = 16;
+constexpr Place kSampleStride = 32;  ///< one of so many consecutive points tells the usual spacing
+constexpr std::size_t kSamplesAround = 5;
+constexpr float kSparse = 2;   ///< suspects are sparser than usual by this factor
+constexpr Place kWindow = 64;  ///< places to each side that are looked at before a search
+constexpr std::size_t kChunk = 1024;
+constexpr float kMostRatio = 100;  ///< of spacings: neighbours may coincide
+
+float median(std::vector<float> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// The places of suspects and what is known of them.
+class Suspects {
+public:
+    Suspects(const NearestPoints& cloud, ThreadTeam& team) : cloud_(cloud), team_(team) {
+        find();
+        if (suspects_.empty()) return;
+        gather_neighbours();
+        measure();
+        combine();
+    }
+
+    /// Sets \p out for suspects with enough evidence against them.
+    void mark(std::vector<std::uint8_t>& out) const {
+        if (suspects_.empty()) return;
+        const double limit = threshold();
+        for (std::size_t i = 0; i < suspects_.size(); ++i)
+            if (evidence_[i] > limit) out[suspects_[i].place] = 1;
+    }
+
+private:
+    struct Suspect {
+        Place place;
+        float spacing;
+    };
+    static constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+
+    void find();
+    std::vector<float> sampled_spacings(float& of_all) const;
+    bool has_close_neighbours(Place place, float radius) const;
+    void gather_neighbours();
+    void measure();
+    void combine();
+    double threshold() const;
+
+    float spacing(Place place, Neighbours& scratch) const {
+        cloud_.nearest(place, kSpacingNeighbour, scratch);
+        return std::sqrt(scratch.back().squared_distance);
+    }
+    Place neighbour(std::size_t suspect, int rank) const {
+        return neighbours_[suspect * kWide + static_cast<std::size_t>(rank)];
+    }
+    /// The spacing at \p place: its own if it is a suspect, else that around it.
+    float spacing_at(Place place) const {
+        const std::size_t suspect = suspect_at(place);
+        return suspect == kNobody ? around_[place / kSampleStride] : suspects_[suspect].spacing;
+    }
+    /// The rank of \p place among the suspects, or kNobody.
+    std::size_t suspect_at(Place place) const {
+        if (is_suspect_[place] == 0) return kNobody;
+        return static_cast<std::size_t>(
+            std::lower_bound(suspects_.begin(), suspects_.end(), place,
+                             [](const Suspect& s, Place key) { return s.place < key; }) -
+            suspects_.begin());
+    }
+
+    const NearestPoints& cloud_;
+    ThreadTeam& team_;
+    std::vector<float> around_;             ///< median spacing around each sample
+    std::vector<Suspect> suspects_;         ///< by ascending place
+    std::vector<std::uint8_t> is_suspect_;  ///< by place
+    std::vector<Place> neighbours_;         ///< kWide for each suspect, nearest first
+    std::vector<std::uint8_t> in_plane_;    ///< 1 for suspects in the plane of their neighbours
+    std::vector<double> narrow_, wide_;     ///< surface variations
+    std::vector<double> evidence_;
+};
+
+/// The median spacing around each of the samples; \p of_all gets that of all samples.
+std::vector<float> Suspects::sampled_spacings(float& of_all) const {
+    std::vector<float> samples((cloud_.size() + kSampleStride - 1) / kSampleStride);
+    for_chunks(samples.size(), kChunk / kSampleStride, team_,
+               [&](std::size_t, std::size_t begin, std::size_t end) {
+                   Neighbours scratch;
+                   for (std::size_t i = begin; i < end; ++i) {
+                       const std::size_t place = i * kSampleStride + kSampleStride / 2;
+                       samples[i] = spacing(std::min(static_cast<Place>(place), cloud_.size() - 1), scratch);
+                   }
+               });
+    of_all = median(samples);
+    std::vector<float> around(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const std::size_t begin = i - std::min(i, kSamplesAround / 2);
+        const std::size_t end = std::min(samples.size(), i + kSamplesAround / 2 + 1);
+        const auto at = samples.begin();
+        around[i] = median({at + static_cast<std::ptrdiff_t>(begin), at + static_cast<std::ptrdiff_t>(end)});
+    }
+    return around;
+}
+
+/// Are there kSpacingNeighbour points within \p radius, among those of nearby places? True for nearly all
+/// points of a surface, at a small part of what a search costs.
+bool Suspects::has_close_neighbours(Place place, float radius) const {
+    const vcg::Point3f& centre = cloud_.point(place);
+    const float limit = radius * radius;
+    int close = 0;
+    for (Place d = 1; d <= kWindow; ++d) {
+        if (place >= d) close += (cloud_.point(place - d) - centre).SquaredNorm() <= limit ? 1 : 0;
+        if (place + d < cloud_.size())
+            close += (cloud_.point(place + d) - centre).SquaredNorm() <= limit ? 1 : 0;
+        if (close >= kSpacingNeighbour) return true;
+    }
+    return false;
+}
+
+void Suspects::find() {
+    float of_all = 0;
+    around_ = sampled_spacings(of_all);
+    std::vector<std::vector<Suspect>> found((cloud_.size() + kChunk - 1) / kChunk);
+    for_chunks(cloud_.size(), kChunk, team_, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        Neighbours scratch;
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto place = static_cast<Place>(i);
+            const float radius = kSparse * std::min(of_all, around_[place / kSampleStride]);
+            if (has_close_neighbours(place, radius)) continue;
+            const float own = spacing(place, scratch);
+            if (own > radius) found[chunk].push_back({place, own});
+        }
+    });
+    for (const std::vector<Suspect>& part : found)
+        suspects_.insert(suspects_.end(), part.begin(), part.end());
+}
+
+void Suspects::gather_neighbours() {
+    is_suspect_.assign(cloud_.size(), 0);
+    for (const Suspect& s : suspects_) is_suspect_[s.place] = 1;
+    neighbours_.resize(suspects_.size() * kWide);
+    for_chunks(suspects_.size(), kChunk / 16, team_, [&](std::size_t, std::size_t begin, std::size_t end) {
+        Neighbours near;
+        for (std::size_t i = begin; i < end; ++i) {
+            cloud_.nearest(suspects_[i].place, kWide, near);
+            for (std::size_t k = 0; k < kWide; ++k) neighbours_[i * kWide + k] = near[k].place;
+        }
+    });
+}
+
+void Suspects::measure() {
+    in_plane_.resize(suspects_.size());
+    narrow_.resize(suspects_.size());
+    wide_.resize(suspects_.size());
+    for_chunks(suspects_.size(), kChunk / 16, team_, [&](std::size_t, std::size_t begin, std::size_t end) {
+        std::vector<Place> around;
+        for (std::size_t i = begin; i < end; ++i) {
+            around.clear();
+            for (int k = 0; k < kNarrow; ++k) around.push_back(neighbour(i, k));
+            in_plane_[i] = continues_plane(cloud_, suspects_[i].place, around) ? 1 : 0;
+            around.push_back(suspects_[i].place);
+            narrow_[i] = surface_variation(cloud_, around);
+            for (int k = kNarrow; k < kWide; ++k) around.push_back(neighbour(i, k));
+            wide_[i] = surface_variation(cloud_, around);
+        }
+    });
+}
+
+/// The weights separate, by logistic regression, outliers from points of room and building scans.
+void Suspects::combine() {
+    constexpr double kFill = 37, kDensest = 1.6, kUsual = 3.5, kInPlane = -4,
+                     kOffset = -5.3;  // of a suspect by itself
+    constexpr double kOwn = 0.7, kAround = 0.5, kCompany = 2, kCompanyOffset = -1;
+    std::vector<double> alone(suspects_.size());
+    std::vector<float> near;
+    for (std::size_t i = 0; i < suspects_.size(); ++i) {
+        double narrow = narrow_[i], wide = wide_[i];
+        int count = 1;
+        for (int k = 0; k < kSpacingNeighbour; ++k) {
+            const std::size_t other = suspect_at(neighbour(i, k));
+            if (other == kNobody) continue;
+            narrow += narrow_[other];
+            wide += wide_[other];
+            ++count;
+        }
+        near.clear();
+        for (int k = 0; k < kWide; ++k) near.push_back(spacing_at(neighbour(i, k)));
+        const float own = suspects_[i].spacing;
+        const auto log_ratio = [own](float other) {
+            return std::log(
+                static_cast<double>(std::min(kMostRatio, own / std::max(other, own / kMostRatio))));
+        };
+        const float usual = median({near.begin(), near.begin() + kSpacingNeighbour});
+        std::nth_element(near.begin(), near.begin() + kWide / 10, near.end());
+        alone[i] = kFill * std::min(narrow, wide) / count + kDensest * log_ratio(near[kWide / 10]) +
+                   kUsual * log_ratio(usual) + kInPlane * in_plane_[i] + kOffset;
+    }
+    evidence_.resize(suspects_.size());
+    for (std::size_t i = 0; i < suspects_.size(); ++i) {
+        double sum = 0;
+        int count = 0;
+        for (int k = 0; k < kWide; ++k) {
+            const std::size_t other = suspect_at(neighbour(i, k));
+            if (other == kNobody) continue;
+            sum += alone[other];
+            ++count;
+        }
+        evidence_[i] = kOwn * alone[i] + kAround * (count > 0 ? sum / count : alone[i]) +
+                       kCompany * count / kWide + kCompanyOffset;
+    }
+}
+
+/// The lowest evidence where next to none of the points lies, or that of a clear valley: the gap between
+/// orderly points and outliers, most of which have much evidence against them.
+double Suspects::threshold() const {
+    constexpr double kLowest = -2, kStrict = 3.5, kMixed = 2.5, kStep = 0.5, kFarthest = 8;
+    constexpr double kEmpty = 0.0006, kMany = 0.01;  // shares of the points
+    constexpr double kEmptyOfSuspects = 0.05;
+    constexpr double kValley = 0.1;  // of the counts on both sides
+    const auto points = static_cast<double>(cloud_.size());
+    const double empty = std::min(kEmpty * points, kEmptyOfSuspects * static_cast<double>(suspects_.size()));
+    const auto count = [this](double low, double high) {
+        return static_cast<double>(std::count_if(evidence_.begin(), evidence_.end(),
+                                                 [&](double e) { return low <= e && e < high; }));
+    };
+    const auto around = [&](double at) { return count(at - kStep, at + kStep); };
+    const auto most = [&](double low, double high) {
+        double highest = 0;
+        for (double at = low; at <= high; at += kStep) highest = std::max(highest, around(at));
+        return highest;
+    };
+    const auto are_wild = [&](double at) { return count(kMixed, HUGE_VAL) * 2 >= count(at, HUGE_VAL); };
+    for (double at = kLowest; at <= kStrict; at += kStep)
+        if (around(at) <= empty && are_wild(at)) return at;
+    for (double at = kLowest; at <= kStrict; at += kStep)
+        if (around(at) <= kValley * std::min(most(-kFarthest, at), most(at, kFarthest)) && are_wild(at))
+            return at;
+    return count(kStrict, HUGE_VAL) > kMany * points ? kMixed : kStrict;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> find_outliers(const std::vector<vcg::Point3f>& points, int threads) {
+    if (points.size() < kFewestForOutliers) return {};
+    ThreadTeam team(thread_count(threads));
+    const NearestPoints cloud(points);
+    std::vector<std::uint8_t> out(points.size());
+    Suspects(cloud, team).mark(out);
+    mark_isolated_clumps(cloud, out);
+    if (std::find(out.begin(), out.end(), 1) == out.end()) return {};
+    std::vector<std::uint8_t> result(points.size());
+    for (Place p = 0; p < cloud.size(); ++p) result[cloud.index(p)] = out[p];
+    return result;
+}
+
+}  // namespace neuralmesh
