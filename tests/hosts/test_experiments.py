@@ -16,6 +16,8 @@ import paper_figures
 import paper_runs
 import paper_table1
 import paper_termination
+import scans
+import shapes
 
 
 VERTICES = 1000  # of the small table
@@ -62,6 +64,29 @@ def learned(learn, tmp_path_factory):
                                *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
 
     return run
+
+
+@pytest.mark.parametrize("kind", scans.OUTLIERS)
+def test_outliers_are_flagged_and_the_other_points_are_as_before(kind):
+    points = np.random.default_rng(1).normal(size=(2000, 3))
+    points /= np.linalg.norm(points, axis=1, keepdims=True)
+    result, outlier = scans.with_outliers(points, kind, .05)
+    assert outlier.sum() == 100
+    assert len(result) == (2100 if kind in ("box", "clumps") else 2000)
+    assert np.isin(result[~outlier], points).all()
+    if kind == "clumps":
+        assert (np.abs(np.linalg.norm(result[outlier], axis=1) - 1) > .01 * models.diagonal(points)).all()
+
+
+def test_a_scan_sees_the_outside_and_is_off_it_by_its_noise():
+    vertices, faces = shapes.torus()
+    clean = scans.scan(vertices, faces, scans.Level(0, 0, 0, 0), pixels=60, dense=100_000)
+    assert not clean.outlier.any()
+    assert len(clean.seen) > 90_000
+    distance, _ = scans.cKDTree(clean.seen).query(clean.points)
+    assert distance.max() < .02 * models.diagonal(vertices)
+    noisy = scans.scan(vertices, faces, scans.Level(.01, 0, 0, .1), pixels=60, dense=100_000)
+    assert noisy.outlier.sum() == round(.1 * len(noisy.points))
 
 
 def test_a_mesh_that_cannot_be_saved_ends_with_a_sentence(learned, tmp_path):
