@@ -171,6 +171,17 @@ bool continues_plane(const NearestPoints& cloud, Place place, const std::vector<
            std::abs(offset.dot(solver.eigenvectors().col(0))) < kInPlane * offset.norm();
 }
 
+double relative_plane_distance(const NearestPoints& cloud, Place place, const std::vector<Place>& others,
+                               double at_least) {
+    constexpr double kThin = 0.1;  // of the variances across and along the plane
+    const Extent extent(cloud, others);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(extent.covariance);
+    if (!(solver.eigenvalues()[0] < kThin * solver.eigenvalues()[1])) return 0;
+    const double own = std::sqrt(std::max(solver.eigenvalues()[0], 0.0) / static_cast<double>(others.size()));
+    const Eigen::Vector3d offset = position(cloud, place) - extent.mean;
+    return std::abs(offset.dot(solver.eigenvectors().col(0))) / std::hypot(own, at_least);
+}
+
 void mark_isolated_clumps(const NearestPoints& cloud, std::vector<std::uint8_t>& out) {
     const auto points = static_cast<double>(cloud.size());
     const auto largest = static_cast<std::size_t>(kLargestShare * points);

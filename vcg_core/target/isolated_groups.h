@@ -19,6 +19,11 @@ double surface_variation(const NearestPoints& cloud, const std::vector<NearestPo
 bool continues_plane(const NearestPoints& cloud, NearestPoints::Place place,
                      const std::vector<NearestPoints::Place>& others);
 
+/// How far \p place is from the plane of \p others: its distance over the greater of their own (root mean
+/// square) and \p at_least. 0 if they are not near one plane.
+double relative_plane_distance(const NearestPoints& cloud, NearestPoints::Place place,
+                               const std::vector<NearestPoints::Place>& others, double at_least);
+
 /// Sets \p out at the places of clumps that fill space and are isolated. Places where \p out is set already
 /// count as absent. O(n), and O(m log m) for candidates of m points together.
 void mark_isolated_clumps(const NearestPoints& cloud, std::vector<std::uint8_t>& out);

@@ -50,6 +50,9 @@ public:
         const double limit = threshold();
         for (std::size_t i = 0; i < suspects_.size(); ++i)
             if (evidence_[i] > limit) out[suspects_[i].place] = 1;
+        const auto marked = static_cast<double>(std::count(out.begin(), out.end(), 1));
+        if (marked <= kFew * static_cast<double>(cloud_.size())) return;
+        for (const Place p : lifted()) out[p] = 1;
     }
 
 private:
@@ -57,9 +60,11 @@ private:
         Place place;
         float spacing;
     };
+    static constexpr double kFew = 0.002;  ///< of the points
     static constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
 
     void find();
+    std::vector<Place> lifted() const;
     std::vector<float> sampled_spacings(float& of_all) const;
     bool has_close_neighbours(Place place, float radius) const;
     void gather_neighbours();
@@ -91,6 +96,7 @@ private:
     const NearestPoints& cloud_;
     ThreadTeam& team_;
     std::vector<float> around_;             ///< median spacing around each sample
+    float of_all_ = 0;                      ///< median spacing of the cloud
     std::vector<Suspect> suspects_;         ///< by ascending place
     std::vector<std::uint8_t> is_suspect_;  ///< by place
     std::vector<Place> neighbours_;         ///< kWide for each suspect, nearest first
@@ -150,8 +156,37 @@ void Suspects::find() {
             if (own > radius) found[chunk].push_back({place, own});
         }
     });
+    of_all_ = of_all;
     for (const std::vector<Suspect>& part : found)
         suspects_.insert(suspects_.end(), part.begin(), part.end());
+}
+
+/// Points that are a little sparser than usual and off the plane of their neighbours. In a cloud with hardly
+/// any outliers they are part of the surface more often than not.
+std::vector<Place> Suspects::lifted() const {
+    constexpr float kSparser = 1.35F;
+    constexpr double kSpacing = 1.78;  // that of even points on a plane in distances to the tenth neighbour
+    constexpr double kLeast = 0.3, kLifted = 4;
+    std::vector<std::vector<Place>> found((cloud_.size() + kChunk - 1) / kChunk);
+    for_chunks(cloud_.size(), kChunk, team_, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        Neighbours near;
+        std::vector<Place> places;
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto place = static_cast<Place>(i);
+            const float usual = std::min(of_all_, around_[place / kSampleStride]);
+            if (has_close_neighbours(place, kSparser * usual)) continue;
+            cloud_.nearest(place, kNarrow, near);
+            if (std::sqrt(near[kSpacingNeighbour - 1].squared_distance) <= kSparser * usual) continue;
+            places.clear();
+            for (const NearestPoints::Neighbour& n : near) places.push_back(n.place);
+            const double least = kLeast * static_cast<double>(usual) / kSpacing;
+            if (relative_plane_distance(cloud_, place, places, least) > kLifted)
+                found[chunk].push_back(place);
+        }
+    });
+    std::vector<Place> all;
+    for (const std::vector<Place>& part : found) all.insert(all.end(), part.begin(), part.end());
+    return all;
 }
 
 void Suspects::gather_neighbours() {

@@ -15,6 +15,10 @@
 // In most clouds the evidence has two modes with a gap between them, and the threshold is at the orderly end
 // of that gap. Where orderly and wild points merge, the threshold is strict: in doubt a point stays.
 //
+// Lifted points. If more than a five-hundredth of the points are outliers so far, there are more of them
+// close to the surface: points that are sparser than usual by a third only, and four times as far from the
+// plane of their neighbours as these are.
+//
 // Isolated groups. A clump that is as dense as the surface is no suspect. It is an outlier if it holds at
 // most a hundredth of the points, is farther from all others than its own points are apart, fills space, and
 // is as thick as it is wide. Candidates are connected cells of octree levels.

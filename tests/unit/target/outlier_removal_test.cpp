@@ -75,6 +75,19 @@ TEST(OutlierRemoval, FindsScatteredPointsFarFromTheSurface) {
     }
 }
 
+TEST(OutlierRemoval, KeepsANoisySurfaceBesideManyOutliers) {
+    Random random(12);
+    Cloud cloud = sphere(20000, random);
+    for (vcg::Point3f& p : cloud) {
+        const float noise = random.unit() + random.unit() + random.unit() + random.unit() - 2;
+        p *= 1 + 0.02F * noise;  // standard deviation .0035, half a spacing
+    }
+    for (int i = 0; i < 1000; ++i) cloud.push_back(anywhere(random));
+    const std::vector<std::uint8_t> out = find_outliers(cloud, 1);
+    EXPECT_LE(count_of(out, 0, 20000), 20u) << "at most .1 %";
+    EXPECT_GE(count_of(out, 20000, cloud.size()), 800u);
+}
+
 TEST(OutlierRemoval, FindsPairsAndClumps) {
     Random random(3);
     Cloud pairs;
