@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
+#include "vcg_core/shell/open_start.h"
 #include "vcg_core/shell/shell.h"
 #include "vcg_core/target/outlier_removal.h"
 
@@ -17,6 +19,12 @@ namespace {
 
 /// A shell lies outside the cloud by its radius. This many signals per vertex bring it down.
 constexpr int kLandingSignals = 100;
+constexpr double kShellMade = 0.6;  // of the progress
+/// Openings of closed models (places without points on large faces, cavities) are narrower than this share of
+/// the diagonal, those of scans and cut models wider. Chosen by open_table.py.
+constexpr double kWidestClosed = 0.066;
+/// Planes that are thicker than this say nothing about where the cloud is open.
+constexpr double kTooThick = 0.45;
 
 /// The start mesh of the paper, in the middle of the cloud, which is the origin of the core's frame.
 Network tetrahedron() {
@@ -82,11 +90,55 @@ void remove_outliers(LearningTask& task, int threads) {
 }
 
 /// A group of points that got no component of the start mesh would be reached by a spike.
-void remove_groups_without_component(LearningTask& task, StartMesh& shell) {
-    if (shell.outliers.empty()) return;
+void remove_groups_without_component(LearningTask& task, const std::vector<std::uint8_t>& outliers,
+                                     std::vector<vcg::Point3f>& positions) {
+    if (outliers.empty()) return;
     const Frame before = task.target().frame();
-    if (!leave_out(task, shell.outliers)) return;
-    for (vcg::Point3f& p : shell.positions) p = task.target().frame().inside(before.outside(p));
+    if (!leave_out(task, outliers)) return;
+    for (vcg::Point3f& p : positions) p = task.target().frame().inside(before.outside(p));
+}
+
+OpenStart make_open_start(const TargetSpace& target, const Settings& settings, Progress& progress) {
+    OpenStartOptions options;
+    options.target_vertices = settings.target_vertices;
+    options.close_holes_up_to = settings.close_holes_up_to / 100;
+    Random random(stream_seed(settings.random_seed, Stream::shell));
+    return open_start(target, options, random, progress);
+}
+
+/// Whether the shell had to close more than settings allow for.
+bool is_open(const StartMesh& shell, const Settings& settings) {
+    const double widest = settings.close_holes_up_to >= 0 ? settings.close_holes_up_to / 100 : kWidestClosed;
+    return !shell.encloses_space || 2 * shell.widest_opening > widest;
+}
+
+/// The open start mesh of a cloud whose shell is open; nothing if the cloud has none, or one without
+/// boundary.
+std::optional<OpenStart> try_open_start(const TargetSpace& target, const Settings& settings,
+                                        Progress& progress) {
+    try {
+        OpenStart start = make_open_start(target, settings, progress);
+        if (start.loops > 0 && start.thickness < kTooThick) return start;
+    } catch (const InputError&) {
+    }
+    return {};
+}
+
+void begin_open(LearningTask& task, OpenStart start, const Settings& settings) {
+    if (static_cast<int>(start.positions.size()) > settings.target_vertices)
+        throw SettingError("The open surface, with " + std::to_string(start.components) + " components, " +
+                           std::to_string(start.loops) + " boundary loops and genus " +
+                           std::to_string(start.genus) + ", needs " + std::to_string(start.positions.size()) +
+                           " vertices to begin with: raise " + "target_vertices from " +
+                           std::to_string(settings.target_vertices) + ", or choose surface 1 (closed).");
+    task.warnings.insert(task.warnings.end(), start.warnings.begin(), start.warnings.end());
+    if (settings.surface == kAutomatic)
+        task.warnings.push_back(
+            "The points enclose no space, or openings too wide to close: the surface ends "
+            "where they end. Choose surface 1 to close it.");
+    if (settings.remove_outliers) remove_groups_without_component(task, start.outliers, start.positions);
+    task.network = Network(start.positions, start.faces);
+    task.landing_signals = kLandingSignals;
 }
 
 std::string too_large(const StartMesh& shell, int final_vertices) {
@@ -97,23 +149,13 @@ std::string too_large(const StartMesh& shell, int final_vertices) {
            "shape.";
 }
 
-}  // namespace
-
-LearningTask prepare(const TargetSpace& given, const Settings& settings, Progress& progress) {
-    LearningTask task(given);
-    remove_repeated_points(task);
-    if (settings.remove_outliers && !given.has_faces()) remove_outliers(task, settings.threads);
-    if (settings.start_mesh == kTetrahedron) {
-        task.network = tetrahedron();
-        return task;
-    }
-    StartMesh shell = make_shell(task.target(), settings, progress);
+void begin_closed(LearningTask& task, StartMesh shell, const Settings& settings) {
     task.warnings.insert(task.warnings.end(), shell.warnings.begin(), shell.warnings.end());
-    if (settings.remove_outliers) remove_groups_without_component(task, shell);
+    if (settings.remove_outliers) remove_groups_without_component(task, shell.outliers, shell.positions);
     if (static_cast<int>(shell.positions.size()) > settings.target_vertices) {
         task.warnings.push_back(too_large(shell, settings.target_vertices));
         task.network = tetrahedron();
-        return task;
+        return;
     }
     task.network = Network(shell.positions, shell.faces);
     task.landing_signals = kLandingSignals;
@@ -123,6 +165,37 @@ LearningTask prepare(const TargetSpace& given, const Settings& settings, Progres
         task.warnings.push_back(
             "The two layers of such a surface lie on each other, which leaves no room to smooth them: it was "
             "learned with smoothing_steps 0, and its triangles are less even than usual.");
+}
+
+}  // namespace
+
+LearningTask prepare(const TargetSpace& given, const Settings& settings, Progress& progress) {
+    LearningTask task(given);
+    remove_repeated_points(task);
+    if (settings.remove_outliers && !given.has_faces()) remove_outliers(task, settings.threads);
+    if (settings.start_mesh == kTetrahedron) {
+        if (settings.surface == kOpenSurface)
+            task.warnings.push_back(
+                "The surface is closed, because start_mesh 1 (tetrahedron) is. Choose start_mesh 0 for an "
+                "open one.");
+        task.network = tetrahedron();
+        return task;
+    }
+    if (settings.surface == kOpenSurface) {
+        begin_open(task, make_open_start(task.target(), settings, progress), settings);
+        return task;
+    }
+    PartOf closing(progress, 0, kShellMade);
+    PartOf opening(progress, kShellMade, 1);
+    StartMesh shell = make_shell(task.target(), settings, closing);
+    if (settings.surface == kAutomatic && is_open(shell, settings)) {
+        std::optional<OpenStart> start = try_open_start(task.target(), settings, opening);
+        if (start) {
+            begin_open(task, std::move(*start), settings);
+            return task;
+        }
+    }
+    begin_closed(task, std::move(shell), settings);
     return task;
 }
 

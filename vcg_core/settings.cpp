@@ -65,6 +65,15 @@ std::vector<SettingInfo> mesh_rows() {
             "The mesh gets exactly this many vertices. The run time is proportional to this number from "
             "5,000 on. Below, the network grows to more vertices, and the fit removes those that contribute "
             "least."),
+        row(&S::surface, "surface", "Surface", {"Automatic", "Closed", "Open"},
+            "Whether the mesh has boundaries. Automatic: it is closed if the points enclose space, and open "
+            "where an opening is wider than 'Close holes up to'. Closed: it has none; a single scan is closed "
+            "around both of its sides. Open: it ends wherever the points end."),
+        row(&S::close_holes_up_to, "close_holes_up_to", "Close holes up to (% of diagonal)", -1, 100,
+            "Holes of an open surface are closed up to this diameter of the smallest sphere around them, in "
+            "percent of the bounding-box diagonal. -1: chosen from the spacing of the points. 0: none but gaps "
+            "of about two point spacings. With Surface set to Automatic, wider openings keep the whole surface "
+            "open (-1: from 6.6 % on)."),
         row(&S::utility_counter, "utility_counter", "Utility counter",
             {"Where the normal varies", "Where signals arrive"},
             "Which vertices are split. Where the normal varies: the mesh is dense where the surface bends "

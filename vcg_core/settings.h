@@ -31,9 +31,18 @@ enum StartShape : int {
     kTetrahedron = 1,  ///< the paper's: one component without handles
 };
 
+/// Whether the mesh has boundaries.
+enum SurfaceKind : int {
+    kAutomatic = 0,      ///< closed if the cloud encloses space, but for openings that are too wide to close
+    kClosedSurface = 1,  ///< no boundary
+    kOpenSurface = 2,    ///< boundaries where the points end
+};
+
 /// All parameters of a run. setting_table() has their ranges and meanings.
 struct Settings {
     int target_vertices = 10000;
+    int surface = kAutomatic;
+    double close_holes_up_to = -1;  ///< % of the bounding-box diagonal; negative: chosen by the filter
     int utility_counter = kNormalCounter;
     int start_mesh = kShell;
     bool fit_to_points = true;

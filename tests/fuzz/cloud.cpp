@@ -38,6 +38,9 @@ Settings settings_of(Bytes& bytes) {
     settings.signals_per_split = 20;
     settings.threads = 1;
     settings.target_vertices = 4 + bytes.byte();
+    // Of the three ways and of the bound on holes by turns; the other bytes stay what they were.
+    settings.surface = settings.target_vertices % 3;
+    settings.close_holes_up_to = settings.target_vertices % 5 * 10 - 1;
     return settings;
 }
 
@@ -72,12 +75,14 @@ TargetSpace target_of(const std::vector<vcg::Point3d>& points, bool faces) {
 void check(const NeuralMesh& mesh, const Settings& settings) {
     const referee::Census census = referee::census(mesh.faces);
     if (!census.breach.empty()) fail("the faces are no manifold: " + census.breach);
-    expect(census.loops == 0 && census.vertices == static_cast<int>(mesh.positions.size()), "not closed");
+    expect(census.vertices == static_cast<int>(mesh.positions.size()), "a vertex without faces");
+    expect(census.loops == mesh.report.boundary_loops, "the boundary is misreported");
+    expect(census.loops == 0 || settings.surface != kClosedSurface, "not closed");
     expect(
         mesh.report.stop_reason != StopReason::target_reached || census.vertices == settings.target_vertices,
         "not target_vertices vertices");
     expect(mesh.report.components == census.components &&
-               2 * (mesh.report.components - mesh.report.genus) == census.euler(),
+               2 * (mesh.report.components - mesh.report.genus) - census.loops == census.euler(),
            "the topology is misreported");
     expect(mesh.counters.size() == mesh.positions.size() && mesh.features.size() == mesh.positions.size(),
            "not one counter and one mark for every vertex");
@@ -99,6 +104,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
         check(reconstruct(target_of(points, settings.draw_from_faces), settings, progress), settings);
     } catch (const InputError& error) {
+        fuzz::expect_sentence(error.what());
+    } catch (const SettingError& error) {  // too few vertices for an open surface
         fuzz::expect_sentence(error.what());
     }
     return 0;

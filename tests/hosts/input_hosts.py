@@ -221,8 +221,8 @@ def check(build, layer, outcome):
     models.save_ply(file, points)
     found = meshlabserver.check_mesh(build, outcome.mesh, file)
     assert found["vertices"] == report["vertices"] == layer.target
-    assert report["stop_reason"] == 0 and report["boundary_loops"] == 0
-    assert found["watertight"] and found["oriented"], "no closed, oriented surface"
+    assert report["stop_reason"] == 0 and report["boundary_loops"] == layer.loops
+    assert found["boundary_loops"] == layer.loops and found["oriented"], "no oriented surface with these boundaries"
     assert found["non_manifold_edges"] == found["non_manifold_vertices"] == found["unreferenced_vertices"] == 0
     assert (found["genus"], found["components"]) == (report["genus"], report["components"])
     assert (found["components"], found["genus"]) == (layer.components, layer.genus), (

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "vcg_core/engine/step_rates.h"
+
 namespace neuralmesh {
 
 namespace {
@@ -39,6 +41,8 @@ struct EightSteps::Kernels {
                                Star& star);
     NEURALMESH_ALWAYS_INLINE static void smooth_vertex(const Star& star, const Eight& rate,
                                                        const EightVectors* from, EightVectors& to);
+    static void gather_along_boundary(EightSteps& p, const Network& network, int lane);
+    static void smooth_along_boundary(EightSteps& p, float smoothing_rate);
     NEURALMESH_MULTIVERSIONED static void gather(EightSteps& p, const Network& network);
     NEURALMESH_MULTIVERSIONED static void move_winners(EightSteps& p, const vcg::Point3f* signals,
                                                        float learning_rate);
@@ -64,6 +68,31 @@ NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::gather(EightSteps& p, const 
         p.ring_now_[i + 1] = p.ring_before_[i];
     }
     for (int i = 0; i < p.valence_; ++i) gather_star(p, network, i);
+    p.along_boundary_count_ = 0;
+    for (int lane = 0; lane < kLanes; ++lane)
+        if (p.closed_[lane] == 0) gather_along_boundary(p, network, lane);
+    close_cycle(p.ring_now_, p.valence_);
+}
+
+/// The winner is the last neighbour of the first of its ring, and the first one of the last.
+void EightSteps::Kernels::gather_along_boundary(EightSteps& p, const Network& network, int lane) {
+    const vcg::Point3f origin = network.position(p.winners_[lane]);
+    for (const int i : {0, p.valence_ - 1}) {
+        const Ring& ring = network.ring((*p.rings_[lane])[i]);
+        const VertexId next = ring[i == 0 ? 0 : ring.valence - 1];
+        p.along_boundary_[p.along_boundary_count_++] = {lane, i, (network.position(next) - origin) * 0.5F};
+    }
+}
+
+void EightSteps::Kernels::smooth_along_boundary(EightSteps& p, float smoothing_rate) {
+    const float rate = std::min(1.0F, kBoundarySteps * smoothing_rate);
+    for (int k = 0; k < p.along_boundary_count_; ++k) {
+        const auto& [lane, i, half_way] = p.along_boundary_[k];
+        EightVectors& v = p.ring_now_[i + 1];
+        v.x[lane] += rate * (half_way[0] + 0.5F * p.winner_now_.x[lane] - v.x[lane]);
+        v.y[lane] += rate * (half_way[1] + 0.5F * p.winner_now_.y[lane] - v.y[lane]);
+        v.z[lane] += rate * (half_way[2] + 0.5F * p.winner_now_.z[lane] - v.z[lane]);
+    }
     close_cycle(p.ring_now_, p.valence_);
 }
 
@@ -203,8 +232,9 @@ NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::smooth(EightSteps& p, int sm
         close_cycle(to, p.valence_);
         std::swap(from, to);
     }
-    if (from == p.ring_now_) return;
-    for (int i = 0; i < p.valence_ + 2; ++i) p.ring_now_[i] = from[i];
+    if (from != p.ring_now_)
+        for (int i = 0; i < p.valence_ + 2; ++i) p.ring_now_[i] = from[i];
+    if (smoothing_steps > 0 && p.along_boundary_count_ > 0) smooth_along_boundary(p, smoothing_rate);
 }
 
 NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::normals(const EightSteps& p, EightVectors& normals) {

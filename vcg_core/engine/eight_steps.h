@@ -30,7 +30,8 @@ public:
 
     /// Moves each winner towards its signal; \p signals has kLanes elements.
     void move_winners(const vcg::Point3f* signals, float learning_rate);
-    /// Tangential Laplacian smoothing of the winners' rings.
+    /// Tangential Laplacian smoothing of the winners' rings, and smoothing of the boundary beside winners
+    /// that lie on it: see basic_step().
     void smooth(int smoothing_steps, float smoothing_rate);
     /// The present unit normal of each winner: the sum of the unit normals of its faces, normalised; 0 if
     /// they cancel.
@@ -49,7 +50,13 @@ private:
         EightVectors first;  ///< o_1; smooth() subtracts w
         EightVectors last;   ///< o_m; smooth() subtracts w
         Eight inverse_valence;
-        EightInts inner;  ///< -1; 0 for a boundary vertex, which is not smoothed
+        EightInts inner;  ///< -1; 0 for a boundary vertex, which stands still
+    };
+
+    /// A neighbour of a winner along the boundary.
+    struct AlongBoundary {
+        int lane, i;            ///< ring vertex i
+        vcg::Point3f half_way;  ///< half the vector from where the winner stood to its other neighbour there
     };
 
     struct Kernels;
@@ -62,6 +69,8 @@ private:
     EightVectors winner_now_;
     EightInts closed_;  ///< -1; 0 for a winner on a boundary, whose ring is open
     Star stars_[kMost];
+    AlongBoundary along_boundary_[2 * kLanes];
+    int along_boundary_count_ = 0;
     EightVectors ring_before_[kMost];
     /// Entry i + 1 is ring vertex i; entries 0 and valence + 1 repeat the last and the first.
     EightVectors ring_now_[kMost + 2];

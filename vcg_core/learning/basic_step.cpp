@@ -3,6 +3,7 @@
 
 #include "vcg_core/learning/basic_step.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace neuralmesh {
@@ -52,6 +53,18 @@ vcg::Point3d smoothed(const Network& network, const Positions& positions, const 
     return v + l_t * alpha_l;
 }
 
+/// Ring vertex i, a neighbour of the winner along the boundary, after smoothing: where it is and the middle
+/// between its two neighbours on the boundary, the winner as in \p step and the other as in \p positions.
+vcg::Point3d smoothed_along_boundary(const Network& network, const Positions& positions,
+                                     const BasicStep& step, int i, double alpha_l) {
+    const Ring& winners = network.ring(step.winner);
+    const Ring& ring = network.ring(winners[i]);
+    const VertexId next = i == 0 ? ring[0] : ring[ring.valence - 1];
+    const vcg::Point3d v = step.ring_positions[static_cast<std::size_t>(i)];
+    const vcg::Point3d middle = (positions[next] + step.winner_position) / 2;
+    return v + (middle - v) * std::min(1.0, static_cast<double>(kBoundarySteps) * alpha_l);
+}
+
 }  // namespace
 
 VertexId find_winner(const Network& network, const Positions& positions, const vcg::Point3d& s) {
@@ -77,6 +90,11 @@ BasicStep basic_step(const Network& network, const Positions& positions, VertexI
             step.ring_positions[static_cast<std::size_t>(i)] =
                 smoothed(network, positions, before, i, static_cast<double>(rates.smoothing_rate));
     }
+
+    if (ring.open != 0 && rates.smoothing_steps > 0)
+        for (const int i : {0, ring.valence - 1})
+            step.ring_positions[static_cast<std::size_t>(i)] = smoothed_along_boundary(
+                network, positions, step, i, static_cast<double>(rates.smoothing_rate));
 
     const vcg::Point3d n_after = winner_normal(ring, step);
     step.delta = (n_after - n).SquaredNorm() / 2;  // eq 2: 1 - n.n' of unit vectors, without cancellation

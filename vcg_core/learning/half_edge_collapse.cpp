@@ -32,7 +32,7 @@ VertexId best_collapse(const Network& network, VertexId gone) {
 int half_edge_collapse(LearningState& state, std::int64_t since) {
     int removed = 0;
     for (const VertexId v : state.network.vertices()) {
-        if (state.activity.active_since(v, since)) continue;
+        if (state.activity.active_since(v, since) || state.network.ring(v).open != 0) continue;
         const VertexId kept = best_collapse(state.network, v);
         if (kept < 0) continue;
         state.collapse(v, kept);

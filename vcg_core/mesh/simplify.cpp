@@ -30,7 +30,7 @@ float squared_length(const Network& net, VertexId a, VertexId b) {
 bool folds(const Network& net, VertexId v, const Point3f& where, VertexId except) {
     constexpr float kSquaredCosine = 0.1F;
     const Ring& ring = net.ring(v);
-    for (int i = 0; i < ring.valence; ++i) {
+    for (int i = 0; i < ring.face_count(); ++i) {
         const VertexId a = ring[i];
         const VertexId b = ring.next(i);
         if (a == except || b == except) continue;
@@ -125,10 +125,17 @@ bool is_flat(const FlipNormals& normals) {
     });
 }
 
-/// Moves every vertex halfway to the mean of its neighbours, within its tangent plane.
+/// Moves every vertex halfway to the mean of its neighbours, within its tangent plane; on a boundary, to the
+/// middle between its two neighbours there.
 void smooth_tangentially(Network& net) {
     for (const VertexId v : net.vertices()) {
         const Ring& ring = net.ring(v);
+        if (ring.open != 0) {
+            const Point3f mean = (net.position(ring[0]) + net.position(ring[ring.valence - 1])) * 0.5F;
+            const Point3f where = (net.position(v) + mean) * 0.5F;
+            if (!folds(net, v, where, -1)) net.set_position(v, where);
+            continue;
+        }
         const Point3f p = net.position(v);
         Point3f mean(0, 0, 0);
         Point3f normal(0, 0, 0);

@@ -19,9 +19,12 @@ bool should_flip(const Network& network, VertexId a, VertexId b, const FlipRule&
     const VertexId d = ring.previous(i);
     const auto valence = [&](VertexId v) { return static_cast<int>(network.ring(v).valence); };
     if (valence(c) >= rule.max_valence || valence(d) >= rule.max_valence) return false;
-    // a and b lose an edge, c and d gain one: the sum of (valence - 6)^2 falls by twice the difference below
-    // minus 4.
-    if (valence(a) + valence(b) - valence(c) - valence(d) <= 2) return false;
+    const auto excess = [&](VertexId v) {
+        return valence(v) - (network.ring(v).open != 0 ? kRegularBoundaryValence : kRegularValence);
+    };
+    // a and b lose an edge, c and d gain one: the sum of the squared excesses falls by twice the difference
+    // below minus 4.
+    if (excess(a) + excess(b) - excess(c) - excess(d) <= 2) return false;
     const vcg::Point3f pa = network.position(a);
     const vcg::Point3f pb = network.position(b);
     const vcg::Point3f pc = network.position(c);

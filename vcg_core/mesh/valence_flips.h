@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Edge flips that bring valences closer to 6, the valence of a regular triangulation (Frey and Borouchaki,
-// "Geometric surface mesh optimization", 1998).
+// Edge flips that bring valences closer to 6, on a boundary to 4, the valences of a regular triangulation
+// (Frey and Borouchaki, "Geometric surface mesh optimization", 1998).
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -23,11 +23,23 @@ struct FlipRule {
     int max_valence = Ring::kMaxValence;          ///< no flip raises a valence above it
 };
 
-/// (valence - 6)^2: 0 for a regular vertex.
-inline int valence_irregularity(int valence) { return (valence - 6) * (valence - 6); }
+/// Valences in a regular triangulation, inside and on a boundary.
+constexpr int kRegularValence = 6, kRegularBoundaryValence = 4;
 
-/// Flips every inner edge at \p v whose flip lowers the sum of valence_irregularity() over the four vertices
-/// around it and is allowed by \p rule; positions stay. O(valence^2). \return the number of flips
+/// (valence - 6)^2: 0 for a regular vertex.
+inline int valence_irregularity(int valence) {
+    return (valence - kRegularValence) * (valence - kRegularValence);
+}
+
+/// The squared difference of the vertex's valence from the regular one.
+inline int valence_irregularity(const Ring& ring) {
+    const int excess = ring.valence - (ring.open != 0 ? kRegularBoundaryValence : kRegularValence);
+    return excess * excess;
+}
+
+/// Flips every inner edge at \p v whose flip lowers the sum of the squared differences from the regular
+/// valences over the four vertices around it and is allowed by \p rule; positions stay. O(valence^2).
+/// \return the number of flips
 int flip_edges_for_valence(Network& network, VertexId v, const FlipRule& rule);
 
 /// The same for all edges of \p network, once each, in the order of their smaller vertices. O(vertices).

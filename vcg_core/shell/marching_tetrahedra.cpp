@@ -34,13 +34,15 @@ using EdgeKey = std::uint64_t;
 /// Collects triangles whose vertices lie on lattice edges.
 class EdgeTriangles {
 public:
-    EdgeTriangles(const Lattice& lattice, const PerNode<float>& values)
-        : lattice_(lattice), values_(values) {}
+    EdgeTriangles(const Lattice& lattice, const PerNode<float>& values, const TetrahedronFilter& wanted)
+        : lattice_(lattice), values_(values), wanted_(wanted) {}
 
-    void add_cube(int x, int y, int z);
-    IndexedMesh<float> mesh() const;
+    void add_cubes();
+    /// \p nodes: receives for every vertex one end of the lattice edge it lies on
+    IndexedMesh<float> mesh(std::vector<NodeId>& nodes) const;
 
 private:
+    void add_cube(int x, int y, int z);
     void add_tetrahedron(NodeId node, const std::array<int, 4>& corners, unsigned solid_corners);
     void add_triangle(EdgeKey a, EdgeKey b, EdgeKey c) { keys_.insert(keys_.end(), {a, b, c}); }
     NodeId offset(int corner) const { return lattice_.index(corner & 1, (corner >> 1) & 1, corner >> 2); }
@@ -48,6 +50,7 @@ private:
 
     const Lattice& lattice_;
     const PerNode<float>& values_;
+    const TetrahedronFilter& wanted_;
     std::vector<EdgeKey> keys_;
 };
 
@@ -57,7 +60,12 @@ void EdgeTriangles::add_cube(int x, int y, int z) {
     for (int corner = 0; corner < 8; ++corner)
         if (values_[node + offset(corner)] < 0) solid |= 1U << corner;
     if (solid == 0 || solid == 255) return;
-    for (const std::array<int, 4>& corners : kTetrahedra) add_tetrahedron(node, corners, solid);
+    for (const std::array<int, 4>& corners : kTetrahedra) {
+        if (wanted_ && !wanted_({node + offset(corners[0]), node + offset(corners[1]),
+                                 node + offset(corners[2]), node + offset(corners[3])}))
+            continue;
+        add_tetrahedron(node, corners, solid);
+    }
 }
 
 void EdgeTriangles::add_tetrahedron(NodeId node, const std::array<int, 4>& corners, unsigned solid_corners) {
@@ -97,12 +105,15 @@ Point3f EdgeTriangles::point_on(EdgeKey key) const {
     return lattice_.position(node) + along * (t * lattice_.step);
 }
 
-IndexedMesh<float> EdgeTriangles::mesh() const {
+IndexedMesh<float> EdgeTriangles::mesh(std::vector<NodeId>& nodes) const {
     std::vector<EdgeKey> unique = keys_;
     std::sort(unique.begin(), unique.end());
     unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
     IndexedMesh<float> result;
-    for (const EdgeKey key : unique) result.positions.push_back(point_on(key));
+    for (const EdgeKey key : unique) {
+        result.positions.push_back(point_on(key));
+        nodes.push_back(static_cast<NodeId>(key / 8));
+    }
     const auto id = [&](EdgeKey key) {
         return static_cast<int>(std::lower_bound(unique.begin(), unique.end(), key) - unique.begin());
     };
@@ -111,14 +122,24 @@ IndexedMesh<float> EdgeTriangles::mesh() const {
     return result;
 }
 
+void EdgeTriangles::add_cubes() {
+    for (int z = 0; z + 1 < lattice_.nz; ++z)
+        for (int y = 0; y + 1 < lattice_.ny; ++y)
+            for (int x = 0; x + 1 < lattice_.nx; ++x) add_cube(x, y, z);
+}
+
 }  // namespace
 
+IndexedMesh<float> marching_tetrahedra(const Lattice& lattice, const PerNode<float>& values,
+                                       const TetrahedronFilter& wanted, std::vector<NodeId>& nodes) {
+    EdgeTriangles triangles(lattice, values, wanted);
+    triangles.add_cubes();
+    return triangles.mesh(nodes);
+}
+
 IndexedMesh<float> marching_tetrahedra(const Lattice& lattice, const PerNode<float>& values) {
-    EdgeTriangles triangles(lattice, values);
-    for (int z = 0; z + 1 < lattice.nz; ++z)
-        for (int y = 0; y + 1 < lattice.ny; ++y)
-            for (int x = 0; x + 1 < lattice.nx; ++x) triangles.add_cube(x, y, z);
-    return triangles.mesh();
+    std::vector<NodeId> nodes;
+    return marching_tetrahedra(lattice, values, {}, nodes);
 }
 
 }  // namespace neuralmesh

@@ -24,7 +24,7 @@ bool never(const FlipNormals& /*normals*/) { return false; }
 
 int irregularity(const Network& network) {
     int sum = 0;
-    for (const VertexId v : network.vertices()) sum += valence_irregularity(network.ring(v).valence);
+    for (const VertexId v : network.vertices()) sum += valence_irregularity(network.ring(v));
     return sum;
 }
 

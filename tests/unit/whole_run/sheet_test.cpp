@@ -67,10 +67,12 @@ TEST(Sheets, AreClosedOnBothSidesWithEveryVertexOnThem) {
             SCOPED_TRACE(testing::Message() << sheet.name << ", " << vertices);
             Settings settings;
             settings.target_vertices = vertices;
+            settings.surface = kClosedSurface;
             NoProgress progress;
             const NeuralMesh mesh = reconstruct(soundness::target_of(sheet.cloud), settings, progress);
             expect_exact(mesh, settings);
             EXPECT_EQ(mesh.report.components, 1);
+            EXPECT_EQ(mesh.report.boundary_loops, 0);
             EXPECT_EQ(mesh.report.genus, sheet.genus);
             EXPECT_TRUE(soundness::has_warning(mesh, "closed around both of their sides"));
             EXPECT_FALSE(soundness::has_warning(mesh, "forced"));

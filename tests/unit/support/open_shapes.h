@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Clouds of surfaces with boundary.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/unit/support/shapes.h"
+
+namespace neuralmesh::open_shapes {
+
+using shapes::Cloud;
+
+/// The points of \p cloud that \p keep accepts.
+template <class Keep>
+Cloud cut(const Cloud& cloud, const Keep& keep) {
+    Cloud kept;
+    for (const vcg::Point3d& p : cloud)
+        if (keep(p)) kept.push_back(p);
+    return kept;
+}
+
+/// A band around the z axis of radius 1 and width .6, turned over \p half_turns times: 1 is a Moebius strip.
+inline Cloud band(int count, int half_turns) {
+    Random random(1);
+    Cloud cloud;
+    for (int i = 0; i < count; ++i) {
+        const double along = 2 * shapes::kPi * static_cast<double>(random.unit());
+        const double across = 0.3 * shapes::signed_unit(random), turn = half_turns * along / 2;
+        const double r = 1 + across * std::cos(turn);
+        cloud.emplace_back(r * std::cos(along), r * std::sin(along), across * std::sin(turn));
+    }
+    return cloud;
+}
+
+/// A helix: a curve.
+inline Cloud helix(int count) {
+    Cloud cloud;
+    for (int i = 0; i < count; ++i) {
+        const double t = double(i) / count;
+        cloud.emplace_back(std::cos(20 * t), std::sin(20 * t), 2 * t);
+    }
+    return cloud;
+}
+
+struct Case {
+    std::string name;
+    Cloud cloud;
+    int components, genus, loops;
+};
+
+/// Cut spheres and tori, sheets with and without holes, a band, and two parts of different kinds.
+inline std::vector<Case> cases() {
+    const Cloud sphere = shapes::sphere_cloud(20000), torus = shapes::torus_cloud(20000),
+                square = shapes::plane_cloud(10000);
+    const auto holed = [](const vcg::Point3d& p) {
+        return std::hypot(p[0] - 0.2, p[1]) > 0.12 && std::hypot(p[0] + 0.2, p[1]) > 0.12;
+    };
+    Cloud mixed = shapes::sphere_cloud(10000);
+    for (const vcg::Point3d& p : square) mixed.push_back(p * 2 + vcg::Point3d(3, 0, 0));
+    return {
+        {"sphere cut by a plane", cut(sphere, [](const vcg::Point3d& p) { return p[2] < 0.5; }), 1, 0, 1},
+        {"sphere cut by two planes", cut(sphere, [](const vcg::Point3d& p) { return std::abs(p[2]) < 0.6; }),
+         1, 0, 2},
+        {"half a sphere", cut(sphere, [](const vcg::Point3d& p) { return p[0] > 0; }), 1, 0, 1},
+        {"torus cut on one side", cut(torus, [](const vcg::Point3d& p) { return p[0] < 1.1; }), 1, 1, 1},
+        {"half a torus", cut(torus, [](const vcg::Point3d& p) { return p[0] < 0; }), 1, 0, 2},
+        {"square", square, 1, 0, 1},
+        {"square with two holes", cut(square, holed), 1, 0, 3},
+        {"band turned twice", band(10000, 2), 1, 0, 2},
+        {"sphere beside a square", mixed, 2, 0, 1},
+    };
+}
+
+}  // namespace neuralmesh::open_shapes

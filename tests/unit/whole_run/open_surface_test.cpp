@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Whole runs on surfaces with boundary, and the choice between open and closed.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/unit/support/open_shapes.h"
+#include "tests/unit/support/soundness.h"
+#include "vcg_core/base/error.h"
+#include "vcg_core/reconstruct.h"
+
+namespace neuralmesh {
+namespace {
+
+using open_shapes::Case;
+using shapes::Cloud;
+using soundness::has_warning;
+
+NeuralMesh learn(const Cloud& cloud, const Settings& settings) {
+    NoProgress progress;
+    return reconstruct(soundness::target_of(cloud), settings, progress);
+}
+
+Settings settings_with(int vertices, int surface) {
+    Settings settings;
+    settings.target_vertices = vertices;
+    settings.surface = surface;
+    settings.settling_signals_per_vertex = 5;
+    return settings;
+}
+
+TEST(OpenSurface, ComesOutWithItsTopologyAndExactlyAsManyVertices) {
+    for (const Case& each : open_shapes::cases()) {
+        for (const int vertices : {300, 1500}) {
+            SCOPED_TRACE(each.name + ", " + std::to_string(vertices));
+            const Settings settings = settings_with(vertices, kOpenSurface);
+            const NeuralMesh mesh = learn(each.cloud, settings);
+            soundness::expect_exact(mesh, settings);
+            EXPECT_EQ(mesh.report.components, each.components);
+            EXPECT_EQ(mesh.report.genus, each.genus);
+            EXPECT_EQ(mesh.report.boundary_loops, each.loops);
+            EXPECT_LT(mesh.report.rms_error, 0.7);
+        }
+    }
+}
+
+TEST(OpenSurface, IsChosenWhereTheCloudEnclosesNoSpace) {
+    for (const Case& each : open_shapes::cases()) {
+        if (each.components > 1) continue;  // the sphere encloses space: the square beside it is closed, too
+        SCOPED_TRACE(each.name);
+        const NeuralMesh mesh = learn(each.cloud, settings_with(400, kAutomatic));
+        EXPECT_EQ(mesh.report.boundary_loops, each.loops);
+        EXPECT_TRUE(has_warning(mesh, "the surface ends where they end"));
+    }
+}
+
+TEST(OpenSurface, IsNotChosenForClosedClouds) {
+    for (const Cloud& cloud :
+         {shapes::sphere_cloud(5000), shapes::torus_cloud(5000), shapes::box_cloud(5000)}) {
+        const NeuralMesh automatic = learn(cloud, settings_with(400, kAutomatic));
+        const NeuralMesh closed = learn(cloud, settings_with(400, kClosedSurface));
+        EXPECT_EQ(automatic.report.boundary_loops, 0);
+        EXPECT_TRUE(automatic.positions == closed.positions);
+        EXPECT_EQ(automatic.faces, closed.faces);
+    }
+}
+
+TEST(OpenSurface, ClosesWhatIsNarrowerThanAskedFor) {
+    const Cloud cap =
+        open_shapes::cut(shapes::sphere_cloud(20000), [](const vcg::Point3d& p) { return p[2] < 0.8; });
+    Settings settings = settings_with(400, kAutomatic);
+    settings.close_holes_up_to = 60;
+    EXPECT_EQ(learn(cap, settings).report.boundary_loops, 0);
+    settings.close_holes_up_to = 10;
+    EXPECT_EQ(learn(cap, settings).report.boundary_loops, 1);
+}
+
+TEST(OpenSurface, HasItsBoundaryWhereThePointsEnd) {
+    const Cloud square = shapes::plane_cloud(20000);
+    const NeuralMesh mesh = learn(square, settings_with(1000, kOpenSurface));
+    double area = 0;
+    for (const auto& f : mesh.faces) {
+        const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(f[k])]; };
+        area += ((at(1) - at(0)) ^ (at(2) - at(0))).Norm() / 2;
+    }
+    EXPECT_NEAR(area, 1, 0.02);
+    for (const vcg::Point3d& p : mesh.positions)
+        for (int k = 0; k < 2; ++k) EXPECT_LT(std::abs(p[k]), 0.53);
+}
+
+TEST(OpenSurface, OfALayerWithFacesEndsWhereTheyEnd) {
+    const shapes::Shape grid = shapes::grid(9, 9);
+    const TargetSpace target = TargetSpace::triangles(grid.faces.size(), [&](std::size_t f, int k) {
+        return grid.positions[static_cast<std::size_t>(grid.faces[f][static_cast<std::size_t>(k)])];
+    });
+    NoProgress progress;
+    const Settings settings = settings_with(300, kAutomatic);
+    const NeuralMesh mesh = reconstruct(target, settings, progress);
+    soundness::expect_exact(mesh, settings);
+    EXPECT_EQ(mesh.report.boundary_loops, 1);
+}
+
+TEST(OpenSurface, IsAnErrorWhereThereIsNone) {
+    EXPECT_THROW(learn(open_shapes::helix(2000), settings_with(300, kOpenSurface)), InputError);
+    EXPECT_THROW(learn(shapes::plane_cloud(50), settings_with(300, kOpenSurface)), InputError);
+    // Left to choose, the filter closes them, as it always did.
+    EXPECT_EQ(learn(shapes::plane_cloud(50), settings_with(300, kAutomatic)).report.boundary_loops, 0);
+}
+
+TEST(OpenSurface, NeedsVerticesForItsTopology) {
+    const Case holed = open_shapes::cases()[6];
+    EXPECT_THROW(learn(holed.cloud, settings_with(8, kOpenSurface)), SettingError);
+}
+
+TEST(OpenSurface, CannotStartFromATetrahedron) {
+    Settings settings = settings_with(200, kOpenSurface);
+    settings.start_mesh = kTetrahedron;
+    const NeuralMesh mesh = learn(shapes::sphere_cloud(2000), settings);
+    EXPECT_EQ(mesh.report.boundary_loops, 0);
+    EXPECT_TRUE(has_warning(mesh, "because start_mesh 1 (tetrahedron) is"));
+}
+
+TEST(OpenSurface, IsTheSameWithAnyNumberOfThreads) {
+    Settings settings = settings_with(3000, kOpenSurface);
+    settings.signals_per_split = 40;
+    settings.min_wins_per_split = 10;
+    const Cloud cloud = open_shapes::cases()[4].cloud;
+    settings.threads = 1;
+    const NeuralMesh one = learn(cloud, settings);
+    settings.threads = 3;
+    const NeuralMesh three = learn(cloud, settings);
+    EXPECT_TRUE(one.positions == three.positions);
+    EXPECT_EQ(one.faces, three.faces);
+    EXPECT_EQ(one.counters, three.counters);
+}
+
+}  // namespace
+}  // namespace neuralmesh

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/shell/one_layer_contour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "vcg_core/mesh/ring.h"
+
+namespace neuralmesh {
+namespace {
+
+using vcg::Box3f;
+using vcg::Point3f;
+
+constexpr int kMargin = 3;
+/// The surface reaches as far as this from the centre of a plane, in its spacings.
+constexpr float kReach = 0.95F;
+/// A plane holds as far as this from its centre, in its spacings, and as high above and below, in lattice
+/// steps. Both are more than the surface needs, so that there is a value at all corners of the lattice cells
+/// that it passes through, beyond sharp edges, too.
+constexpr float kWidth = 2.2F;
+constexpr float kHeight = 2.0F;
+/// The largest remoteness.
+constexpr float kMostRemote = 1 + kWidth * kWidth / (kReach * kReach);
+/// Planes whose normals differ by more than about a right angle are those of another layer, or of the other
+/// side of a crease: they are not blended.
+constexpr float kLeastCosine = -0.2F;
+/// ... and below this they are opposite.
+constexpr float kContradiction = -0.3F;
+constexpr int kNoPlane = -1;
+
+/// The distance to a plane, and how far the place is from its centre: 0 there, kMostRemote at most.
+struct Relation {
+    float above;
+    float remoteness;
+};
+
+/// What the planes say of every node.
+struct Field {
+    Lattice lattice;
+    const std::vector<TangentPlane>& planes;
+    PerNode<float> remoteness;
+    PerNode<int> nearest;  ///< plane, by remoteness
+    PerNode<float> weights;
+    PerNode<float> values;
+
+    Field(const Box3f& box, const TangentPlanes& of)
+        : lattice(box, of.step, kMargin),
+          planes(of.planes),
+          remoteness(lattice.size(), std::numeric_limits<float>::max()),
+          nearest(lattice.size(), kNoPlane) {}
+
+    const TangentPlane& plane(int i) const { return planes[static_cast<std::size_t>(i)]; }
+    float height() const { return kHeight * lattice.step; }
+    bool relate(const TangentPlane& plane, const Point3f& p, Relation& relation) const;
+    template <class Visit>
+    void for_nodes_near(const TangentPlane& plane, const Visit& visit) const;
+    void find_nearest();
+    void blend();
+    float above(int i, NodeId node) const;
+    bool continuous(NodeId a, NodeId b) const;
+};
+
+/// \return whether the plane holds at \p p
+bool Field::relate(const TangentPlane& plane, const Point3f& p, Relation& relation) const {
+    const Point3f d = p - plane.centre;
+    relation.above = d * plane.normal;
+    const float width = kWidth * plane.spacing, reach = kReach * plane.spacing;
+    const float aside = d.SquaredNorm() - relation.above * relation.above;
+    if (std::abs(relation.above) > height() || aside > width * width) return false;
+    relation.remoteness = aside / (reach * reach) + relation.above * relation.above / (height() * height());
+    return true;
+}
+
+template <class Visit>
+void Field::for_nodes_near(const TangentPlane& plane, const Visit& visit) const {
+    std::array<int, 3> low, high;
+    const std::array<int, 3> count{lattice.nx, lattice.ny, lattice.nz};
+    const float width = kWidth * plane.spacing;
+    for (int k = 0; k < 3; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        // The disc in which the plane holds is this wide along the axis.
+        const float n = plane.normal[k];
+        const float extent = width * std::sqrt(std::max(0.0F, 1 - n * n)) + height() * std::abs(n);
+        const float at = plane.centre[k] - lattice.corner[k];
+        low[i] = std::max(0, static_cast<int>(std::ceil((at - extent) / lattice.step)));
+        high[i] = std::min(count[i] - 1, static_cast<int>(std::floor((at + extent) / lattice.step)));
+    }
+    Relation relation;
+    for (int z = low[2]; z <= high[2]; ++z)
+        for (int y = low[1]; y <= high[1]; ++y)
+            for (int x = low[0]; x <= high[0]; ++x)
+                if (relate(plane, lattice.position(x, y, z), relation))
+                    visit(lattice.index(x, y, z), relation);
+}
+
+void Field::find_nearest() {
+    for (std::size_t i = 0; i < planes.size(); ++i)
+        for_nodes_near(planes[i], [&](NodeId node, const Relation& relation) {
+            if (relation.remoteness >= remoteness[node]) return;
+            remoteness[node] = relation.remoteness;
+            nearest[node] = static_cast<int>(i);
+        });
+}
+
+void Field::blend() {
+    values.assign(lattice.size(), 0);
+    weights.assign(lattice.size(), 0);
+    for (const TangentPlane& each : planes)
+        for_nodes_near(each, [&](NodeId node, const Relation& relation) {
+            if (each.normal * plane(nearest[node]).normal < kLeastCosine) return;
+            float weight = 1 - relation.remoteness / kMostRemote;
+            for (int i = 0; i < 3; ++i) weight *= weight;
+            values[node] += weight * relation.above;
+            weights[node] += weight;
+        });
+    for (NodeId i = 0; i < values.size(); ++i) {
+        if (weights[i] > 0) values[i] /= weights[i];
+        if (nearest[i] == kNoPlane) values[i] = 1;
+        if (values[i] == 0) values[i] = 1e-6F * lattice.step;
+    }
+}
+
+float Field::above(int i, NodeId node) const {
+    return (lattice.position(node) - plane(i).centre) * plane(i).normal;
+}
+
+/// Whether one of the two nodes' planes also sees them on different sides, if they are. Else the sign changes
+/// because the planes contradict each other, not because the surface passes between the nodes.
+bool Field::continuous(NodeId a, NodeId b) const {
+    if ((values[a] < 0) == (values[b] < 0)) return true;
+    if (plane(nearest[a]).normal * plane(nearest[b]).normal > kContradiction) return true;
+    return (above(nearest[a], b) < 0) == (values[b] < 0) || (above(nearest[b], a) < 0) == (values[a] < 0);
+}
+
+/// Drops the faces with a vertex out of reach of all planes around the one it lies on.
+void trim(Contour& contour, const TangentPlanes& planes) {
+    std::vector<char> within(contour.plane.size());
+    for (std::size_t v = 0; v < within.size(); ++v) {
+        const auto reaches = [&](int i) {
+            const TangentPlane& plane = planes.planes[static_cast<std::size_t>(i)];
+            const float reach = kReach * plane.spacing;
+            return (contour.mesh.positions[v] - plane.centre).SquaredNorm() <= reach * reach;
+        };
+        const int own = contour.plane[v];
+        const auto& around = planes.around[static_cast<std::size_t>(own)];
+        within[v] = reaches(own) || std::any_of(around.begin(), around.end(),
+                                                [&](int i) { return i >= 0 && reaches(i); })
+                        ? 1
+                        : 0;
+    }
+    std::vector<Triangle>& faces = contour.mesh.faces;
+    faces.erase(std::remove_if(faces.begin(), faces.end(),
+                               [&](const Triangle& f) {
+                                   return std::any_of(f.begin(), f.end(), [&](VertexId v) {
+                                       return within[static_cast<std::size_t>(v)] == 0;
+                                   });
+                               }),
+                faces.end());
+}
+
+/// The corners of the faces around each vertex, by vertex.
+struct Corners {
+    std::vector<int> first, corner;
+};
+
+Corners corners_of(const IndexedMesh<float>& mesh) {
+    Corners result;
+    result.first.assign(mesh.positions.size() + 1, 0);
+    for (const Triangle& f : mesh.faces)
+        for (const VertexId v : f) ++result.first[static_cast<std::size_t>(v) + 1];
+    for (std::size_t v = 1; v < result.first.size(); ++v) result.first[v] += result.first[v - 1];
+    result.corner.resize(3 * mesh.faces.size());
+    std::vector<int> next(result.first.begin(), result.first.end() - 1);
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+        for (std::size_t k = 0; k < 3; ++k)
+            result.corner[static_cast<std::size_t>(next[static_cast<std::size_t>(mesh.faces[f][k])]++)] =
+                static_cast<int>(3 * f + k);
+    return result;
+}
+
+/// Gives every fan of faces around a vertex, but for the first, a vertex of its own.
+void split_pinched_vertices(Contour& contour) {
+    IndexedMesh<float>& mesh = contour.mesh;
+    const Corners corners = corners_of(mesh);
+    std::vector<int> fan;
+    const auto neighbour = [&](int corner, std::size_t ahead) {
+        const auto c = static_cast<std::size_t>(corner);
+        return mesh.faces[c / 3][(c % 3 + ahead) % 3];
+    };
+    for (std::size_t v = 0; v + 1 < corners.first.size(); ++v) {
+        const int begin = corners.first[v], count = corners.first[v + 1] - begin;
+        fan.assign(static_cast<std::size_t>(count), -1);
+        int fans = 0;
+        for (int seed = 0; seed < count; ++seed) {
+            if (fan[static_cast<std::size_t>(seed)] >= 0) continue;
+            std::vector<int> members{seed};
+            fan[static_cast<std::size_t>(seed)] = fans;
+            for (std::size_t k = 0; k < members.size(); ++k) {
+                const int own = corners.corner[static_cast<std::size_t>(begin + members[k])];
+                for (int other = 0; other < count; ++other) {
+                    if (fan[static_cast<std::size_t>(other)] >= 0) continue;
+                    const int its = corners.corner[static_cast<std::size_t>(begin + other)];
+                    if (neighbour(own, 1) != neighbour(its, 2) && neighbour(own, 2) != neighbour(its, 1))
+                        continue;
+                    fan[static_cast<std::size_t>(other)] = fans;
+                    members.push_back(other);
+                }
+            }
+            if (fans > 0) {
+                const auto copy = static_cast<VertexId>(mesh.positions.size());
+                const Point3f position = mesh.positions[v];
+                mesh.positions.push_back(position);
+                contour.plane.push_back(contour.plane[v]);
+                for (const int member : members) {
+                    const auto c =
+                        static_cast<std::size_t>(corners.corner[static_cast<std::size_t>(begin + member)]);
+                    mesh.faces[c / 3][c % 3] = copy;
+                }
+            }
+            ++fans;
+        }
+    }
+}
+
+}  // namespace
+
+Contour one_layer_contour(const Box3f& box, const TangentPlanes& planes) {
+    Field field(box, planes);
+    field.find_nearest();
+    field.blend();
+    Contour contour;
+    std::vector<NodeId> nodes;
+    contour.mesh = marching_tetrahedra(
+        field.lattice, field.values,
+        [&](const std::array<NodeId, 4>& corners) {
+            for (const NodeId corner : corners)
+                if (field.nearest[corner] == kNoPlane) return false;
+            for (std::size_t i = 0; i < 4; ++i)
+                for (std::size_t j = i + 1; j < 4; ++j)
+                    if (!field.continuous(corners[i], corners[j])) return false;
+            return true;
+        },
+        nodes);
+    for (const NodeId node : nodes) contour.plane.push_back(field.nearest[node]);
+    trim(contour, planes);
+    split_pinched_vertices(contour);
+    return contour;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/shell/open_start.h"
+
+#include <algorithm>
+#include <locale>
+#include <numeric>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "vcg_core/mesh/boundary_loops.h"
+#include "vcg_core/mesh/network.h"
+#include "vcg_core/mesh/simplify.h"
+#include "vcg_core/shell/one_layer_contour.h"
+#include "vcg_core/shell/outliers.h"
+#include "vcg_core/shell/tangent_planes.h"
+
+namespace neuralmesh {
+namespace {
+
+using vcg::Box3f;
+using vcg::Point3f;
+
+constexpr int kHighestValence = 12;  // leaves room for what the reduction and the learning add
+/// The automatic bound for holes that are filled, in spacings of the planes; and what is filled in any case,
+/// because it is a gap between points.
+constexpr float kGapSpacings = 6, kLeastGapSpacings = 3;
+/// Planes as thick as this lie on no surface.
+constexpr float kVolume = 0.6F;
+constexpr double kMostWithoutSurface = 0.5;
+/// So many links between planes contradict each other along a cut; fewer do at rough places.
+constexpr std::size_t kManyContradictions = 20;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+void check(const OpenStartOptions& o) {
+    if (o.max_vertices < 4 || o.target_vertices < 4 || o.samples < 4 ||
+        !(o.component_share >= 0 && o.component_share < 1))
+        throw SettingError(
+            "The options of the open start mesh are out of range: at least 4 vertices and 4 samples are "
+            "needed, and a component share in [0, 1).");
+}
+
+std::vector<Point3f> drawn_points(const TargetSpace& target, int count, Random& random) {
+    std::vector<Point3f> points;
+    points.reserve(at(count));
+    for (int i = 0; i < count; ++i) points.push_back(target.sample(random));
+    return points;
+}
+
+/// \throws InputError if most planes are none
+void check_for_surface(const TangentPlanes& planes) {
+    long long all = 0, curve = 0, volume = 0;
+    for (const TangentPlane& plane : planes.planes) {
+        all += plane.points;
+        if (plane.on_curve) {
+            curve += plane.points;
+        } else if (plane.thickness > kVolume) {
+            volume += plane.points;
+        }
+    }
+    const double share = kMostWithoutSurface * static_cast<double>(all);
+    if (all == 0)
+        throw InputError(
+            "The cloud holds too few points for an open surface: choose surface 1 (closed), or add points.");
+    if (static_cast<double>(curve) > share)
+        throw InputError(
+            "The points lie on curves, not on a surface: there is nothing to span an open surface over.");
+    if (static_cast<double>(volume) > share)
+        throw InputError(
+            "The points are scattered in space and lie on no surface: an open surface cannot be found. "
+            "Choose surface 1 (closed), or remove the scattered points first.");
+}
+
+/// The parts of a mesh that hang together, by vertex, from 0.
+struct Parts {
+    PerVertex<int> of;
+    int count = 0;
+};
+
+Parts parts_of(const IndexedMesh<float>& mesh) {
+    const int n = static_cast<int>(mesh.positions.size());
+    Parts parts{PerVertex<int>(n, -1), 0};
+    PerVertex<VertexId> root(n);
+    std::iota(root.begin(), root.end(), 0);
+    const auto find = [&](VertexId v) {
+        while (root[v] != v) v = root[v] = root[root[v]];
+        return v;
+    };
+    for (const Triangle& f : mesh.faces)
+        for (const VertexId v : {f[1], f[2]}) {
+            const VertexId a = find(f[0]), b = find(v);
+            root[std::max(a, b)] = std::min(a, b);
+        }
+    for (VertexId v = 0; v < n; ++v) parts.of[v] = find(v) == v ? parts.count++ : parts.of[find(v)];
+    return parts;
+}
+
+/// A plane that no vertex of the contour lies on belongs to the part of one beside it.
+void spread_parts(const TangentPlanes& planes, std::vector<int>& part_of_plane) {
+    constexpr float kBeside = 3;  // spacings
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::size_t i = 0; i < part_of_plane.size(); ++i)
+            for (const int j : planes.around[i]) {
+                if (j < 0 || (part_of_plane[i] < 0) == (part_of_plane[at(j)] < 0)) continue;
+                const TangentPlane &a = planes.planes[i], &b = planes.planes[at(j)];
+                if ((a.centre - b.centre).Norm() > kBeside * std::max(a.spacing, b.spacing)) continue;
+                part_of_plane[i] = part_of_plane[at(j)] = std::max(part_of_plane[i], part_of_plane[at(j)]);
+                changed = true;
+            }
+    }
+}
+
+/// Drops the parts of \p contour whose planes have fewer than \p enough points. \return for every plane
+/// whether its points are in what is kept
+std::vector<char> drop_small_parts(Contour& contour, const TangentPlanes& planes, long long enough) {
+    IndexedMesh<float>& mesh = contour.mesh;
+    const Parts parts = parts_of(mesh);
+    std::vector<int> part_of_plane(planes.planes.size(), -1);
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+        part_of_plane[at(contour.plane[v])] = parts.of[static_cast<VertexId>(v)];
+    spread_parts(planes, part_of_plane);
+    std::vector<long long> points(at(parts.count), 0);
+    for (std::size_t i = 0; i < part_of_plane.size(); ++i)
+        if (part_of_plane[i] >= 0) points[at(part_of_plane[i])] += planes.planes[i].points;
+    // Crumbs beside a part that is kept are its fringe.
+    for (int& part : part_of_plane)
+        if (part >= 0 && points[at(part)] < enough) part = -1;
+    spread_parts(planes, part_of_plane);
+    std::vector<char> kept(part_of_plane.size(), 0);
+    for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = part_of_plane[i] >= 0 ? 1 : 0;
+    std::vector<Triangle> faces;
+    for (const Triangle& f : mesh.faces)
+        if (points[at(parts.of[f[0]])] >= enough) faces.push_back(f);
+    mesh.faces = std::move(faces);
+    return kept;
+}
+
+void drop_unused_vertices(Contour& contour) {
+    IndexedMesh<float>& mesh = contour.mesh;
+    std::vector<VertexId> moved(mesh.positions.size(), -1);
+    for (const Triangle& f : mesh.faces)
+        for (const VertexId v : f) moved[at(v)] = 0;
+    VertexId count = 0;
+    for (std::size_t v = 0; v < moved.size(); ++v) {
+        if (moved[v] < 0) continue;
+        mesh.positions[at(count)] = mesh.positions[v];
+        contour.plane[at(count)] = contour.plane[v];
+        moved[v] = count++;
+    }
+    mesh.positions.resize(at(count));
+    contour.plane.resize(at(count));
+    for (Triangle& f : mesh.faces)
+        for (VertexId& v : f) v = moved[at(v)];
+}
+
+std::vector<int> valences(const IndexedMesh<float>& mesh, const std::vector<std::vector<VertexId>>& loops) {
+    std::vector<int> result(mesh.positions.size(), 0);
+    for (const Triangle& f : mesh.faces)
+        for (const VertexId v : f) ++result[at(v)];
+    for (const auto& loop : loops)
+        for (const VertexId v : loop) ++result[at(v)];
+    return result;
+}
+
+/// Fills holes up to \p close_up_to, or where it is negative, up to kGapSpacings spacings of the planes
+/// around.
+void fill_small_holes(Contour& contour, const TangentPlanes& planes, double close_up_to, OpenStart& result) {
+    IndexedMesh<float>& mesh = contour.mesh;
+    const auto loops = boundary_loops(static_cast<int>(mesh.positions.size()), mesh.faces);
+    std::vector<int> neighbours = valences(mesh, loops);
+    std::vector<Point3f> points;
+    for (const std::vector<VertexId>& loop : loops) {
+        points.clear();
+        float spacing = 0;
+        for (const VertexId v : loop) {
+            points.push_back(mesh.positions[at(v)]);
+            spacing += planes.planes[at(contour.plane[at(v)])].spacing / static_cast<float>(loop.size());
+        }
+        const double diameter = static_cast<double>(smallest_sphere_diameter(points));
+        const double most = close_up_to >= 0
+                                ? std::max(close_up_to, static_cast<double>(kLeastGapSpacings * spacing))
+                                : static_cast<double>(kGapSpacings * spacing);
+        if (diameter > most) continue;
+        if (fill_hole(loop, mesh.positions, kHighestValence, neighbours, mesh.faces))
+            result.widest_filled = std::max(result.widest_filled, diameter);
+    }
+}
+
+/// The signed volume of every component, its boundary loops closed by fans around their centres: whether it
+/// is seen from outside, as a scanner sees it.
+void orient_convex_side_outward(Network& network) {
+    const PerVertex<int> component = network.components();
+    const std::vector<Triangle> faces = network.faces();
+    PerVertex<double> volume(component.size() + 1, 0);
+    const auto add = [&](const Point3f& a, const Point3f& b, const Point3f& c, VertexId of) {
+        const auto p = vcg::Point3d::Construct(a), q = vcg::Point3d::Construct(b),
+                   r = vcg::Point3d::Construct(c);
+        volume[component[of]] += p * (q ^ r);
+    };
+    for (const Triangle& f : faces)
+        add(network.position(f[0]), network.position(f[1]), network.position(f[2]), f[0]);
+    for (const auto& loop : boundary_loops(network.slot_count(), faces)) {
+        Point3f centre(0, 0, 0);
+        for (const VertexId v : loop) centre += network.position(v) / static_cast<float>(loop.size());
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            add(centre, network.position(loop[(i + 1) % loop.size()]), network.position(loop[i]), loop[i]);
+    }
+    std::vector<Triangle> turned = faces;
+    for (Triangle& f : turned)
+        if (volume[component[f[0]]] < 0) std::swap(f[1], f[2]);
+    std::vector<Point3f> positions;
+    for (VertexId v = 0; v < network.slot_count(); ++v) positions.push_back(network.position(v));
+    network = Network(positions, turned);
+}
+
+/// The points outside of the lattice, or of planes that were dropped.
+std::vector<std::uint8_t> outliers_of(const std::vector<Point3f>& points, const Box3f& box,
+                                      const TangentPlanes& planes, const std::vector<char>& kept) {
+    const Lattice lattice(box, planes.step, 0);
+    std::vector<std::uint8_t> result;
+    PerNode<std::int32_t> cell_at(lattice.size(), -1);
+    std::int32_t cells = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const NodeId node = lattice.node_of(points[i]);
+        if (node < cell_at.size()) {
+            if (cell_at[node] < 0) cell_at[node] = cells++;  // as the planes were numbered
+            if (kept[at(cell_at[node])] != 0) continue;
+        }
+        result.resize(points.size(), 0);
+        result[i] = 1;
+    }
+    return result;
+}
+
+/// Decides about the outliers, too: too many of them are none.
+void add_warnings(const TargetSpace& target, const TangentPlanes& planes, long long total,
+                  OpenStart& result) {
+    const auto ignored = std::count(result.outliers.begin(), result.outliers.end(), 1);
+    const bool too_many =
+        static_cast<double>(ignored) > OpenStartOptions::kMostOutliers * static_cast<double>(total);
+    if (too_many) result.outliers.clear();
+    if (ignored > 0)
+        result.warnings.push_back(
+            std::to_string(ignored) + " of " + std::to_string(total) +
+            " points have no part in the start mesh, because they lie in isolated groups that hold less than "
+            "1 % of the points or fewer than " +
+            std::to_string(OpenStartOptions::kLeastPoints) + ".");
+    if (planes.contradictions.size() < kManyContradictions) return;
+    Point3f middle(0, 0, 0);
+    for (const Point3f& p : planes.contradictions)
+        middle += p / static_cast<float>(planes.contradictions.size());
+    const auto nearest = std::min_element(planes.contradictions.begin(), planes.contradictions.end(),
+                                          [&](const Point3f& a, const Point3f& b) {
+                                              return (a - middle).SquaredNorm() < (b - middle).SquaredNorm();
+                                          });
+    const vcg::Point3d where = target.frame().outside(*nearest);
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text.precision(6);
+    text << "The surface has places where its two sides cannot be told apart, as on a Moebius strip: it was "
+            "cut there, near ("
+         << where[0] << ", " << where[1] << ", " << where[2] << ").";
+    result.warnings.push_back(text.str());
+}
+
+}  // namespace
+
+OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options, Random& random,
+                     Progress& progress) {
+    check(options);
+    progress(0.0, "Start mesh: fitting planes to the cloud");
+    std::vector<Point3f> drawn;
+    if (target.has_faces()) drawn = drawn_points(target, options.samples, random);
+    const std::vector<Point3f>& points = target.has_faces() ? drawn : target.positions();
+    if (static_cast<int>(points.size()) < OpenStartOptions::kLeastCloud)
+        throw InputError("The cloud has " + std::to_string(points.size()) +
+                         " points, too few to show where a surface ends: choose surface 1 (closed), or give "
+                         "at least " +
+                         std::to_string(OpenStartOptions::kLeastCloud) + ".");
+    const Box3f box = main_box(points);
+    const TangentPlanes planes = tangent_planes(points, box, TangentPlaneOptions());
+    check_for_surface(planes);
+
+    progress(0.5, "Start mesh: building an open mesh");
+    Contour contour = one_layer_contour(box, planes);
+    const auto share = static_cast<long long>(options.component_share * static_cast<double>(points.size()));
+    const std::vector<char> kept =
+        drop_small_parts(contour, planes, std::max<long long>(OpenStartOptions::kLeastPoints, share));
+    drop_unused_vertices(contour);
+    if (contour.mesh.faces.empty())
+        throw InputError(
+            "No part of the cloud holds enough points for an open surface: choose surface 1 (closed), or add "
+            "points.");
+    OpenStart result;
+    fill_small_holes(contour, planes, options.close_holes_up_to, result);
+
+    progress(0.8, "Start mesh: reducing it");
+    Network network(contour.mesh.positions, contour.mesh.faces);
+    simplify(network, std::min(options.max_vertices, options.target_vertices / 4));
+    network.compact();
+    orient_convex_side_outward(network);
+    for (VertexId v = 0; v < network.vertex_count(); ++v) result.positions.push_back(network.position(v));
+    result.faces = network.faces();
+    result.components = network.component_count();
+    result.genus = network.genus();
+    result.loops = network.boundary_loop_count();
+    result.thickness = static_cast<double>(planes.thickness);
+    if (!target.has_faces()) result.outliers = outliers_of(points, box, planes, kept);
+    add_warnings(target, planes, static_cast<long long>(points.size()), result);
+    progress(1.0, "Start mesh: done");
+    return result;
+}
+
+}  // namespace neuralmesh

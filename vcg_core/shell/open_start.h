@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// A start mesh of one layer, with boundary, for a cloud whose surface is open: a scan, a face, a facade.
+// Parts of the cloud that are closed come out closed.
+//
+// How: oriented tangent planes of the cloud (tangent_planes.h), contoured where there are points
+// (one_layer_contour.h); parts with too few points are dropped, small holes filled, and what remains is
+// reduced by half-edge collapses, which keep its topology.
+#pragma once
+
+#include <vcg/space/point3.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vcg_core/base/progress.h"
+#include "vcg_core/base/random.h"
+#include "vcg_core/mesh/ring.h"
+#include "vcg_core/target/target_space.h"
+
+namespace neuralmesh {
+
+/// What the open start may cost and how it decides. The defaults were found by experiment (open_table.py).
+struct OpenStartOptions {
+    /// Wanted number of vertices: min(max_vertices, target_vertices / 4). More if the topology cannot be kept
+    /// otherwise.
+    int max_vertices = 600;
+    int target_vertices = 10000;
+    /// Holes are filled up to this diameter of the smallest sphere around them, in the core's frame (shares
+    /// of the bounding-box diagonal); negative: chosen from the spacing of the points.
+    double close_holes_up_to = -1;
+    /// A component counts with this share of the points and at least kLeastPoints of them.
+    double component_share = 0.01;
+    /// Points drawn from a target that is a mesh.
+    int samples = 100000;
+
+    static constexpr int kLeastPoints = 20;
+    /// Fewer points show no boundary.
+    static constexpr int kLeastCloud = 100;
+    /// A cloud with a larger share of outliers is one of another kind than thought: they are to be learned.
+    static constexpr double kMostOutliers = 0.1;
+};
+
+/// An oriented 2-manifold with or without boundary (simplicial, valences up to 12) in the core's frame.
+struct OpenStart {
+    std::vector<vcg::Point3f> positions;
+    std::vector<Triangle> faces;
+    int components = 0;
+    int genus = 0;             ///< of all components together
+    int loops = 0;             ///< boundary loops
+    double widest_filled = 0;  ///< diameter of the widest hole that was filled
+    double thickness = 0;      ///< median of that of the tangent planes (tangent_planes.h)
+    /// 1 for each point of the cloud that is not to be learned; empty if there are none, too many, or if the
+    /// target has faces.
+    std::vector<std::uint8_t> outliers;
+    std::vector<std::string> warnings;  ///< full sentences
+};
+
+/// The open start mesh of \p target. The same target, options and state of \p random give the same mesh
+/// everywhere; random is drawn from only if the target has faces. \p progress gets fractions from 0 to 1; a
+/// wish to stop is not answered (0.2 s for 100,000 points).
+/// Memory: 16 bytes for each of up to 1,000,000 lattice nodes.
+/// \throws InputError if the points lie on no surface: on curves, or scattered in space, or too few
+OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options, Random& random,
+                     Progress& progress);
+
+}  // namespace neuralmesh
