@@ -176,10 +176,8 @@ stage() {
 
 run_tests() {
     need $compile_packages $demo_packages $test_packages $venv_packages
-    need_venv &
-    local installing=$!
+    need_venv  # before the configuration, which looks for pymeshlab there
     compile all
-    wait "$installing"
     # The longest first, so that the last ones end at about the same time.
     local stages=(sanitize unit test_compare_pymeshlab threads test_experiments accuracy) file
     for file in tests/hosts/test_*.py; do
