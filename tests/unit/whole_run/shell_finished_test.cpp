@@ -161,7 +161,7 @@ TEST(ShellFinished, ACloudTooSparseForItsShellTakesACoarserOneAndSaysSo) {
         for (int i = 0; i < 30; ++i) cloud.push_back(p + vcg::Point3d(jitter(), jitter(), jitter()));
     const NeuralMesh mesh = finished(cloud, 200);
     expect_closed(mesh, 200, 1, 1);
-    EXPECT_TRUE(has_warning(mesh, "a coarser one was taken"));
+    EXPECT_TRUE(has_warning(mesh, "A coarser one was made"));
 }
 
 }  // namespace
