@@ -5,19 +5,34 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace neuralmesh {
 
 namespace {
 
-/// The first ring position for Network::split() of \p a that splits the edge a-b: the new vertex takes three
-/// neighbours, b in the middle. -1 if the edge cannot be split.
-int split_position(const Network& network, VertexId a, VertexId b) {
-    const Ring& ring = network.ring(a);
-    const int i = ring.find(b);
-    if (i < 0 || (ring.open != 0 && (i == 0 || i + 1 == ring.valence))) return -1;
+/// Arguments of Network::split() that split an edge.
+struct SplitPlace {
+    VertexId at;  ///< the end of the edge that keeps its other neighbours
+    int first;    ///< ring position of the three neighbours that the new vertex takes, the other end in the
+                  ///< middle
+};
+
+/// From the end \p at of the edge. A fan that includes a boundary edge of \p at would pull the boundary to
+/// the new vertex instead of splitting the edge.
+std::optional<SplitPlace> split_place_at(const Network& network, VertexId at, VertexId other) {
+    const Ring& ring = network.ring(at);
+    const int i = ring.find(other);
+    if (i < 0 || (ring.open != 0 && (i < 2 || i + 2 >= ring.valence))) return std::nullopt;
     const int first = i == 0 ? ring.valence - 1 : i - 1;
-    return network.can_split(a, first, 3) ? first : -1;
+    if (!network.can_split(at, first, 3)) return std::nullopt;
+    return SplitPlace{at, first};
+}
+
+/// Nothing if the edge cannot be split.
+std::optional<SplitPlace> split_place(const Network& network, const EdgeSplit& split) {
+    const std::optional<SplitPlace> place = split_place_at(network, split.a, split.b);
+    return place || network.ring(split.a).open == 0 ? place : split_place_at(network, split.b, split.a);
 }
 
 /// Carries out the collapse if it touches no \p touched vertex. \return whether it did
@@ -42,7 +57,7 @@ std::vector<EdgeSplit> choose_splits(const Network& network, const std::vector<E
         const Ring& ring = network.ring(split.a);
         const int i = ring.find(split.b);
         const std::array<VertexId, 4> corners{split.a, split.b, ring.next(i), ring.previous(i)};
-        if (split_position(network, split.a, split.b) < 0 ||
+        if (!split_place(network, split) ||
             std::any_of(corners.begin(), corners.end(), [&](VertexId v) { return touched[v] != 0; }))
             continue;
         for (VertexId v : corners) touched[v] = 1;
@@ -67,9 +82,9 @@ VertexMoves redistribute(Network& network, const std::vector<Collapse>& collapse
     }
     for (std::size_t i = 0; i < result.collapses.size(); ++i) {
         const EdgeSplit& split = chosen[i];
-        const VertexId added =
-            network.split(split.a, split_position(network, split.a, split.b), 3, to_vcg(split.position));
-        result.insertions.push_back({added, split.a});
+        const SplitPlace place = *split_place(network, split);
+        const VertexId added = network.split(place.at, place.first, 3, to_vcg(split.position));
+        result.insertions.push_back({added, place.at});
     }
     return result;
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <vcg/space/point3.h>
+#include <vcg/space/triangle3.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -32,11 +33,9 @@ inline Vector3 unit_normal(const Vector3& a, const Vector3& b, const Vector3& c)
 }
 
 /// Shape of the triangle: 4 sqrt(3) area / (sum of the squared edges), from 0 (degenerate) to 1
-/// (equilateral). Bank and Smith, "Mesh smoothing using a posteriori error estimates" (1997).
+/// (equilateral). Relative error 1e-4 for a height of 0.03 edges, 1e-2 for one of 0.003.
 inline float triangle_quality(const Vector3& a, const Vector3& b, const Vector3& c) {
-    constexpr float kTwoSqrtThree = 3.4641016F;
-    const float edges = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
-    return edges > 0 ? kTwoSqrtThree * area_vector(a, b, c).norm() / edges : 0.0F;
+    return vcg::QualityMeanRatio(to_vcg(a), to_vcg(b), to_vcg(c));
 }
 
 /// The point of a triangle that is nearest to a given point.

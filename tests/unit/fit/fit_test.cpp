@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The fit to the points: closer, whole, and the same on any number of threads.
+// The fit as a whole: it comes closer to the points, keeps the topology, and gives the same bytes for any
+// number of threads.
 #include "vcg_core/fit/fit.h"
 
 #include <gtest/gtest.h>
@@ -10,8 +11,6 @@
 #include <cstring>
 
 #include "tests/unit/support/shapes.h"
-#include "vcg_core/mesh/face_tree.h"
-#include "vcg_core/mesh/face_walk.h"
 #include "vcg_core/mesh/self_crossings.h"
 #include "vcg_core/rms_error.h"
 
@@ -95,7 +94,7 @@ TEST(Fit, KeepsTheHandleOfATorus) {
     EXPECT_EQ(network.genus(), 1);
 }
 
-// The icosphere has no vertex or edge where the cube has its own: they have to be found.
+// No edge of the icosphere lies on an edge of the cube: vertices have to move there.
 TEST(Fit, FindsTheCreasesOfACube) {
     const TargetSpace target = target_of(shapes::box_cloud(20000));
     Network network = network_of(shapes::icosphere(3), target, 0.6);
@@ -118,8 +117,8 @@ TEST(Fit, GivesTheSameBytesForAnyNumberOfThreads) {
     EXPECT_TRUE(same_bytes(one, five));
 }
 
-// Ten points per vertex with noise: the mesh that learning would leave, nearly on the surface, must not be
-// pulled into the noise.
+// Ten noisy points per vertex, and a mesh nearly on the surface, as learning leaves it: the fit must not pull
+// it into the noise.
 TEST(Fit, SmoothsNoiseRatherThanChasingIt) {
     const Cloud noisy = shapes::sphere_cloud(6420, 0.03);
     const TargetSpace target = target_of(noisy);
@@ -151,7 +150,7 @@ TEST(Fit, IsNotDrawnByOutliers) {
     EXPECT_LT(worst, 0.03);
 }
 
-// Half of the sphere has no points at all: the mesh there has nothing to follow and has to stay a surface.
+// Half of the sphere has no points: there the bending term alone has to keep the mesh smooth.
 TEST(Fit, MakesNoSpikesWhereThereAreNoPoints) {
     Cloud cloud = shapes::sphere_cloud(20000);
     for (vcg::Point3d& p : cloud) p[2] = std::abs(p[2]);
@@ -216,8 +215,8 @@ TEST(Fit, SaysWhereEveryVertexComesFrom) {
     EXPECT_LE(moved, report.moved_vertices);
 }
 
-// A vertex put in anew takes over the counter of the place it came to: no neighbour of the vertex that it has
-// it from was nearer.
+// An inserted vertex takes over the counter of the place where it lies: no neighbour of its source was
+// nearer.
 TEST(Fit, TakesCountersFromWhereTheyWereLearned) {
     const TargetSpace target = target_of(shapes::box_cloud(20000));
     Network network = network_of(shapes::icosphere(3), target, 0.6);
@@ -271,27 +270,6 @@ TEST(Fit, TakesOutNoMoreThanTheTopologyAllows) {
     EXPECT_EQ(network.genus(), 1);
 }
 
-// The walk looks at few faces, the tree is exact: on a smooth surface both find the same.
-TEST(Fit, WalksToTheFaceThatTheTreeFinds) {
-    const TargetSpace target = target_of(shapes::torus_cloud(8000, 0.01));
-    const Network network = network_of(shapes::torus_grid(40, 20), target, 1, 0.002);
-    const Surface surface(network);
-    const FaceTree tree(surface);
-    int differ = 0;
-    for (const vcg::Point3f& p : target.positions()) {
-        const Hit exact = tree.nearest(to_eigen(p));
-        const WalkStart there = walk_start_of(surface, exact);
-        EXPECT_EQ(surface.faces_around(there.vertex)[there.turn], exact.face);
-        for (const WalkStart start :
-             {there, WalkStart{there.vertex, 99}, WalkStart{network.ring(there.vertex)[0], 1}}) {
-            const Hit found = walk_to_nearest(surface, to_eigen(p), start);
-            EXPECT_GE(found.foot.squared_distance, exact.foot.squared_distance);
-            differ += found.foot.squared_distance > exact.foot.squared_distance ? 1 : 0;
-        }
-    }
-    EXPECT_EQ(differ, 0);
-}
-
 TEST(Fit, StopsWhenAskedTo) {
     const TargetSpace target = target_of(shapes::sphere_cloud(5000));
     Network network = network_of(shapes::icosphere(2), target, 1.1);
@@ -302,7 +280,7 @@ TEST(Fit, StopsWhenAskedTo) {
     EXPECT_TRUE(same_bytes(before, network));
 }
 
-// Before anything is smoothed where the surface cuts itself, or taken out.
+// Before any smoothing and any reduction.
 TEST(Fit, StoppedAtOnceItLeavesATangledMeshAsItWas) {
     const TargetSpace target = target_of(shapes::sphere_cloud(5000));
     Network network = network_of(shapes::icosphere(3), target, 1.1, 0.05);

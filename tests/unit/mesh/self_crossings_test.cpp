@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Surfaces that cut themselves: found as vcglib finds them, smoothed out, and never made by the fit.
+// Self-crossings against vcglib's, and their update after changes against a new search.
 #include "vcg_core/mesh/self_crossings.h"
 
 #include <gtest/gtest.h>
@@ -13,15 +13,10 @@
 #include <algorithm>
 #include <set>
 
-#include "tests/unit/support/shapes.h"
-#include "vcg_core/fit/crossing_guard.h"
-#include "vcg_core/fit/fit.h"
-#include "vcg_core/fit/untangle.h"
+#include "tests/unit/support/crumpled.h"
 
 namespace neuralmesh {
 namespace {
-
-using shapes::Shape;
 
 class CutVertex;
 class CutFace;
@@ -40,31 +35,6 @@ std::vector<SelfCrossing> after(const Surface& surface, const Surface& before,
                                 const std::vector<SelfCrossing>& known, int threads) {
     ThreadTeam team(threads);
     return update_self_crossings(surface, before, known, team);
-}
-
-std::vector<SelfCrossing> smoothed_out(Network& network, int threads) {
-    ThreadTeam team(threads);
-    NoProgress progress;
-    return *untangle(network, team, progress);
-}
-
-/// A sphere of radius 10, where vcglib's tolerances are small, crumpled by \p noise.
-Network crumpled_sphere(double noise, std::uint64_t seed = 5) {
-    const Shape sphere = shapes::icosphere(3);
-    Random random(seed);
-    std::vector<vcg::Point3f> positions;
-    for (const vcg::Point3d& p : sphere.positions)
-        positions.push_back(vcg::Point3f::Construct((p + shapes::in_ball(random) * noise) * 10.0));
-    return Network(positions, std::vector<Triangle>(sphere.faces.begin(), sphere.faces.end()));
-}
-
-std::set<Triangle> cut_faces(const Network& network) {
-    std::set<Triangle> faces;
-    for (const SelfCrossing& c : crossings(Surface(network), 1)) {
-        faces.insert({c[0], c[1], c[2]});
-        faces.insert({c[3], c[4], c[5]});
-    }
-    return faces;
 }
 
 std::set<Triangle> cut_faces_by_vcglib(const Network& network) {
@@ -168,142 +138,6 @@ TEST(Crossings, AreKnownAfterAChangeFromThoseBefore) {
         EXPECT_EQ(after(surface, before, known, 1), all) << change;
         EXPECT_EQ(after(surface, before, known, 3), all) << change;
     }
-}
-
-TEST(CrossingGuard, ObjectsToWhatIsNewBeyondWhatWasThere) {
-    const SelfCrossing a{0, 1, 2, 3, 4, 5};
-    const SelfCrossing b{6, 7, 8, 9, 10, 11};
-    CrossingGuard strict;
-    EXPECT_TRUE(strict.objections({}).empty());
-    EXPECT_EQ(strict.objections({a}), std::vector<VertexId>(a.begin(), a.end()));
-    CrossingGuard guard({a});
-    EXPECT_TRUE(guard.objections({b}).empty()) << "as many faces as before";
-    EXPECT_EQ(guard.objections({a, b}), std::vector<VertexId>(a.begin(), a.end()));
-    EXPECT_TRUE(guard.objections({}).empty());
-}
-
-TEST(Untangle, SmoothsOutACrumpledCap) {
-    Network network = crumpled_sphere(0);
-    const Network crumpled = crumpled_sphere(0.13);
-    for (VertexId v = 0; v < network.slot_count(); ++v)
-        if (network.position(v)[2] > 8) network.set_position(v, crumpled.position(v));
-    const Network before = network;
-    const std::set<Triangle> faces = cut_faces(network);
-    ASSERT_FALSE(faces.empty());
-    EXPECT_TRUE(smoothed_out(network, 1).empty());
-    EXPECT_TRUE(cut_faces(network).empty());
-    EXPECT_EQ(network.validate(), "");
-    int moved = 0;
-    for (VertexId u = 0; u < network.slot_count(); ++u)
-        moved += network.position(u) == before.position(u) ? 0 : 1;
-    EXPECT_GT(moved, 0);
-    EXPECT_LT(moved, 200) << "far from it nothing moves";
-}
-
-TEST(Untangle, LeavesAloneWhatItCannotMend) {
-    for (const double noise : {0.6, 1.5}) {
-        Network network = crumpled_sphere(noise);
-        const Network before = network;
-        const std::size_t before_it = crossings(Surface(network), 1).size();
-        EXPECT_LE(smoothed_out(network, 1).size(), before_it);
-        Network again = before;
-        smoothed_out(again, 3);
-        for (VertexId v = 0; v < network.slot_count(); ++v) EXPECT_EQ(network.position(v), again.position(v));
-    }
-}
-
-/// Asks to stop at its \p last call.
-class Patience : public Progress {
-public:
-    explicit Patience(int last) : last_(last) {}
-    bool operator()(double fraction, const char*) override {
-        EXPECT_GE(fraction, fraction_);
-        EXPECT_LE(fraction, 1);
-        fraction_ = fraction;
-        return ++calls < last_;
-    }
-    int calls = 0;
-
-private:
-    int last_;
-    double fraction_ = 0;
-};
-
-bool same_positions(const Network& a, const Network& b) {
-    for (VertexId v = 0; v < a.slot_count(); ++v)
-        if (a.position(v) != b.position(v)) return false;
-    return true;
-}
-
-TEST(Untangle, StopsBeforeAnySearchWithTheMeshAsItWas) {
-    const Network before = crumpled_sphere(0.6);
-    ThreadTeam team(1);
-    int last = 1;
-    for (;; ++last) {
-        Network network = before;
-        Patience progress(last);
-        if (untangle(network, team, progress)) break;
-        EXPECT_EQ(progress.calls, last);
-        EXPECT_TRUE(same_positions(network, before));
-    }
-    EXPECT_GT(last, 3);
-}
-
-TEST(Untangle, DoesNotTryWhereAllFacesLieInEachOther) {
-    // Corners anywhere in a ball: every face is near half of the others.
-    Network network = crumpled_sphere(0);
-    Random random(4);
-    for (VertexId v = 0; v < network.slot_count(); ++v)
-        network.set_position(v, vcg::Point3f::Construct(shapes::in_ball(random)));
-    const Network before = network;
-    ThreadTeam team(1);
-    Patience progress(99);
-    EXPECT_EQ(*untangle(network, team, progress), crossings(Surface(before), 1));
-    EXPECT_EQ(progress.calls, 1);
-    EXPECT_TRUE(same_positions(network, before));
-}
-
-/// A plate 1 x 1 x \p thickness.
-shapes::Cloud plate_cloud(int count, double thickness) {
-    shapes::Cloud cloud = shapes::box_cloud(count);
-    for (vcg::Point3d& p : cloud) p[2] *= thickness;
-    return cloud;
-}
-
-// Faces much larger than the plate is thick: points of either side are next to faces of the other.
-TEST(Fit, DoesNotMakeAPlateCutItself) {
-    for (const double thickness : {0.02, 0.05, 0.1}) {
-        const shapes::Cloud cloud = plate_cloud(20000, thickness);
-        const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
-        const Shape sphere = shapes::icosphere(2);
-        std::vector<vcg::Point3f> positions;
-        for (const vcg::Point3d& p : sphere.positions)
-            positions.push_back(target.frame().inside({0.7 * p[0], 0.7 * p[1], 0.8 * thickness * p[2]}));
-        Network network(positions, std::vector<Triangle>(sphere.faces.begin(), sphere.faces.end()));
-        ASSERT_TRUE(cut_faces(network).empty());
-        NoProgress progress;
-        const FitReport report = fit_to_points(network, target, {}, 1, 1, progress);
-        EXPECT_TRUE(report.improved);
-        EXPECT_TRUE(cut_faces(network).empty()) << thickness;
-        EXPECT_EQ(network.validate(), "");
-    }
-}
-
-TEST(Fit, LeavesNoMoreCrossingsThanThereWere) {
-    const shapes::Cloud cloud = plate_cloud(20000, 0.03);
-    const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
-    Network network = crumpled_sphere(0.12);
-    for (VertexId v = 0; v < network.slot_count(); ++v) {
-        vcg::Point3f p = network.position(v) * 0.05F;
-        p[2] *= 0.06F;
-        network.set_position(v, p);
-    }
-    const std::size_t before = cut_faces(network).size();
-    ASSERT_GT(before, 0U);
-    NoProgress progress;
-    fit_to_points(network, target, {}, 1, 1, progress);
-    EXPECT_LE(cut_faces(network).size(), before);
-    EXPECT_EQ(network.validate(), "");
 }
 
 }  // namespace

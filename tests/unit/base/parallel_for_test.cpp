@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Loops over all cores give what the plain loop gives.
+#include "vcg_core/base/parallel_for.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "vcg_core/base/median.h"
+
+namespace neuralmesh {
+namespace {
+
+TEST(ParallelFor, VisitsEveryIndexOnce) {
+    for (int threads : {1, 3})
+        for (int count : {0, 1, 7, 100}) {
+            ThreadTeam team(threads);
+            std::vector<int> visits(static_cast<std::size_t>(count), 0);
+            parallel_for(count, 7, team, [&](int i) { ++visits[static_cast<std::size_t>(i)]; });
+            EXPECT_EQ(visits, std::vector<int>(static_cast<std::size_t>(count), 1));
+        }
+}
+
+TEST(ParallelFor, RethrowsWhatACallThrows) {
+    ThreadTeam team(2);
+    EXPECT_THROW(parallel_for(100, 1, team,
+                              [](int i) {
+                                  if (i == 60) throw std::runtime_error("60");
+                              }),
+                 std::runtime_error);
+}
+
+TEST(ParallelCollect, KeepsTheOrderOfTheIndices) {
+    std::vector<int> expected;
+    for (int i = 0; i < 1000; ++i)
+        for (int k = 0; k < i % 3; ++k) expected.push_back(i);
+    for (int threads : {1, 2, 5}) {
+        ThreadTeam team(threads);
+        EXPECT_EQ(parallel_collect<int>(1000, 64, team,
+                                        [](int i, std::vector<int>& found) {
+                                            for (int k = 0; k < i % 3; ++k) found.push_back(i);
+                                        }),
+                  expected);
+    }
+}
+
+TEST(Median, IsTheUpperOfTwoMiddleValues) {
+    EXPECT_EQ(median(std::vector<int>{7}), 7);
+    EXPECT_EQ(median(std::vector<int>{9, 1, 5}), 5);
+    EXPECT_EQ(median(std::vector<double>{4, 1, 3, 2}), 3);
+}
+
+}  // namespace
+}  // namespace neuralmesh

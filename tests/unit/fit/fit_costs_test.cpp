@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Gains of flips and splits and costs of collapses, against carrying them out and measuring again.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "tests/unit/fit/fit_scene.h"
+#include "vcg_core/fit/collapse_costs.h"
+#include "vcg_core/fit/edge_flips.h"
+#include "vcg_core/fit/face_rules.h"
+#include "vcg_core/fit/redistribute.h"
+#include "vcg_core/fit/split_gains.h"
+
+namespace neuralmesh {
+namespace {
+
+/// A rough torus in a dense cloud: about 60 points per face, so no face lacks any.
+FitScene torus_scene() {
+    return {noisy_network(shapes::torus_grid(20, 10), 0.03), shapes::torus_cloud(24000)};
+}
+
+std::vector<int> faces_with_edge(const Surface& surface, VertexId a, VertexId b) {
+    std::vector<int> result;
+    for (int f : surface.faces_around(a)) {
+        const Triangle& face = surface.faces[f];
+        if (std::find(face.begin(), face.end(), b) != face.end()) result.push_back(f);
+    }
+    return result;
+}
+
+/// The drop of the sum of squared distances by a flip, by flipping.
+double measured_drop(const FitScene& scene, VertexId a, VertexId b) {
+    const std::vector<Vector3> points = points_of(scene.points, faces_with_edge(scene.surface, a, b));
+    Network flipped = scene.network;
+    flipped.flip(a, b);
+    EXPECT_EQ(flipped.validate(), "");
+    return squared_distances(points, new_faces(flipped, scene.network), scene.network) -
+           squared_distances(points, new_faces(scene.network, flipped), flipped);
+}
+
+/// Whether a face made by the flip is a sliver or turns away from a face that was there.
+bool flip_harms(const FitScene& scene, VertexId a, VertexId b) {
+    Network flipped = scene.network;
+    flipped.flip(a, b);
+    const Surface after(flipped);
+    Vector3 old_normal = Vector3::Zero();
+    for (int f : faces_with_edge(scene.surface, a, b)) old_normal += unit_normal(scene.surface, f);
+    for (const Triangle& face : new_faces(scene.network, flipped)) {
+        const Vector3 normal = area_vector(face, after.positions).normalized();
+        if (kFlipRules.turns_over(old_normal.normalized(), normal)) return true;
+        if (triangle_quality(after.positions[face[0]], after.positions[face[1]], after.positions[face[2]]) <
+            kFlipRules.sliver)
+            return true;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (kFlipRules.is_folded(normal.dot(normal_beyond(after, face[k], face[(k + 1) % 3]))))
+                return true;
+    }
+    return false;
+}
+
+TEST(FindFlips, GainsWhatTheFlipBrings) {
+    const FitScene scene = torus_scene();
+    ThreadTeam team(1);
+    constexpr float kLeastGain = 1e-4F;
+    const std::vector<EdgeFlip> flips =
+        find_flips(scene.network, scene.surface, scene.points, kLeastGain, team);
+    PerVertex<char> found(scene.network.slot_count() * scene.network.slot_count(), 0);
+    int with_gain = 0;
+    float last = std::numeric_limits<float>::max();
+    for (const EdgeFlip& flip : flips) {
+        EXPECT_LE(flip.gain, last);
+        last = flip.gain;
+        found[flip.a * scene.network.slot_count() + flip.b] = 1;
+        if (flip.gain == 0) continue;
+        ++with_gain;
+        EXPECT_NEAR(flip.gain, measured_drop(scene, flip.a, flip.b), 1e-5 + 1e-3 * flip.gain);
+    }
+    EXPECT_GT(with_gain, 30);
+    for (VertexId a : scene.network.vertices())
+        for (VertexId b : scene.network.ring(a)) {
+            if (b < a || found[a * scene.network.slot_count() + b] != 0 || !scene.network.can_flip(a, b))
+                continue;
+            EXPECT_TRUE(measured_drop(scene, a, b) < kLeastGain + 1e-5 || flip_harms(scene, a, b))
+                << a << ' ' << b;
+        }
+}
+
+TEST(FlipEdges, FlipsApartAndLeavesBarredVerticesAlone) {
+    const FitScene scene = torus_scene();
+    ThreadTeam team(2);
+    const std::vector<EdgeFlip> flips = find_flips(scene.network, scene.surface, scene.points, 0, team);
+    PerVertex<char> barred(scene.network.slot_count(), 0);
+    for (VertexId v = 0; v < barred.size(); v += 5) barred[v] = 1;
+    Network network = scene.network;
+    const int flipped = flip_edges(network, flips, barred);
+    EXPECT_GT(flipped, 10);
+    EXPECT_EQ(network.validate(), "");
+    // Two new faces for each flip: none was flipped again.
+    EXPECT_EQ(new_faces(scene.network, network).size(), 2 * static_cast<std::size_t>(flipped));
+    for (VertexId v = 0; v < barred.size(); v += 5)
+        EXPECT_EQ(network.ring(v).valence, scene.network.ring(v).valence);
+    EXPECT_EQ(flip_edges(network, flips, PerVertex<char>(barred.size(), 1)), 0);
+}
+
+TEST(FindCollapses, CostsWhatTheCollapseDoes) {
+    const FitScene scene = torus_scene();
+    ThreadTeam team(1);
+    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
+    ASSERT_EQ(static_cast<int>(collapses.size()), scene.network.slot_count());
+    int measured = 0;
+    int small_stars = 0;
+    double sum_of_ratios = 0;
+    float last = 0;
+    for (const Collapse& collapse : collapses) {
+        EXPECT_GE(collapse.cost, last);
+        last = collapse.cost;
+        if (collapse.into < 0) continue;
+        ASSERT_TRUE(scene.network.can_collapse(collapse.gone, collapse.into));
+        const Span<const int> star = scene.surface.faces_around(collapse.gone);
+        const std::vector<Vector3> points = points_of(scene.points, {star.begin(), star.end()});
+        Network after = scene.network;
+        after.collapse(collapse.gone, collapse.into);
+        ASSERT_EQ(after.validate(), "");
+        const double rise = squared_distances(points, new_faces(scene.network, after), after) -
+                            squared_distances(points, new_faces(after, scene.network), scene.network);
+        // Every point of a star of less than 128 points is measured, else some of them.
+        if (points.size() < 128) {
+            EXPECT_NEAR(collapse.cost, std::max(rise, 0.0), 1e-5 + 1e-3 * std::abs(rise));
+            ++small_stars;
+        }
+        if (rise > 0) {
+            sum_of_ratios += static_cast<double>(collapse.cost) / rise;
+            ++measured;
+        }
+    }
+    EXPECT_GT(measured, 30);
+    EXPECT_NEAR(sum_of_ratios / measured, 1, 0.1);
+    EXPECT_LT(small_stars, scene.network.slot_count());
+}
+
+TEST(FindCollapses, MeasuresSmallStarsExactly) {
+    const FitScene scene(noisy_network(shapes::torus_grid(20, 10), 0.03), shapes::torus_cloud(5000));
+    ThreadTeam team(2);
+    int measured = 0;
+    for (const Collapse& collapse : find_collapses(scene.network, scene.surface, scene.points, team)) {
+        const Span<const int> star = scene.surface.faces_around(collapse.gone);
+        const std::vector<Vector3> points = points_of(scene.points, {star.begin(), star.end()});
+        if (collapse.into < 0 || points.size() >= 128) continue;
+        Network after = scene.network;
+        after.collapse(collapse.gone, collapse.into);
+        const double rise = squared_distances(points, new_faces(scene.network, after), after) -
+                            squared_distances(points, new_faces(after, scene.network), scene.network);
+        if (rise <= 0) continue;
+        ++measured;
+        EXPECT_NEAR(collapse.cost, rise, 1e-5 + 1e-3 * rise);
+    }
+    EXPECT_GT(measured, 30);
+}
+
+/// A flat grid, and points on a gentle wave above it.
+FitScene wave_scene() {
+    shapes::Shape grid = shapes::grid(12, 12);
+    double low = 1e9, high = -1e9;
+    for (const vcg::Point3d& p : grid.positions) {
+        low = std::min(low, p[0]);
+        high = std::max(high, p[0]);
+    }
+    Random random(7);
+    shapes::Cloud cloud;
+    for (int i = 0; i < 40000; ++i) {
+        const double x = low + (high - low) * static_cast<double>(random.unit());
+        const double y = low + (high - low) * static_cast<double>(random.unit());
+        const double turns = 6 * shapes::kPi / (high - low);
+        cloud.emplace_back(x, y, 0.01 * (high - low) * std::sin(turns * x) * std::cos(turns * y));
+    }
+    return {noisy_network(grid, 0), cloud};
+}
+
+/// A collapse that costs nothing, away from the edge to be split.
+Collapse free_collapse(const Network& network, const EdgeSplit& split) {
+    const vcg::Point3f middle = (network.position(split.a) + network.position(split.b)) / 2;
+    for (VertexId v : network.vertices())
+        if ((network.position(v) - middle).Norm() > 0.3F && network.ring(v).open == 0 &&
+            network.can_collapse(v, network.ring(v)[0]))
+            return {0, v, network.ring(v)[0]};
+    return {Collapse::kForbidden, 0, -1};
+}
+
+TEST(FindSplits, GainsWhatTheSplitBrings) {
+    const FitScene scene = wave_scene();
+    ThreadTeam team(1);
+    const double edge = static_cast<double>(mean_edge_length(scene.surface));
+    const std::vector<EdgeSplit> splits =
+        find_splits(scene.network, scene.surface, scene.points, static_cast<float>(1e-3 * edge * edge), team);
+    ASSERT_GT(splits.size(), 50U);
+    int measured = 0;
+    float last = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < splits.size(); ++i) {
+        const EdgeSplit& split = splits[i];
+        EXPECT_LE(split.gain, last);
+        last = split.gain;
+        if (i % 5 != 0) continue;
+        // A collapse far away that costs nothing makes a pair with the split.
+        Network after = scene.network;
+        const VertexMoves moves = redistribute(after, {free_collapse(scene.network, split)}, {split}, 1,
+                                               PerVertex<char>(after.slot_count(), 0));
+        if (moves.insertions.empty()) continue;
+        ++measured;
+        ASSERT_EQ(after.validate(), "");
+        const std::vector<Vector3> points =
+            points_of(scene.points, faces_with_edge(scene.surface, split.a, split.b));
+        const double drop = squared_distances(points, new_faces(after, scene.network), scene.network) -
+                            squared_distances(points, new_faces(scene.network, after), after);
+        // The gain is that of the linearised distances.
+        EXPECT_NEAR(split.gain, drop, 0.2 * drop);
+    }
+    EXPECT_GT(measured, 10);
+}
+
+TEST(FindSplits, LeavesOutWhatGainsLess) {
+    const FitScene scene = wave_scene();
+    ThreadTeam team(1);
+    const std::vector<EdgeSplit> all = find_splits(scene.network, scene.surface, scene.points, 0, team);
+    const float bound = all[all.size() / 2].gain;
+    const std::vector<EdgeSplit> some = find_splits(scene.network, scene.surface, scene.points, bound, team);
+    const auto expected =
+        std::count_if(all.begin(), all.end(), [&](const EdgeSplit& split) { return split.gain >= bound; });
+    EXPECT_EQ(static_cast<std::ptrdiff_t>(some.size()), expected);
+    EXPECT_LT(some.size(), all.size());
+}
+
+}  // namespace
+}  // namespace neuralmesh

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The points of a fit: their choice, their faces, their noise, where they are missing, and the error at those
+// held out.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tests/unit/fit/fit_scene.h"
+#include "tests/unit/support/soundness.h"
+#include "vcg_core/fit/fitter.h"
+#include "vcg_core/fit/noise.h"
+#include "vcg_core/fit/support.h"
+#include "vcg_core/mesh/face_tree.h"
+
+namespace neuralmesh {
+namespace {
+
+double normal_deviate(Random& random) {
+    const double u = 1 - static_cast<double>(random.unit());
+    return std::sqrt(-2 * std::log(u)) * std::cos(2 * shapes::kPi * static_cast<double>(random.unit()));
+}
+
+TEST(ChoosePoints, TakesEveryPointOfACloudOnce) {
+    const TargetSpace target = soundness::target_of(shapes::sphere_cloud(2000));
+    Random random(1);
+    const PointChoice choice = choose_points(target, 5000, random);
+    EXPECT_EQ(choice.held_out.size(), 250U);
+    EXPECT_EQ(choice.fitted.size(), 1750U);
+    std::set<std::array<float, 3>> places;
+    for (const auto* part : {&choice.fitted, &choice.held_out})
+        for (const Vector3& p : *part) places.insert({p[0], p[1], p[2]});
+    EXPECT_EQ(places.size(), 2000U);
+}
+
+TEST(ChoosePoints, HoldsOutAtMostTenThousand) {
+    const TargetSpace target = soundness::target_of(shapes::sphere_cloud(100000));
+    Random random(1);
+    EXPECT_EQ(choose_points(target, 90000, random).held_out.size(), 10000U);
+}
+
+TEST(PointsByFace, HaveEveryPointWithItsNearestFace) {
+    const FitScene scene(noisy_network(shapes::torus_grid(20, 10), 0.02), shapes::torus_cloud(2000, 0.02));
+    const FaceTree tree(scene.surface);
+    std::size_t i = 0;
+    for (int f = 0; f < scene.surface.face_count(); ++f)
+        for (const PointsByFace::Assignment& a : scene.points.of(f)) {
+            EXPECT_EQ(tree.nearest(a.point).face, f);
+            EXPECT_EQ(scene.tracked.points[i], a.point) << "reordered with them";
+            const WalkStart start = scene.tracked.last_hit[i];
+            EXPECT_EQ(scene.surface.faces_around(start.vertex)[start.turn], f);
+            ++i;
+        }
+    EXPECT_EQ(i, 2000U);
+}
+
+TEST(PointsByFace, UpdateTheirFeet) {
+    FitScene scene(noisy_network(shapes::icosphere(2), 0), shapes::sphere_cloud(2000));
+    ThreadTeam team(2);
+    for (Vector3& p : scene.surface.positions) p *= 1.1F;
+    scene.points.update_feet(scene.surface, team);
+    for (int f = 0; f < scene.surface.face_count(); ++f)
+        for (const PointsByFace::Assignment& a : scene.points.of(f)) {
+            const Foot foot = foot_on_triangle(a.point, scene.surface.corner(f, 0),
+                                               scene.surface.corner(f, 1), scene.surface.corner(f, 2));
+            EXPECT_EQ(a.foot.squared_distance, foot.squared_distance);
+            EXPECT_EQ(a.foot.weights, foot.weights);
+        }
+}
+
+TEST(NoiseVariance, IsThatOfANoisyPlane) {
+    const Surface plane(noisy_network(shapes::grid(10, 10), 0));
+    for (double sigma : {0.001, 0.01}) {
+        const PointsByFace points =
+            points_on(plane, 100, [&](Random& random) { return sigma * normal_deviate(random); });
+        EXPECT_NEAR(noise_variance(plane, points) / (sigma * sigma), 1, 0.05);
+    }
+}
+
+TEST(NoiseVariance, IsNotThatOfTheMisfit) {
+    const Surface sphere(noisy_network(shapes::icosphere(2), 0));
+    EXPECT_LT(noise_variance(sphere, points_on(sphere, 20, [](Random&) { return 0.1; })), 1e-10);
+}
+
+TEST(NoiseVariance, IsZeroWithTooFewPoints) {
+    const Surface sphere(noisy_network(shapes::icosphere(2), 0));
+    const auto noise = [](Random& random) { return 0.1 * normal_deviate(random); };
+    EXPECT_EQ(noise_variance(sphere, points_on(sphere, 3, noise)), 0);
+    EXPECT_GT(noise_variance(sphere, points_on(sphere, 4, noise)), 0);
+}
+
+constexpr VertexId kSpike = 7;
+
+/// A sphere with one vertex pulled far out, and the points of the sphere.
+FitScene spike_scene() {
+    Network network = noisy_network(shapes::icosphere(3), 0);
+    network.set_position(kSpike, network.position(kSpike) * 2.0F);
+    return {std::move(network), shapes::sphere_cloud(20000)};
+}
+
+TEST(Support, IsMissingAtTheTipOfASpike) {
+    const FitScene scene = spike_scene();
+    const PerVertex<float> missing = missing_points_at_vertices(scene.network, scene.surface, scene.points);
+    EXPECT_GT(missing[kSpike], 10);
+    for (VertexId v : scene.network.vertices()) {
+        if (v == kSpike || scene.network.adjacent(v, kSpike)) continue;
+        EXPECT_LT(missing[v], 0.2F * missing[kSpike]) << v;
+    }
+}
+
+TEST(Support, ForbidsToStretchSurfaceOverAHole) {
+    const FitScene scene(noisy_network(shapes::icosphere(3), 0), shapes::sphere_cloud(40000));
+    const Support support(scene.network, scene.surface, scene.points);
+    const Triangle face = scene.surface.faces[0];
+    const float area = area_vector(scene.surface, 0).norm();
+    const int points = scene.points.of(0).size();
+    const auto patch = [&](float times_area, int count) {
+        Support::Patch result;
+        support.add(result, face, times_area * area, count);
+        return result;
+    };
+    ASSERT_GT(points, 20);
+    EXPECT_EQ(support.cost_of_change(patch(1, points), patch(1, points)), 0);
+    EXPECT_EQ(support.cost_of_change(patch(1, points), patch(1.5F, points)), 0) << "still enough points";
+    EXPECT_EQ(support.cost_of_change(patch(1, points), patch(1, 0)), Support::kForbidden);
+    EXPECT_EQ(support.cost_of_change(patch(0.1F, 3), patch(0.11F, 3)), Support::kForbidden) << "few points";
+    EXPECT_LT(support.cost_of_change(patch(1, 0), patch(0.5F, 0)), 0);
+}
+
+TEST(HeldOut, MeasuresAlongTheNormals) {
+    const Network network = noisy_network(shapes::icosphere(4), 0);
+    const Surface sphere(network);
+    ThreadTeam team(2);
+    std::vector<Vector3> points;
+    for (const vcg::Point3d& p : shapes::sphere_cloud(2000))
+        points.push_back(to_eigen(vcg::Point3f::Construct(p)));
+    HeldOut held_out(points);
+    held_out.locate(sphere, team);
+    held_out.set_directions(network, sphere, team);
+    Surface larger = sphere;
+    for (Vector3& p : larger.positions) p *= 1.05F;
+    EXPECT_LT(held_out.rms_error(sphere, 1, team), 0.003);
+    EXPECT_NEAR(held_out.rms_error(larger, 1, team), 0.05, 0.003);
+    EXPECT_NEAR(held_out.rms_error(larger, 0.02F, team), 0.02, 1e-6) << "counts up to the outlier distance";
+}
+
+// Points with noise of .03: a surface crumpled as much is nearer to them than the true one, but not along the
+// normals of the true one.
+TEST(HeldOut, DoesNotPreferACrumpledSurface) {
+    const Network smooth = noisy_network(shapes::icosphere(4), 0);
+    const Network crumpled = noisy_network(shapes::icosphere(4), 0.06);
+    std::vector<Vector3> points;
+    for (const vcg::Point3d& p : shapes::sphere_cloud(4000, 0.03))
+        points.push_back(to_eigen(vcg::Point3f::Construct(p)));
+    ThreadTeam team(2);
+    HeldOut held_out(points);
+    held_out.locate(Surface(smooth), team);
+    held_out.set_directions(smooth, Surface(smooth), team);
+    HeldOut other = held_out;
+    other.relocate(Surface(crumpled), team);
+    EXPECT_LT(held_out.rms_error(Surface(smooth), 1, team),
+              0.97 * other.rms_error(Surface(crumpled), 1, team));
+}
+
+TEST(BendingSearch, NarrowsFromAWideRange) {
+    BendingSearch search;
+    const std::vector<float> first = search.next_weights(0);
+    EXPECT_EQ(first, (std::vector<float>{0.3F, 1, 8, 50})) << "none below the least of the first round";
+    search.choose(8);
+    EXPECT_EQ(search.next_weights(0), (std::vector<float>{8, 1, 20}));
+    search.choose(1);
+    EXPECT_EQ(search.next_weights(0.5F), (std::vector<float>{1, 0.5F, 2.5F}))
+        << "none below what noise demands";
+    search.choose(0.5F);
+    EXPECT_EQ(search.next_weights(2), (std::vector<float>{2})) << "no weight twice";
+}
+
+}  // namespace
+}  // namespace neuralmesh

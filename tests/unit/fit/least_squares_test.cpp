@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The normal equations against their definition, their solution against Eigen's direct solvers.
+#include "vcg_core/fit/least_squares.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
+#include <cmath>
+
+#include "tests/unit/fit/fit_scene.h"
+
+namespace neuralmesh {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+double sine(Random& random) { return 0.02 * std::sin(50 * static_cast<double>(random.unit())); }
+
+Vector flat(const PerVertex<Vector3>& values) {
+    Vector result(3 * values.size());
+    for (VertexId v = 0; v < values.size(); ++v) result.segment<3>(3 * v) = values[v].cast<double>();
+    return result;
+}
+
+/// The matrix of the system, column by column.
+Matrix matrix_of(const PointToPlaneSystem& system, int slots, float lambda) {
+    Matrix matrix(3 * slots, 3 * slots);
+    PerVertex<Vector3> unit(slots, Vector3::Zero());
+    PerVertex<Vector3> column(slots, Vector3::Zero());
+    for (VertexId v = 0; v < slots; ++v)
+        for (Eigen::Index axis = 0; axis < 3; ++axis) {
+            unit[v][axis] = 1;
+            system.multiply(lambda, unit, column);
+            unit[v][axis] = 0;
+            matrix.col(3 * v + axis) = flat(column);
+        }
+    return matrix;
+}
+
+struct LeastSquares : testing::Test {
+    Network network = noisy_network(shapes::icosphere(2), 0.02);
+    Surface surface{network};
+    PointsByFace points = points_on(surface, 12, sine);
+    ThreadTeam team{2};
+    PointToPlaneSystem system{network, surface, points, team};
+};
+
+TEST_F(LeastSquares, HasASymmetricPositiveDefiniteMatrix) {
+    for (float lambda : {0.01F, 1.0F, 50.0F}) {
+        const Matrix matrix = matrix_of(system, network.slot_count(), lambda);
+        EXPECT_LT((matrix - matrix.transpose()).norm(), 1e-5 * matrix.norm());
+        const Eigen::LDLT<Matrix> ldlt(matrix);
+        EXPECT_GT(ldlt.vectorD().minCoeff(), 0);
+    }
+}
+
+TEST_F(LeastSquares, IsSolvedAsByDirectSolvers) {
+    for (float lambda : {0.01F, 1.0F, 50.0F}) {
+        const Matrix matrix = matrix_of(system, network.slot_count(), lambda);
+        const Vector right_side = flat(system.right_side(lambda));
+        const Vector dense = Eigen::LDLT<Matrix>(matrix).solve(right_side);
+        const Eigen::SparseMatrix<double> sparse_matrix = matrix.sparseView();
+        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> simplicial(sparse_matrix);
+        const Vector sparse = simplicial.solve(right_side);
+        EXPECT_LT((dense - sparse).norm(), 1e-8 * dense.norm());
+        const Vector exact = flat(system.solve(lambda, {1e-6, 2000}));
+        EXPECT_LT((exact - dense).norm(), 1e-3 * dense.norm()) << lambda;
+        // What the fit asks for: an energy close to the least one.
+        const auto energy = [&](const Vector& u) { return (0.5 * u.dot(matrix * u) - u.dot(right_side)); };
+        const Vector solved = flat(system.solve(lambda));
+        EXPECT_LT(energy(solved) - energy(dense), 1e-2 * -energy(dense)) << lambda;
+    }
+}
+
+// Of the points' part alone: sum of w ((n.e)^2 + kTangential |e_t|^2), as the header has it.
+TEST_F(LeastSquares, MeasuresThePointsAsDefined) {
+    constexpr double kTangential = 0.03;
+    const PointsByFace none(surface, {}, {});
+    PointsByFace heavier = points;
+    for (PointsByFace::Assignment& a : heavier.all()) a.influence = 3;
+    const PointToPlaneSystem heavy(network, surface, heavier, team);
+    Random random(8);
+    PerVertex<Vector3> u(network.slot_count(), Vector3::Zero());
+    for (Vector3& v : u) v = 0.1F * to_eigen(vcg::Point3f::Construct(shapes::in_cube(random)));
+    double expected = 0;
+    for (int f = 0; f < surface.face_count(); ++f)
+        for (const PointsByFace::Assignment& a : points.of(f)) {
+            const Eigen::Vector3d normal = unit_normal(surface, f).cast<double>();
+            const auto energy = [&](double share) {
+                Eigen::Vector3d e = a.point.cast<double>();
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const VertexId v = surface.faces[f][k];
+                    e -= static_cast<double>(a.foot.weights[k]) *
+                         (surface.positions[v].cast<double>() + share * u[v].cast<double>());
+                }
+                const double along = normal.dot(e);
+                return along * along + kTangential * (e - along * normal).squaredNorm();
+            };
+            expected += energy(1) - energy(0);
+        }
+    // Three times the influence adds twice the points' part, and nothing else.
+    const auto energy = [&](const PointToPlaneSystem& s) {
+        PerVertex<Vector3> image(u.size(), Vector3::Zero());
+        s.multiply(0, u, image);
+        return flat(u).dot(flat(image)) - 2 * flat(u).dot(flat(s.right_side(0)));
+    };
+    EXPECT_NEAR((energy(heavy) - energy(system)) / 2, expected, 1e-3 * std::abs(expected));
+}
+
+// Points at the same height above every face of a plane: it moves there, but for the weak pull back.
+TEST(PointToPlaneSystem, LiftsAPlaneToItsPoints) {
+    const Network plane = noisy_network(shapes::grid(8, 8), 0);
+    const Surface surface(plane);
+    ThreadTeam team(1);
+    const PointsByFace points = points_on(surface, 30, [](Random&) { return 0.05; });
+    const PointToPlaneSystem system(plane, surface, points, team);
+    for (const Vector3& u : system.solve(1, {1e-5, 1000})) {
+        EXPECT_NEAR(u[2], 0.05, 0.002);
+        EXPECT_LT(u.head<2>().norm(), 0.02);
+    }
+}
+
+// On a plane no gap is open, whatever the shapes of the triangles, and none opens by a tilt of the plane.
+TEST(BendingTerms, AreZeroOnAPlane) {
+    shapes::Shape grid = shapes::grid(8, 8);
+    Random random(9);
+    for (vcg::Point3d& p : grid.positions) p += vcg::Point3d(0.02, 0.01, 0) * shapes::signed_unit(random);
+    const Network network = noisy_network(grid, 0);
+    const Surface surface(network);
+    ThreadTeam team(1);
+    const PointToPlaneSystem system(network, surface, points_on(surface, 10, sine), team);
+    const Vector without = flat(system.right_side(0));
+    EXPECT_LT((flat(system.right_side(100)) - without).norm(), 1e-3 * without.norm());
+    PerVertex<Vector3> tilt(network.slot_count(), Vector3::Zero());
+    for (VertexId v : network.vertices())
+        tilt[v][2] = 0.3F * surface.positions[v][0] - surface.positions[v][1] + 2;
+    PerVertex<Vector3> bent = tilt;
+    PerVertex<Vector3> plain = tilt;
+    system.multiply(100, tilt, bent);
+    system.multiply(0, tilt, plain);
+    EXPECT_LT((flat(bent) - flat(plain)).norm(), 1e-3 * flat(plain).norm());
+    // A bump does open gaps.
+    tilt[40][2] += 1;
+    system.multiply(100, tilt, bent);
+    system.multiply(0, tilt, plain);
+    EXPECT_GT((flat(bent) - flat(plain)).norm(), flat(plain).norm());
+}
+
+}  // namespace
+}  // namespace neuralmesh

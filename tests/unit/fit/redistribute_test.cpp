@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Moving and removing vertices: counts, topology, and what must stay apart.
+#include "vcg_core/fit/redistribute.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tests/unit/fit/fit_scene.h"
+
+namespace neuralmesh {
+namespace {
+
+/// Points of a cube, around a network whose faces cut its edges: vertices are missing there and superfluous
+/// on the sides.
+FitScene cube_scene() {
+    shapes::Shape shape = shapes::icosphere(3);
+    for (vcg::Point3d& p : shape.positions)
+        p /= 2 * std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+    return {noisy_network(shape, 0.001), shapes::box_cloud(30000)};
+}
+
+TEST(Redistribute, KeepsTheVertexCountAndTheTopology) {
+    const FitScene scene = cube_scene();
+    ThreadTeam team(2);
+    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
+    const std::vector<EdgeSplit> splits =
+        find_splits(scene.network, scene.surface, scene.points, 1e-3F, team);
+    for (int max_pairs : {0, 1, 10, 1000}) {
+        Network network = scene.network;
+        const VertexMoves moves =
+            redistribute(network, collapses, splits, max_pairs, PerVertex<char>(network.slot_count(), 0));
+        EXPECT_EQ(network.validate(), "");
+        EXPECT_EQ(network.vertex_count(), scene.network.vertex_count());
+        EXPECT_EQ(network.genus(), 0);
+        EXPECT_EQ(network.component_count(), 1);
+        EXPECT_EQ(moves.collapses.size(), moves.insertions.size());
+        EXPECT_LE(static_cast<int>(moves.collapses.size()), max_pairs);
+        EXPECT_GE(static_cast<int>(moves.collapses.size()), std::min(max_pairs, 10));
+        for (const VertexMoves::Insertion& insertion : moves.insertions) {
+            EXPECT_TRUE(network.alive(insertion.added));
+            EXPECT_TRUE(network.adjacent(insertion.added, insertion.beside));
+            // Near an edge of the cube, where two coordinates are large.
+            std::array<float, 3> p;
+            for (int k = 0; k < 3; ++k)
+                p[static_cast<std::size_t>(k)] = std::abs(network.position(insertion.added)[k]);
+            std::sort(p.begin(), p.end());
+            EXPECT_GT(p[1], 0.4F);
+        }
+    }
+}
+
+TEST(Redistribute, StopsWhereASplitGainsLessThanTheCollapseCosts) {
+    const FitScene scene = cube_scene();
+    ThreadTeam team(1);
+    std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
+    const std::vector<EdgeSplit> splits =
+        find_splits(scene.network, scene.surface, scene.points, 1e-3F, team);
+    for (Collapse& collapse : collapses) collapse.cost = splits.front().gain;
+    Network network = scene.network;
+    const PerVertex<char> none(network.slot_count(), 0);
+    EXPECT_TRUE(redistribute(network, collapses, splits, 10, none).collapses.empty());
+    EXPECT_EQ(network.faces(), scene.network.faces());
+}
+
+TEST(Redistribute, LeavesBarredVerticesAlone) {
+    const FitScene scene = cube_scene();
+    ThreadTeam team(1);
+    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
+    const std::vector<EdgeSplit> splits =
+        find_splits(scene.network, scene.surface, scene.points, 1e-3F, team);
+    PerVertex<char> barred(scene.network.slot_count(), 0);
+    for (VertexId v = 0; v < barred.size(); v += 7) barred[v] = 1;
+    Network network = scene.network;
+    const VertexMoves moves = redistribute(network, collapses, splits, 1000, barred);
+    EXPECT_FALSE(moves.collapses.empty());
+    for (VertexId v = 0; v < barred.size(); v += 7) {
+        ASSERT_TRUE(network.alive(v));
+        EXPECT_EQ(network.ring(v).valence, scene.network.ring(v).valence);
+    }
+}
+
+// Edges that end on the boundary are split in their middle; the boundary keeps its vertices.
+TEST(Redistribute, LeavesTheBoundaryAlone) {
+    const Network grid = noisy_network(shapes::grid(8, 8), 0);
+    const auto boundary = [](const Network& network) {
+        PerVertex<char> result(network.slot_count(), 0);
+        for (VertexId v : network.vertices()) result[v] = static_cast<char>(network.ring(v).open);
+        return result;
+    };
+    int splits = 0;
+    for (VertexId a : grid.vertices())
+        for (VertexId b : grid.ring(a)) {
+            const Ring& ring = grid.ring(a);
+            const int i = ring.find(b);
+            if (ring.open != 0 && (i == 0 || i + 1 == ring.valence)) continue;
+            const vcg::Point3f middle = (grid.position(a) + grid.position(b)) / 2;
+            for (VertexId gone : {27, 35, 45}) {
+                Network network = grid;
+                const VertexMoves moves =
+                    redistribute(network, {{0, gone, grid.ring(gone)[0]}}, {{1, a, b, to_eigen(middle)}}, 1,
+                                 PerVertex<char>(network.slot_count(), 0));
+                if (moves.insertions.empty()) continue;
+                ASSERT_EQ(network.validate(), "");
+                EXPECT_EQ(boundary(network), boundary(grid)) << a << ' ' << b;
+                ++splits;
+                EXPECT_TRUE(network.adjacent(moves.insertions[0].added, a));
+                EXPECT_TRUE(network.adjacent(moves.insertions[0].added, b));
+            }
+        }
+    EXPECT_GT(splits, 200);
+}
+
+TEST(Reduce, RemovesTheCheapestThatDoNotTouch) {
+    const FitScene scene = cube_scene();
+    ThreadTeam team(1);
+    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
+    for (int max_count : {1, 20, 10000}) {
+        Network network = scene.network;
+        const std::vector<VertexMoves::DoneCollapse> done =
+            reduce(network, collapses, max_count, PerVertex<char>(network.slot_count(), 0));
+        EXPECT_EQ(network.validate(), "");
+        EXPECT_EQ(network.genus(), 0);
+        EXPECT_LE(static_cast<int>(done.size()), max_count);
+        EXPECT_EQ(network.vertex_count(), scene.network.vertex_count() - static_cast<int>(done.size()));
+        EXPECT_EQ(done.front().gone, collapses.front().gone);
+        PerVertex<char> touched(scene.network.slot_count(), 0);
+        for (const VertexMoves::DoneCollapse& collapse : done) {
+            EXPECT_EQ(touched[collapse.gone], 0);
+            touched[collapse.gone] = 1;
+            for (VertexId u : scene.network.ring(collapse.gone)) {
+                EXPECT_EQ(touched[u], 0);
+                touched[u] = 1;
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace neuralmesh

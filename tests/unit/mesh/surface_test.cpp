@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The copy of a network's geometry, and searches for nearest faces against a look at every face.
+#include "vcg_core/mesh/surface.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "tests/unit/support/shapes.h"
+#include "vcg_core/mesh/face_tree.h"
+#include "vcg_core/mesh/face_walk.h"
+
+namespace neuralmesh {
+namespace {
+
+/// The shape with every vertex moved by up to \p noise.
+Network network_of(const shapes::Shape& shape, double noise = 0) {
+    Random random(3);
+    std::vector<vcg::Point3f> positions;
+    for (const vcg::Point3d& p : shape.positions)
+        positions.push_back(vcg::Point3f::Construct(p + shapes::in_ball(random) * noise));
+    return Network(positions, std::vector<Triangle>(shape.faces.begin(), shape.faces.end()));
+}
+
+Network network_with_free_slots() {
+    Network network = network_of(shapes::icosphere(2), 0.02);
+    Random random(4);
+    for (int i = 0; i < 40; ++i) {
+        const auto gone =
+            static_cast<VertexId>(random.below(static_cast<std::uint32_t>(network.slot_count())));
+        if (network.alive(gone) && network.can_collapse(gone, network.ring(gone)[0]))
+            network.collapse(gone, network.ring(gone)[0]);
+    }
+    return network;
+}
+
+Vector3 in_cube(Random& random) { return to_eigen(vcg::Point3f::Construct(shapes::in_cube(random))); }
+
+/// The nearest face by looking at all.
+Hit nearest_of(const Surface& surface, const std::vector<int>& faces, const Vector3& p) {
+    Hit best{-1, {std::numeric_limits<float>::max(), {1, 0, 0}}};
+    for (int f : faces) {
+        const Foot foot =
+            foot_on_triangle(p, surface.corner(f, 0), surface.corner(f, 1), surface.corner(f, 2));
+        if (foot.squared_distance < best.foot.squared_distance) best = {f, foot};
+    }
+    return best;
+}
+
+std::vector<int> every(int step, const Surface& surface) {
+    std::vector<int> faces;
+    for (int f = 0; f < surface.face_count(); f += step) faces.push_back(f);
+    return faces;
+}
+
+bool boxes_touch(const Surface& surface, int f, int g) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const auto range = [&](int face) {
+            return std::minmax({surface.corner(face, 0)[axis], surface.corner(face, 1)[axis],
+                                surface.corner(face, 2)[axis]});
+        };
+        if (range(f).first > range(g).second || range(g).first > range(f).second) return false;
+    }
+    return true;
+}
+
+TEST(Surface, HasTheFacesOfTheNetworkAroundEveryVertex) {
+    const Network network = network_with_free_slots();
+    ASSERT_LT(network.vertex_count(), network.slot_count());
+    const Surface surface(network);
+    EXPECT_EQ(surface.faces.vector(), network.faces());
+    for (VertexId v = 0; v < network.slot_count(); ++v) {
+        const Span<const int> around = surface.faces_around(v);
+        EXPECT_EQ(around.size(), network.ring(v).face_count());
+        EXPECT_TRUE(std::is_sorted(around.begin(), around.end()));
+        for (int f : around) {
+            const Triangle& face = surface.faces[f];
+            EXPECT_TRUE(std::find(face.begin(), face.end(), v) != face.end());
+        }
+    }
+}
+
+TEST(Surface, KnowsTheNormalsOfNeighbouringFaces) {
+    const Network network = network_of(shapes::grid(4, 4), 0.01);
+    const Surface surface(network);
+    int on_boundary = 0;
+    for (const Triangle& face : surface.faces)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const VertexId a = face[k];
+            const VertexId b = face[(k + 1) % 3];
+            Vector3 expected = Vector3::Zero();
+            for (int g = 0; g < surface.face_count(); ++g)
+                for (std::size_t j = 0; j < 3; ++j)
+                    if (surface.faces[g][j] == b && surface.faces[g][(j + 1) % 3] == a)
+                        expected =
+                            unit_normal(surface.corner(g, 0), surface.corner(g, 1), surface.corner(g, 2));
+            on_boundary += expected == Vector3(0, 0, 0) ? 1 : 0;
+            EXPECT_LT((normal_beyond(surface, a, b) - expected).norm(), 1e-6);
+        }
+    EXPECT_GT(on_boundary, 0);
+}
+
+TEST(Surface, HasAMeanEdgeLength) {
+    const double diagonal = std::sqrt(2.0);  // of a cube's side, of whose 18 edges 12 have length 1
+    EXPECT_NEAR(mean_edge_length(Surface(network_of(shapes::cube()))), (12 + 6 * diagonal) / 18, 1e-6);
+}
+
+TEST(Surface, SpreadsValuesOverRings) {
+    const Network network = network_of(shapes::icosphere(2));
+    PerVertex<float> values(network.slot_count(), 0);
+    values[5] = 1;
+    spread_over_rings(network, values, 1);
+    for (VertexId v : network.vertices()) EXPECT_EQ(values[v], v == 5 || network.adjacent(5, v) ? 1 : 0);
+    PerVertex<float> ones(network.slot_count(), 1);
+    spread_over_rings(network, ones, 2);
+    for (VertexId v : network.vertices()) {
+        float expected = static_cast<float>(network.ring(v).valence + 1);
+        for (VertexId u : network.ring(v)) expected += static_cast<float>(network.ring(u).valence + 1);
+        EXPECT_EQ(ones[v], expected);
+    }
+}
+
+TEST(FaceTree, FindsTheNearestFace) {
+    const Surface surface(network_of(shapes::torus_grid(20, 10), 0.05));
+    Random random(5);
+    for (int step : {1, 3, 50}) {
+        const std::vector<int> faces = every(step, surface);
+        const FaceTree tree(surface, faces);
+        for (int i = 0; i < 300; ++i) {
+            const Vector3 p = 1.5F * in_cube(random);
+            const Hit expected = nearest_of(surface, faces, p);
+            const Hit found = tree.nearest(p);
+            EXPECT_EQ(found.face, expected.face);
+            EXPECT_EQ(found.foot.squared_distance, expected.foot.squared_distance);
+        }
+    }
+}
+
+// A vertex is as near to all of its faces.
+TEST(FaceTree, FindsTheFaceOfSmallestIndexAmongEquals) {
+    const Surface surface(network_of(shapes::icosphere(2)));
+    const FaceTree tree(surface);
+    for (VertexId v = 0; v < surface.positions.size(); ++v)
+        EXPECT_EQ(tree.nearest(surface.positions[v]).face, surface.faces_around(v)[0]);
+}
+
+TEST(FaceTree, FindsNothingWithoutFaces) {
+    const Surface surface(network_of(shapes::cube()));
+    const FaceTree tree(surface, {});
+    EXPECT_EQ(tree.nearest({0, 0, 0}).face, -1);
+    tree.for_overlapping(surface, 0, [](int) { ADD_FAILURE(); });
+}
+
+TEST(FaceTree, FindsAllPairsOfOverlappingBoxesOnce) {
+    const Surface surface(network_of(shapes::icosphere(2), 0.1));
+    std::set<std::pair<int, int>> expected;
+    for (int f = 0; f < surface.face_count(); ++f)
+        for (int g = f + 1; g < surface.face_count(); ++g)
+            if (boxes_touch(surface, f, g)) expected.emplace(f, g);
+    const FaceTree tree(surface);
+    std::set<std::pair<int, int>> found;
+    for (int i = 0; i < surface.face_count(); ++i)
+        tree.for_overlapping(i, [&](int f, int g) {
+            EXPECT_TRUE(found.emplace(std::min(f, g), std::max(f, g)).second) << "twice";
+        });
+    EXPECT_EQ(found, expected);
+    for (int f = 0; f < surface.face_count(); f += 7) {
+        std::set<int> overlapping;
+        tree.for_overlapping(surface, f, [&](int g) { overlapping.insert(g); });
+        for (int g = 0; g < surface.face_count(); ++g)
+            EXPECT_EQ(overlapping.count(g) == 1, boxes_touch(surface, f, g));
+    }
+}
+
+// The walk looks at few faces: on a smooth surface, from a start near by, it finds the nearest of all.
+TEST(FaceWalk, FindsTheNearestFaceOfASmoothSurface) {
+    const Network network = network_of(shapes::torus_grid(40, 20), 0.002);
+    const Surface surface(network);
+    const std::vector<int> faces = every(1, surface);
+    for (const vcg::Point3d& point : shapes::torus_cloud(400, 0.01)) {
+        const Vector3 p = to_eigen(vcg::Point3f::Construct(point));
+        const Hit exact = nearest_of(surface, faces, p);
+        const WalkStart there = walk_start_of(surface, exact);
+        EXPECT_EQ(surface.faces_around(there.vertex)[there.turn], exact.face);
+        for (const WalkStart start :
+             {there, WalkStart{there.vertex, 99}, WalkStart{network.ring(there.vertex)[0], 1}})
+            EXPECT_EQ(walk_to_nearest(surface, p, start).foot.squared_distance, exact.foot.squared_distance);
+    }
+}
+
+// From anywhere it ends at a face that is no further than those around its start.
+TEST(FaceWalk, NeverEndsFurtherThanItBegan) {
+    const Surface surface(network_of(shapes::torus_grid(20, 10), 0.1));
+    Random random(6);
+    for (int i = 0; i < 500; ++i) {
+        const Vector3 p = 1.5F * in_cube(random);
+        const auto v =
+            static_cast<VertexId>(random.below(static_cast<std::uint32_t>(surface.positions.size())));
+        const Span<const int> around = surface.faces_around(v);
+        const Hit at_start = nearest_of(surface, {around.begin(), around.end()}, p);
+        EXPECT_LE(walk_to_nearest(surface, p, {v, 0}).foot.squared_distance, at_start.foot.squared_distance);
+    }
+}
+
+}  // namespace
+}  // namespace neuralmesh
