@@ -22,6 +22,8 @@ constexpr float kCentring = 2e-3F;
 constexpr float kDamping = 2e-3F;
 /// Pull of a vertex that lacks points towards the middle of its ring, per missing point.
 constexpr float kRetreat = 8.0F;
+/// A boundary vertex has few points around it, which may miss as many by chance.
+constexpr float kByChance = 1.5F;
 /// An edge counts as a crease from this many times the median gap.
 constexpr float kCrease = 4.0F;
 
@@ -101,19 +103,19 @@ void PointToPlaneSystem::gather(const PerFace<FaceSums>& sums, const Surface& su
 void PointToPlaneSystem::regularise(const Surface& surface, float missing_points, VertexId v) {
     const Ring& ring = network_.ring(v);
     diagonal_[v].add_identity(kDamping * points_per_vertex_);
-    if (ring.open != 0) return;
     const Vector3& here = surface.positions[v];
     Vector3 middle = Vector3::Zero();
     Vector3 normal = Vector3::Zero();
-    for (int i = 0; i < ring.valence; ++i) {
-        middle += surface.positions[ring[i]];
+    for (const VertexId u : ring) middle += surface.positions[u];
+    for (int i = 0; i < ring.face_count(); ++i)
         normal += area_vector(here, surface.positions[ring[i]], surface.positions[ring.next(i)]);
-    }
     normal.normalize();
     const Vector3 away = middle / static_cast<float>(ring.valence) - here;
-    const float retreat = kRetreat * missing_points;
+    const float by_chance = ring.open != 0 ? kByChance : 0;
+    const float retreat = kRetreat * std::max(0.0F, missing_points - by_chance);
     diagonal_[v].add_identity(retreat);
     force_[v] += retreat * away;
+    if (ring.open != 0) return;  // the middle of the ring lies inside: the boundary would shrink
     const float centring = kCentring * points_per_vertex_;
     diagonal_[v].add_identity(centring);
     diagonal_[v].add(Symmetric3::outer(normal), -centring);
