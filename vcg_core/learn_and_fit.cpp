@@ -16,9 +16,9 @@ namespace neuralmesh {
 
 namespace {
 
-/// What the network grows to; see learn_and_fit(). The surplus pays where the fit may redistribute vertices
-/// and growth is bounded by their number. Beyond one vertex for kPointsPerVertex points the learning has too
-/// few points to place them by. Chosen by tests/experiments/accuracy/accuracy_table.py.
+/// Number of vertices that the network grows to; see learn_and_fit(). There is a surplus only if the fit may
+/// redistribute vertices and only the number of vertices ends growth. With fewer than kPointsPerVertex points
+/// per vertex, learning cannot place the vertices. Chosen by tests/experiments/accuracy/accuracy_table.py.
 int vertices_to_grow(const LearningTask& task, const Settings& settings) {
     constexpr int kLargestSurplus = 2500;
     constexpr std::size_t kPointsPerVertex = 10;
@@ -85,7 +85,7 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
             simplify(result.network, settings.target_vertices);
     }
     result.network.orient_outward();
-    // A fit that was taken back has moved no vertex to another's place.
+    // If the rounds of the fit were discarded, no vertex has moved to the place of another.
     result.counters = counters_of(learner, result.network,
                                   report.improved ? report.sources : PerVertex<VertexId>(), settings);
     return result;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Learning and the fit after it, with the number of vertices that the network grows to in between.
+// Learning, then the fit. Decides how many vertices the network grows to before the fit reduces it.
 #pragma once
 
 #include "vcg_core/base/progress.h"
@@ -16,11 +16,12 @@ namespace neuralmesh {
 constexpr double kPrepared = 0.1;
 constexpr double kLearned = 0.8;
 
+/// A network after learning and fit, and what the report says of it.
 struct LearnedNetwork {
     Network network;            ///< after the fit, oriented outward
     PerVertex<float> counters;  ///< what settings.feature_measure names
     StopReason stop_reason = StopReason::target_reached;
-    bool forced = false;  ///< growth had stalled, see growth_budget()
+    bool forced = false;  ///< growth stalled and was forced, see growth_budget()
     /// Of all learning, including growth whose result was discarded.
     long long signals = 0;
     long long splits = 0;
@@ -29,11 +30,12 @@ struct LearnedNetwork {
 
 /// Learns the points of \p task and fits the network to them if settings.fit_to_points.
 ///
-/// The fit knows better than the learning where vertices are needed. So the network first grows to more than
-/// settings.target_vertices (up to four times as many, the surplus falling to none at 5,000), and the fit
-/// removes those whose loss costs least. If that growth stalls, its result is discarded, and a second one
-/// stops at settings.target_vertices. If the caller asked to stop, the network has at most that many.
-/// Fractions of \p progress run from kPrepared to 1.
+/// The fit judges better than the learning where vertices are needed. So the network first grows to more
+/// vertices than settings.target_vertices: up to four times as many for small targets, no more from a target
+/// of 5,000 on. Then the fit removes the vertices whose removal costs least. If that growth stalls, its
+/// result is discarded, and the network grows a second time, to settings.target_vertices. If \p progress asks
+/// to stop, the network has at most settings.target_vertices vertices. Fractions of \p progress run from
+/// kPrepared to 1. Cost: see growth_schedule.h and fit.h.
 LearnedNetwork learn_and_fit(const LearningTask& task, const Settings& settings, MonotoneProgress& progress);
 
 }  // namespace neuralmesh

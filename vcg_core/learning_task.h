@@ -15,14 +15,14 @@
 
 namespace neuralmesh {
 
-/// What the learner is given.
+/// The learner's input.
 struct LearningTask {
     explicit LearningTask(const TargetSpace& all) : given(all) {}
 
     /// The points to learn, in the frame that the network has, too.
     const TargetSpace& target() const { return cleaned ? *cleaned : given; }
 
-    const TargetSpace& given;
+    const TargetSpace& given;            ///< as the caller passed it
     std::optional<TargetSpace> cleaned;  ///< without repeated points and outliers; empty: all are learned
     int outliers = 0;                    ///< number of points removed as such
     Network network;

@@ -35,16 +35,17 @@ TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const
 
 using Coordinates = std::array<double, 3>;
 
-/// The origin that a mesh of MeshType should store \p result relative to, so that its scalar type keeps the
-/// surface: the world's origin if rounding there is below 1e-5 of the diagonal; else the translation of the
-/// layer's matrix \p transform, if rounding is at most half as large there. It is the layer's origin and not
-/// the middle of the result, so that both layers have the same frame, in files too.
+/// The point that the coordinates of a mesh of MeshType should be relative to, so that rounding to its scalar
+/// type does not damage the surface of \p result. It is the world's origin if rounding there moves no vertex
+/// by more than 1e-5 of the bounding box's diagonal, or if the alternative does not halve the rounding. The
+/// alternative is the translation of the layer's matrix \p transform: with it, unlike with the centre of the
+/// result, both layers have the same frame, also in files. O(vertices).
 template <class MeshType, class Matrix>
 Coordinates origin_of(const NeuralMesh& result, const Matrix& transform);
 
 /// Writes \p result into the empty mesh \p out: coordinates relative to \p origin, faces, the counter as
-/// vertex quality and, if the settings ask for them, vertex colour and vertex selection. Skips the components
-/// that MeshType lacks. O(vertices + faces).
+/// vertex quality and, if the settings ask for them, vertex colour and vertex selection. Skips vertex
+/// attributes that MeshType lacks. O(vertices + faces).
 template <class MeshType>
 void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& out,
                 const Coordinates& origin = {});

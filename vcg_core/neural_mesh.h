@@ -18,6 +18,7 @@ namespace neuralmesh {
 struct Report {
     int vertices = 0;
     int faces = 0;
+    /// Of all learning, including growth whose result was discarded.
     long long signals = 0;
     long long splits = 0;
     long long collapses = 0;
@@ -30,8 +31,8 @@ struct Report {
     int outliers = 0;          ///< points that were not learned because of settings.remove_outliers
     int feature_vertices = 0;  ///< number of ones in NeuralMesh::features
     double rms_error = 0;      ///< learned points to mesh, % of the diagonal of their bounding box
-    double mean_counter = 0;   ///< Mean(n_c)
-    double seconds = 0;
+    double mean_counter = 0;   ///< Mean(n_c) of eq 7
+    double seconds = 0;        ///< wall-clock time of reconstruct()
     StopReason stop_reason = StopReason::target_reached;
     std::vector<std::string> warnings;  ///< full sentences for the log
 };

@@ -16,7 +16,7 @@ namespace neuralmesh {
 
 namespace {
 
-constexpr int kDistanceSamples = 20000;
+constexpr int kDistanceSamples = 20000;  ///< points at which the error is measured
 
 void write_geometry(const Network& network, const Frame& frame, NeuralMesh& mesh) {
     PerVertex<VertexId> index(network.slot_count(), -1);
@@ -29,7 +29,7 @@ void write_geometry(const Network& network, const Frame& frame, NeuralMesh& mesh
         for (VertexId& v : f) v = index[v];
 }
 
-/// Writes the counters and the features that exceed the threshold (eq 7).
+/// Writes the counters and marks as features those above the threshold of eq 7.
 void write_counters(const LearnedNetwork& learned, const Settings& settings, NeuralMesh& mesh) {
     double sum = 0;
     for (const VertexId v : learned.network.vertices()) {

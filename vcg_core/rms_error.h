@@ -12,6 +12,7 @@ namespace neuralmesh {
 
 /// Root mean square distance of \p samples random points of \p target from their nearest faces of \p network,
 /// in the core's frame (1 is the diagonal of the bounding box). O((faces + samples) log faces) expected.
+/// \pre \p network has a face; samples > 0
 double rms_distance(const TargetSpace& target, const Network& network, int samples, Random& random);
 
 }  // namespace neuralmesh

@@ -56,6 +56,7 @@ struct Settings {
     int random_seed = 1;
     int threads = 0;  ///< 0: one per core
 
+    // The first seven have their values from eq 9.
     double learning_rate = 0.06;           ///< alpha_w, eq 1
     double smoothing_rate = 0.05;          ///< alpha_L
     int smoothing_steps = 5;               ///< C_L
@@ -65,7 +66,7 @@ struct Settings {
     double feature_decay = 0.95;           ///< alpha_fd, eq 6
     int normalization_window = 1000;       ///< C_delta, eq 3
     int min_wins_per_split = 30;           ///< maturity; 0: none, as in the paper
-    int settling_signals_per_vertex = 60;  ///< learning after the last split
+    int settling_signals_per_vertex = 60;  ///< signals per vertex learned after the last split
     double stop_below_mean_counter = 0.0;  ///< alpha_t, eq 8; 0: off
 
     /// \throws SettingError for a value out of range, naming parameter, value and range

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Loops over all cores whose results do not depend on the number of threads.
+// Parallel loops whose results do not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +14,10 @@
 
 namespace neuralmesh {
 
-/// Calls \p body(chunk, begin, end) for every chunk of \p size indices of [0, count), by \p team. The chunks
-/// are the same for any number of threads; a call writes only what belongs to its chunk. If calls throw, the
-/// threads they ran on take no more chunks, the other threads finish, and one of the exceptions is rethrown.
+/// Calls \p body(chunk, begin, end) for every chunk of \p size indices of [0, count), on the threads of \p
+/// team. The chunks are the same for any number of threads. A call must write only what belongs to its chunk.
+/// A thread whose call throws takes no more chunks; when the others have finished, one of the exceptions is
+/// rethrown.
 template <class Body>
 void for_chunks(std::size_t count, std::size_t size, ThreadTeam& team, const Body& body) {
     const std::size_t chunks = (count + size - 1) / size;
@@ -35,8 +36,8 @@ void for_chunks(std::size_t count, std::size_t size, ThreadTeam& team, const Bod
         if (e) std::rethrow_exception(e);
 }
 
-/// Calls \p body(i) for every index i of [0, count), by \p team, \p chunk consecutive indices at a time. A
-/// call writes only what belongs to its index. Exceptions as in for_chunks().
+/// Calls \p body(i) for every index i of [0, count), on the threads of \p team, \p chunk consecutive indices
+/// at a time. A call must write only what belongs to its index. Exceptions as in for_chunks().
 template <class Body>
 void parallel_for(int count, int chunk, ThreadTeam& team, const Body& body) {
     for_chunks(static_cast<std::size_t>(count), static_cast<std::size_t>(chunk), team,

@@ -120,7 +120,7 @@ NEURALMESH_ALWAYS_INLINE void convert(const EightInts& ints, Eight& floats) {
 /// The lanes of \p v rounded towards 0.
 inline FourInts to_ints(Four v) { return __builtin_convertvector(v, FourInts); }
 
-/// x, y, z of eight points of one word each, side by side; the points' last words are dropped.
+/// Transposes eight points (x, y, z, w) into their x, their y and their z; drops w.
 NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v) {
     const auto pair = [](const Four& low, const Four& high, Eight& both) {
         both = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
@@ -139,7 +139,7 @@ NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v) {
     v.z = __builtin_shufflevector(z01, z23, 0, 1, 8, 9, 4, 5, 12, 13);
 }
 
-/// As above; \p last_words receives the bits of the fourth floats.
+/// The same; \p last_words receives the bits of w.
 NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v, EightInts& last_words) {
     transpose(p, v);
     const auto last_of_pair = [](const Four& low, const Four& high, Eight& both) {
@@ -156,7 +156,7 @@ NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v, EightInt
     std::memcpy(&last_words, &w, sizeof last_words);
 }
 
-/// The inverse: to[i] = x, y and z of lane i, and 0.
+/// The inverse transposition: to[i] = (x, y, z, 0) of lane i.
 NEURALMESH_ALWAYS_INLINE void transpose(const EightVectors& v, Four* to) {
     const Eight zero = {0, 0, 0, 0, 0, 0, 0, 0};
     const Eight xy_low = __builtin_shufflevector(v.x, v.y, 0, 8, 1, 9, 4, 12, 5, 13);

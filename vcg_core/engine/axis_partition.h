@@ -13,10 +13,10 @@ namespace neuralmesh {
 /// Slabs across the longest axis of a sample, each with equally many of its points.
 class AxisPartition {
 public:
-    /// One slab: all of space. O(n log n) in the points of \p sample.
+    /// Starts with one slab, all of space. \p sample may be empty. O(n log n) for n points.
     explicit AxisPartition(const std::vector<vcg::Point3f>& sample);
 
-    /// Cuts space into \p count slabs, at least 1, instead of the present ones. O(count).
+    /// Replaces the slabs by \p count new ones, at least 1. O(count).
     void cut(int count);
     int count() const { return static_cast<int>(borders_.size()) - 1; }
 
@@ -34,7 +34,7 @@ public:
         const auto i = static_cast<std::size_t>(slab);
         return {axis_, borders_[i], borders_[i + 1]};
     }
-    /// The slab that holds p. O(count).
+    /// The slab that holds p. O(count). \pre p is finite
     int of(const vcg::Point3f& p) const;
 
 private:

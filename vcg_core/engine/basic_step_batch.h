@@ -18,10 +18,10 @@
 
 namespace neuralmesh {
 
-/// Of one Basic Step: the winner, and the variation of its normal (see eq 2).
+/// The result of one Basic Step.
 struct StepResult {
     VertexId winner;
-    float delta;
+    float delta;  ///< variation of the winner's normal (see eq 2), in [0, 2]
 };
 
 /// A batch of Basic Steps. All winners are found, and all displacements computed, in the state of the network
@@ -31,7 +31,7 @@ class BasicStepBatch {
 public:
     static constexpr int kMostSignals = 4096;
 
-    /// As SlabSchedule.
+    /// The arguments are those of SlabSchedule.
     BasicStepBatch(int threads, const std::vector<vcg::Point3f>& typical_signals)
         : schedule_(threads, typical_signals), slabs_(static_cast<std::size_t>(schedule_.max_slabs())) {}
 
@@ -43,15 +43,16 @@ public:
     /// Call after the network was renumbered or has grown: reassigns slabs and repeats the thread timing.
     void reassign_slabs() { schedule_.reassign(); }
 
-    /// Calls \p body() on another thread until the result is destroyed, which must be before the next take().
-    /// Does nothing if the last batch ran on one thread. See ThreadTeam::run_in_background().
+    /// Starts \p body() on another thread; the destructor of the result waits for its end. Destroy the result
+    /// before the next take(). Does nothing if the last batch ran on one thread. See
+    /// ThreadTeam::run_in_background().
     template <class Body>
     ThreadTeam::BackgroundTask run_in_background(const Body& body) {
         return schedule_.run_in_background(body);
     }
 
 private:
-    /// Step \p index of slab \p slab, which moves vertices of more than one slab.
+    /// Step number index of a slab, which moves vertices of other slabs, too.
     struct BorderStep {
         int signal;
         int slab;

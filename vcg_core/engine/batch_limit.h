@@ -11,12 +11,13 @@
 
 namespace neuralmesh {
 
-/// Watches who wins in each batch of Basic Steps.
+/// Watches which vertices win in each batch of Basic Steps.
 ///
 /// Displacements computed from one state of the network add up. With alpha_w = 0.06 a vertex that wins 17
-/// signals of a batch overshoots their mean, and its neighbours overshoot at 5 wins; from twice as many wins
-/// on, both oscillate with growing amplitude. So batches are halved until hardly any vertex wins more than
-/// twice in one, and doubled after 64 such batches in a row. Evenly spread signals are never limited.
+/// (1 / alpha_w) signals of a batch overshoots their mean, and its neighbours overshoot at 5 wins; from twice
+/// as many wins on, both oscillate with growing amplitude. So batches are halved until hardly any vertex wins
+/// more than twice in one, and doubled after 64 such batches in a row. Evenly spread signals are never
+/// limited.
 class BatchLimit {
 public:
     /// Most signals that the next batch should have, at least 1.

@@ -36,8 +36,9 @@ public:
     void move(FourInts from, FourInts to);
 
     /// Branch and bound: calls \p visit(x, y, z) for cells of occupied blocks, near blocks first, that are
-    /// nearer to \p s than the bound. Visit returns the new bound, a squared distance in cells. Cells count
-    /// as \p slack larger on each side, which allows for rounding. O(levels) expected for cells on a surface.
+    /// nearer to \p s than the bound. \p visit returns the new bound. Units: \p s and \p slack in cells, the
+    /// bound in squared cells. Each cell is enlarged by \p slack on every side to allow for rounding.
+    /// O(levels) expected if the cells lie on a surface.
     template <class Visit>
     void nearest(const std::array<float, 3>& s, float slack, const Visit& visit) const {
         float bound = std::numeric_limits<float>::infinity();

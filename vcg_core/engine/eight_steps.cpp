@@ -208,7 +208,7 @@ void EightSteps::Kernels::smooth_vertex(const Star& star, const Eight& rate, con
     const Eight ly = (star.sum.y + (a.y + b.y)) * star.inverse_valence - v.y;
     const Eight lz = (star.sum.z + (a.z + b.z)) * star.inverse_valence - v.z;
     const Eight along = (lx * nx + ly * ny + lz * nz) / (nx * nx + ny * ny + nz * nz + kTiny);
-    to.x = v.x + rate * (lx - along * nx);
+    to.x = v.x + rate * (lx - along * nx);  // section 2: v + alpha_L L_t
     to.y = v.y + rate * (ly - along * ny);
     to.z = v.z + rate * (lz - along * nz);
 }

@@ -30,7 +30,7 @@ class ScaledNumbers {
 public:
     static constexpr double kZero = -1e299;  ///< key of the number 0: below all others
 
-    /// numbers[i] += amount.
+    /// A reference to number i, for numbers[i] += amount.
     class Entry {
     public:
         Entry(ScaledNumbers& numbers, int i) : numbers_(numbers), i_(i) {}
@@ -59,9 +59,9 @@ public:
         store(i, whole * part);
         store(j, whole * (1 - part));
     }
-    /// 0 if the number is below the range of double.
+    /// Number i; 0 if it is below the range of double.
     double value(int i) const { return unscaled(i) / inverse_scale_; }
-    /// Orders like the numbers.
+    /// The key of number i.
     double key(int i) const { return keys_[i]; }
 
     int size() const { return keys_.size(); }

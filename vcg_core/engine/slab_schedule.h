@@ -51,15 +51,15 @@ public:
         return slabs_ > 1 ? team_.run_in_background(body) : ThreadTeam::BackgroundTask();
     }
 
-    /// The indices of those of \p count \p signals that lie in \p slab, in order. \p indices must have at
-    /// least \p count elements; their number is the return value. O(count).
+    /// Writes the indices of the signals that lie in \p slab to the start of \p indices, which must have at
+    /// least \p count elements, in rising order. \return how many they are. O(count).
     int signals_in(int slab, const vcg::Point3f* signals, int count, Indexed<int>& indices) const;
 
 private:
     ThreadTeam team_;
     ThreadTiming timing_;
     AxisPartition partition_;
-    bool assigned_ = false;  ///< every vertex belongs to a slab
+    bool assigned_ = false;  ///< every vertex has been assigned to a slab
     int slabs_ = 1;
     int count_ = 0;              ///< signals of the present batch
     bool worth_timing_ = false;  ///< the present batch could run on more than one thread

@@ -12,12 +12,12 @@ class ThreadTiming {
 public:
     /// Whether to run the next batch on all threads.
     bool use_all_threads() const;
-    /// Reports how long that batch took.
+    /// Reports the duration of that batch.
     void add_batch(double nanoseconds_per_signal);
 
 private:
-    int batch_ = 0;  ///< since the last trial began
-    double one_thread_ = 0;
+    int batch_ = 0;          ///< since the last trial began
+    double one_thread_ = 0;  ///< sums over the timed batches of the trial, in ns per signal
     double all_threads_ = 0;
 };
 

@@ -20,7 +20,7 @@ public:
 
     /// New indices do not take part. O(n).
     void resize(int size);
-    /// O(log n) at worst; O(1) where the key of a larger sibling hides the change.
+    /// Sets the key of index i. O(log n) at worst; O(1) where a sibling has a larger key before and after.
     void set(int i, double key);
     double key(int i) const { return levels_[0][static_cast<std::size_t>(i)]; }
     /// The index with the largest key, the smallest index among equals; -1 if none takes part. O(log n).

@@ -24,9 +24,9 @@ constexpr float kRounding = 1e-3F;
 constexpr float kLeastRounding = 1.2e-6F;
 /// Bound on the rounding far from the frame, in cells: float has fewer digits there.
 constexpr float kFarRounding = 0.1F;
-/// Cells across a box beyond which a search through the pyramid is faster.
+/// If a box is more cells wide than this, a search through the pyramid is faster.
 constexpr float kMostAcross = 4;
-/// Vertices up to which a search through all of them is faster than one through the pyramid.
+/// With fewer vertices, a search through all of them is faster than one through the pyramid.
 constexpr int kFewVertices = 1500;
 
 /// Squared distance of the network's sentinel, or more.
@@ -258,7 +258,7 @@ std::uint64_t WinnerSearch::scan_far(const vcg::Point3f& s) const {
                       kFarRounding, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
                           for (VertexId v = heads_[bucket_of(x, y, z)]; v >= 0; v = slots[v].link)
                               best = std::min(best, ranked(slots[v], v, s));
-                          // Not below this distance, as among vertices at the same one the smallest id wins.
+                          // Not less: a vertex at the same distance with a smaller id may follow.
                           return squared_distance_of(best) * to_cells * (1 + kRounding * kRounding);
                       });
     return best;

@@ -116,6 +116,8 @@ private:
     void relink(VertexId v, FourInts from, FourInts to);
     void enter(FourInts cell);
     void leave(FourInts cell);
+    // Each returns the nearest vertex as a RankedVertex (see the .cpp): of the cells of a box around s, by
+    // the pyramid, of all vertices.
     std::uint64_t scan_box(const vcg::Point3f& s, float reach) const;
     std::uint64_t scan_far(const vcg::Point3f& s) const;
     std::uint64_t scan_all(const vcg::Point3f& s) const;

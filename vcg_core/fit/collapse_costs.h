@@ -22,10 +22,10 @@ struct Collapse {
 };
 
 /// The cheapest collapse of every slot, cheapest first. Examines two fifths of the vertices, those with the
-/// smallest quadric errors, and of each the three neighbours that the quadric prefers; each cost is measured
-/// on about 64 points of the star, each of which keeps to the faces the star leaves. kCollapseRules of
-/// face_rules.h hold. \p surface is that of the network. O(vertices log vertices). The result does not depend
-/// on the number of threads.
+/// smallest quadric errors, and for each the three neighbours of smallest quadric error. Each cost is
+/// measured on about 64 points of the star, by their distances from the faces that replace it. kCollapseRules
+/// of face_rules.h hold. \p surface is that of the network. O(vertices log vertices). The result does not
+/// depend on the number of threads.
 std::vector<Collapse> find_collapses(const Network& network, const Surface& surface,
                                      const PointsByFace& points, ThreadTeam& team);
 

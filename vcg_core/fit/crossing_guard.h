@@ -11,19 +11,19 @@
 
 namespace neuralmesh {
 
-/// Accepts changes of a surface as long as they add no self-crossing, or do not raise the number of faces
-/// that cross above the first one. Without construction arguments it starts from a surface without crossings.
+/// Accepts a change of a surface if it adds no self-crossing, or if the number of faces that cross stays at
+/// or below its initial value. A default-constructed guard starts from a surface without self-crossings.
 class CrossingGuard {
 public:
     CrossingGuard() = default;
-    /// \param crossings those of the surface, sorted
+    /// \param crossings self-crossings of the surface, sorted
     explicit CrossingGuard(std::vector<SelfCrossing> crossings);
 
-    /// Judges a change after which the surface has the \p crossings (sorted). \return empty if the change is
-    /// accepted; else the corners of the new crossings
+    /// Judges a change after which the surface has the self-crossings \p crossings (sorted). \return empty if
+    /// the change is accepted, which makes them accepted(); else the corners of the new ones
     std::vector<VertexId> objections(std::vector<SelfCrossing> crossings);
 
-    /// The crossings of the surface after the last accepted change.
+    /// The self-crossings of the surface after the last accepted change.
     const std::vector<SelfCrossing>& accepted() const { return accepted_; }
 
 private:

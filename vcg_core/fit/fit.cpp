@@ -15,16 +15,18 @@ namespace neuralmesh {
 
 namespace {
 
-/// With fewer points than this there is nothing to fit to.
+/// With fewer points than this the network is left unchanged.
 constexpr std::size_t kMinPoints = 64;
-/// The points held out of the fit were not held out of the learning, which has followed their noise: its mean
-/// squared error at them is too low by about this many noise variances x vertices / points (twice the
-/// leverage of a point, which is 1 without any smoothing; measured at 0.1 to 0.6 % noise).
+/// The points held out of the fit took part in the learning, which has followed their noise. So the mean
+/// squared error of the learned mesh at them is too low, by about kLearnedShare x noise variance x vertices /
+/// points. Linear regression without smoothing would have the factor 2, twice the leverage; this one was
+/// measured at noise of 0.1 to 0.6 % of the diagonal.
 constexpr double kLearnedShare = 0.8;
-/// A crumpled surface is nearer to points even along a fixed direction, by about the square of its slopes,
-/// which are those of noise over edges. A mesh that learning left crumpled must not win by that.
+/// A crumpled surface is nearer to the points even along a fixed direction. The gain relative to the variance
+/// is about the square of its slopes, which are noise / edge length. A mesh that learning left crumpled must
+/// not win by that.
 constexpr double kCrumpling = 3;
-/// The first round with a redistribution, and how many of the last possible rounds have none.
+/// The first round with a redistribution, and the number of rounds at the end without one.
 constexpr int kFirstRedistribution = 1;
 constexpr int kQuietRounds = 3;
 /// The fit ends when two rounds lower the error by less than this share, but not in the first ones.
@@ -52,7 +54,7 @@ void find_sources(const Network& before, const Network& after, PerVertex<VertexI
     }
 }
 
-/// The rounds of a fit and the best mesh they came to.
+/// The rounds of a fit and the best mesh so far.
 class FitRounds {
 public:
     FitRounds(Network& network, Fitter& fitter, const FitOptions& options, FitReport& report)

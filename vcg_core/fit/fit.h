@@ -48,10 +48,10 @@ struct FitReport {
     PerVertex<VertexId> sources;
 };
 
-/// Moves the vertices of \p network so that the sum of squared distances of the points of \p target becomes
-/// as small as the points held out of the fit support. Each round assigns the points to their nearest faces
-/// and solves linear least squares with a bending term, whose weight minimises the error at the held-out
-/// points. Between rounds edges are flipped and vertices redistributed where that lowers the distances.
+/// Moves the vertices of \p network to lower the sum of squared distances of the points of \p target. Some
+/// points are held out of the fit to judge it. Each round assigns the other points to their nearest faces and
+/// solves linear least squares with a bending term, whose weight minimises the error at the held-out points.
+/// Between rounds, edges are flipped and vertices redistributed where that lowers the distances.
 ///
 /// - What stays: components, handles, boundary loops, and the number of vertices unless options.reduce_to is
 ///   less. No face turns over, folds onto a neighbour or becomes a sliver.
@@ -62,7 +62,8 @@ struct FitReport {
 /// - The reduction falls short of options.reduce_to if it was stopped, if no more vertices can go without
 ///   harm, or if there are fewer than 64 points.
 /// - If \p progress asks to stop, the best mesh so far is kept. Fractions run from 0 to 1.
-/// - The result has the same bytes for any number of \p threads (0: all cores).
+/// - \p seed decides which points are used and held out. The result has the same bytes for any number of
+///   \p threads (0: one per core).
 ///
 /// Cost: O(points x log faces) once and O(points) per round; about 2.5 s of processor time for 10,000
 /// vertices and 200,000 points. Sources: Hoppe, DeRose, Duchamp, McDonald, Stuetzle, "Mesh Optimization"

@@ -37,22 +37,23 @@ constexpr float kLastLeastWeight = 1e-3F;
 /// Likely gap of an edge (see PointToPlaneSystem) on a surface without noise, in edge lengths. By Bayes' rule
 /// it determines the least bending weight under noise.
 constexpr float kLikelyGap = 0.05F;
-/// An edge split has to gain this many variances of the noise. The most: the best of ten thousand splits that
-/// follow nothing but noise seem to gain about as much. Where the noise is small beside the edges, up to
-/// about kSmallNoise edge lengths, few: there the surface crumples little, and right splits win more than
+/// Noise variances that an edge split has to gain. kMaxSplitVariances holds in general: the best of ten
+/// thousand splits that follow only noise seem to gain about this much. kMinSplitVariances holds if the noise
+/// is well below kSmallNoise edge lengths: then the surface crumples little, and right splits win more than
 /// wrong ones lose.
 constexpr float kMinSplitVariances = 4;
 constexpr float kMaxSplitVariances = 16;
 constexpr float kSmallNoise = 0.06F;
-/// A flip has to gain this many.
+/// Noise variances that an edge flip has to gain.
 constexpr float kFlipVariances = 6;
 /// Share of the vertices that one redistribution may move.
 constexpr double kMovedShare = 0.05;
-/// Share of the vertices that one round of the reduction removes, and the points it works with.
+/// Share of the vertices that one round of the reduction removes, and the number of points it uses.
 constexpr double kRemovedShare = 0.12;
 constexpr int kReducingPointsPerVertex = 25;
 constexpr std::size_t kMinReducingPoints = 25000;
-/// How often a change of the connectivity is tried again without what made the surface cut itself.
+/// Attempts at a change of the connectivity. Each leaves out the vertices at which earlier ones made the
+/// surface cut itself; if all fail, nothing is changed.
 constexpr int kTries = 3;
 
 float outlier_distance(const Surface& surface, const std::vector<Hit>& hits) {
@@ -147,7 +148,7 @@ double Fitter::solve(const PointsByFace& points, Surface& surface) {
     return best_error;
 }
 
-/// What the split of an edge has to gain, as a sum of squared distances.
+/// The least gain that justifies an edge split, as a sum of squared distances.
 float Fitter::least_split_gain(const Surface& surface) const {
     const float small = kSmallNoise * mean_edge_length(surface);
     return noise_variance_ *
@@ -156,8 +157,8 @@ float Fitter::least_split_gain(const Surface& surface) const {
 }
 
 /// Carries out \p change(barred) on the network, whose surface is \p surface. If the guard objects to the
-/// result, takes it back and tries again with the vertices of the new crossings barred. \return what the
-/// change returns
+/// result, restores the network and tries again with the vertices of the new self-crossings barred. \return
+/// the result of the last call
 template <class Change>
 auto Fitter::guarded(const Surface& surface, const Change& change) {
     const Network before = network_;
@@ -174,7 +175,7 @@ auto Fitter::guarded(const Surface& surface, const Change& change) {
     }
 }
 
-/// Walks that were to start at a vertex that is gone start at the one it went into.
+/// Moves the starts of walks from removed vertices to the vertices they were collapsed into.
 void Fitter::redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses) {
     PerVertex<VertexId> survivor(network_.slot_count());
     std::iota(survivor.begin(), survivor.end(), 0);

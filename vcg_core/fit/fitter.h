@@ -34,15 +34,15 @@ private:
 /// A network and its state during the fit. fit_to_points() has the order of the steps.
 class Fitter {
 public:
-    /// Keeps references to \p network and \p team. Neither part of \p points is empty.
+    /// Keeps references to \p network and \p team. \pre neither part of \p points is empty
     Fitter(Network& network, PointChoice points, ThreadTeam& team);
 
     /// Removes self-crossings where smoothing can, and from then on lets no step add any. \return false if
     /// \p progress asks to stop; then the network is unchanged.
     bool untangle_surface(Progress& progress);
-    /// Removes the vertices whose removal costs least, in rounds with a least-squares solution in each, using
-    /// part of the points. \pre it has more than \p vertices. \return false if \p progress asks to stop or no
-    /// more vertices can go
+    /// Removes the vertices whose removal costs least, in rounds that each end with a least-squares solution.
+    /// Uses part of the points. \return false if \p progress asks to stop or no more vertices can go
+    /// \pre the network has more than \p vertices vertices
     bool reduce_to(int vertices, Progress& progress);
 
     /// Assigns the fitted points to their nearest faces and finds the held-out points, all by exact search.
@@ -62,10 +62,11 @@ public:
     /// least error at the held-out points. Moves \p surface, that of the network, with them. \return the
     /// error
     double solve(const PointsByFace& points, Surface& surface);
-    /// Collapses vertices that matter little and inserts as many where the error is large. \return how many
+    /// Collapses vertices that matter little and inserts as many where the error is large. \return their
+    /// number
     int redistribute_vertices(const Surface& surface, const PointsByFace& points);
-    /// Flips edges where that brings the points closer; updates the feet of \p points before. \return how
-    /// many
+    /// Computes the feet of \p points again, then flips edges where that brings the points closer. \return
+    /// the number of flips
     int flip_edges(const Surface& surface, PointsByFace& points);
 
     const HeldOut& held_out() const { return held_out_; }
@@ -86,7 +87,7 @@ private:
     Network& network_;
     ThreadTeam& team_;
     TrackedPoints fitted_;
-    std::vector<Vector3> set_aside_;  ///< fitted points not used before the reduction is over
+    std::vector<Vector3> set_aside_;  ///< fitted points that the reduction does not use
     HeldOut held_out_;
     float outlier_distance_ = 0;  ///< from the first assignment; fixed, so that errors stay comparable
     float noise_variance_ = 0;    ///< from the last assignment

@@ -27,8 +27,9 @@ PerVertex<Vector3> smoothed_normals(const Network& network, const Surface& surfa
     return normals;
 }
 
-/// Signed distance from \p p to \p surface along the unit vector \p direction: the point of the line nearest
-/// to the surface point nearest to it, repeated, comes close to where the line meets the surface.
+/// Signed distance from \p p to \p surface along the unit vector \p direction. Alternates between two
+/// projections: of a point of the line onto the surface, and of the result onto the line. This approaches the
+/// point where the line meets the surface.
 float distance_along(const Vector3& direction, const Surface& surface, const Vector3& p, WalkStart near) {
     constexpr int kSteps = 2;
     float along = 0;

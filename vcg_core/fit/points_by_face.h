@@ -13,7 +13,7 @@
 
 namespace neuralmesh {
 
-/// Points, and for each where its nearest face was found last: the next search starts there.
+/// Points, and for each the place where its nearest face was found last: the next search starts there.
 struct TrackedPoints {
     std::vector<Vector3> points;
     std::vector<WalkStart> last_hit;  ///< empty before the first search

@@ -11,7 +11,7 @@
 
 namespace neuralmesh {
 
-/// What was done to a network. An inserted vertex usually gets the id of a removed one.
+/// The changes made to a network. An inserted vertex usually gets the id of a removed one.
 struct VertexMoves {
     struct DoneCollapse {
         VertexId gone, into;
@@ -21,7 +21,7 @@ struct VertexMoves {
         VertexId beside;  ///< an end of the edge that was split
     };
     std::vector<DoneCollapse> collapses;  ///< in order; all come before the first insertion
-    std::vector<Insertion> insertions;    ///< as many
+    std::vector<Insertion> insertions;    ///< as many as collapses
 };
 
 /// Carries out pairs of a collapse and a split, best first, as long as the split gains more than the collapse

@@ -11,11 +11,11 @@ namespace {
 
 // Of faces.
 constexpr int kFaceSpreads = 4;
-/// A face lacks points below this share of those that the density gives its area ...
+/// A face lacks points if it has less than this share of those that the density gives its area ...
 constexpr float kFaceShare = 0.3F;
-/// ... beyond this many.
+/// ... and more than this many are missing from that.
 constexpr float kFacePseudoPoints = 2;
-/// Likely distance from the points of a face without points, in mean edge lengths.
+/// Likely distance of a face without points from the points, in mean edge lengths.
 constexpr float kLikelyDistance = 0.25F;
 /// A change may add this many missing points per sampled point.
 constexpr float kTolerance = 0.5F;
@@ -32,8 +32,8 @@ constexpr float kVertexPseudoPoints = 1;
 }  // namespace
 
 Support::Support(const Network& network, const Surface& surface, const PointsByFace& points) {
-    value_ = kLikelyDistance * mean_edge_length(surface);
-    value_ *= value_;
+    cost_per_point_ = kLikelyDistance * mean_edge_length(surface);
+    cost_per_point_ *= cost_per_point_;
     struct Sums {
         float points = 0;
         float area = 0;
@@ -66,7 +66,7 @@ float Support::cost_of_change(const Patch& before, const Patch& after, int point
     const bool stretched = before.points < kFewPoints && after.twice_area > kStretch * before.twice_area;
     if (rise > kTolerance * static_cast<float>(points_per_sample) || (stretched && !(rise < 0)))
         return kForbidden;
-    return rise < 0 ? rise * value_ : 0.0F;
+    return rise < 0 ? rise * cost_per_point_ : 0.0F;
 }
 
 PerVertex<float> missing_points_at_vertices(const Network& network, const Surface& surface,

@@ -41,11 +41,12 @@ private:
     float missing_points(const Triangle& face, float twice_area, float points) const;
 
     PerVertex<float> density_;  ///< of points per twice the area
-    float value_ = 0;           ///< squared distance that one missing point counts for
+    float cost_per_point_ = 0;  ///< of a missing point, as a squared distance
 };
 
-/// For every vertex how many points its faces lack, each point weighted with the vertex's squared hat
-/// function: that looks at the tip of a spike, where Support looks at whole faces. O(points + vertices).
+/// For every vertex the number of points that its faces lack. Each point is weighted with the squared hat
+/// function of the vertex, so that the tip of a spike counts most; Support counts over whole faces.
+/// O(points + vertices).
 PerVertex<float> missing_points_at_vertices(const Network& network, const Surface& surface,
                                             const PointsByFace& points);
 

@@ -10,6 +10,7 @@
 
 namespace neuralmesh {
 
+/// The entries on and above the diagonal.
 struct Symmetric3 {
     float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
 

@@ -15,7 +15,7 @@ namespace {
 constexpr int kRounds = 10;
 constexpr int kSweeps = 2;      ///< of smoothing per round
 constexpr int kMaxPairs = 100;  ///< of overlapping face boxes per face; a smooth surface has six
-constexpr int kMaxRings = 3;    ///< around the crossings
+constexpr int kMaxRings = 3;    ///< around the self-crossings
 constexpr float kStep = 0.5F;   ///< of the way to the middle of the ring
 
 /// 1 for the vertices of \p crossings and of \p rings rings around them.

@@ -13,12 +13,16 @@
 
 namespace neuralmesh {
 
-/// Laplacian smoothing of \p network around its self-crossings, over neighbourhoods that widen from round to
-/// round, at most ten rounds. Where crossings remain, the surface around them goes back to its old position.
-/// No other vertex moves, and none further than a mean edge length. Gives up, leaving the network unchanged,
-/// if more than 100 pairs of face boxes per face overlap. The result does not depend on the number of
-/// threads. \param progress asked before every round; if it asks to stop, the network stays unchanged \return
-/// the remaining crossings, sorted; nothing if stopped
+/// Laplacian smoothing of \p network around its self-crossings, in at most ten rounds, over neighbourhoods
+/// that widen from round to round. Where self-crossings remain, the surface around them gets its old
+/// positions back. No other vertex moves, and none further than a mean edge length. Gives up, leaving the
+/// network unchanged, if more than 100 pairs of face boxes per face overlap. The result does not depend on
+/// the number of threads.
+///
+/// \param progress asked before every round; if it asks to stop, the network stays unchanged
+/// \return the remaining self-crossings, sorted; nothing if stopped
+///
+/// Cost: that of self_crossings() once and of update_self_crossings() per round.
 std::optional<std::vector<SelfCrossing>> untangle(Network& network, ThreadTeam& team, Progress& progress);
 
 }  // namespace neuralmesh

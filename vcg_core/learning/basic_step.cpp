@@ -43,14 +43,15 @@ vcg::Point3d smoothed(const Network& network, const Positions& positions, const 
 
     vcg::Point3d l = -v;
     for (const vcg::Point3d& p : star) l += p / ring.valence;
-    // The kernel needs a vertex between the two along the winner's ring. Where v has only three neighbours,
-    // it takes the next ring vertex before smoothing, which changes the normal a little and l not at all.
+    // EightSteps needs a vertex between v's two neighbours along the winner's ring. If v has only three
+    // neighbours there is none, and the next ring vertex, as it lay before the step, stands in for it. This
+    // changes n a little and l not at all.
     if (ring.valence == 3) star.insert(star.end() - 1, positions[winners.next(i)]);
     vcg::Point3d n(0, 0, 0);  // of any length
     for (std::size_t j = 0; j < star.size(); ++j) n += (star[j] - v) ^ (star[(j + 1) % star.size()] - v);
     const double squared = n.SquaredNorm();
     const vcg::Point3d l_t = squared > 0 ? l - n * (l * n / squared) : l;
-    return v + l_t * alpha_l;
+    return v + l_t * alpha_l;  // section 2: v + alpha_L L_t
 }
 
 /// Ring vertex i, a neighbour of the winner along the boundary, after smoothing: where it is and the middle

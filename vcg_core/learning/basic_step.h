@@ -20,11 +20,11 @@ using Positions = PerVertex<vcg::Point3d>;
 struct BasicStep {
     VertexId winner;
     vcg::Point3d winner_position;
-    std::array<vcg::Point3d, Ring::kMaxValence> ring_positions;  ///< by position in the ring
+    std::array<vcg::Point3d, Ring::kMaxValence> ring_positions;  ///< in the order of the ring
     double delta;  ///< variation of the winner's normal, in [0, 2]
 };
 
-/// The vertex nearest to \p s, the smallest id among equally near ones. O(vertices).
+/// The vertex nearest to \p s, the smallest id among equally near ones; -1 if there is none. O(vertices).
 VertexId find_winner(const Network& network, const Positions& positions, const vcg::Point3d& s);
 
 /// Moves the winner \p w towards the signal \p s, then smooths its 1-ring C_L times, all ring vertices at

@@ -20,8 +20,8 @@ namespace neuralmesh {
 ///    distance of the vertex from their line of intersection, in mean lengths of its edges.
 /// 3. The strength of the crease is s = 3 (2 sin(theta / 2))^2 spread^(1/4). With the distance it becomes
 ///    f = s / (1 + max(s - 1, 1/8) (2 d)^2); if s is above 1, f is 1 at half an edge from the line.
-/// 4. If the fit changed the mesh, g is the same measure with the planes of the fitted mesh: sharper on clean
-///    data, less reliable under noise. Else g = f.
+/// 4. If the rounds of the fit changed the mesh, g is the same measure with the planes of the fitted mesh:
+///    sharper on clean data, less reliable under noise. Otherwise g = f.
 /// 5. The value is sqrt(f^(3/4) g^(1/4)).
 ///
 /// Values are dimensionless, from 0 to 3.5. A value above 1 means that a crease passes within half an edge:
@@ -42,8 +42,8 @@ public:
     /// present positions count as one. O(vertices).
     PerVertex<float> values(const Network& learned) const;
     /// The values of \p shown, the network after the fit: its vertex v lies near the vertex source[v] of
-    /// \p learned. Distances are measured from the positions, and in the edges, of \p shown. An empty
-    /// \p source means that \p shown has the vertices and faces of \p learned.
+    /// \p learned. Distances are measured from the positions, and in the edges, of \p shown. If \p source is
+    /// empty, every vertex has the same id in both networks, and g = f. O(vertices).
     PerVertex<float> values(const Network& learned, const Network& shown,
                             const PerVertex<VertexId>& source) const;
 

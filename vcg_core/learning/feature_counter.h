@@ -20,7 +20,9 @@ public:
     /// \param alpha_fd the weight of a counter's past, in [0, 1)
     explicit FeatureCounters(double alpha_fd) : alpha_fd_(static_cast<float>(alpha_fd)) {}
 
+    /// New vertices have counter 0.
     void resize(int slots) { values_.resize(slots, 0.0F); }
+    /// Updates the counter of the winner \p w. \p n_delta is that of eq 3, at least 0. O(1).
     void win(VertexId w, double n_delta) {
         float& n_c = values_[w];
         n_c = alpha_fd_ * n_c + (1 - alpha_fd_) * static_cast<float>(n_delta);  // eq 6

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "vcg_core/base/median.h"
+
 namespace neuralmesh {
 
 namespace {
@@ -17,7 +19,7 @@ using vcg::Point3f;
 // Chosen by tests/experiments/paper/features.py, whose results hardly change around these values.
 constexpr int kIterations = 4;
 constexpr float kWidth = 6;   ///< of the filter, in medians of the squared difference of adjacent normals
-constexpr float kWidest = 1;  ///< bound on the width, for meshes whose median lies at a crease
+constexpr float kWidest = 1;  ///< bound on the width, for meshes most of whose edges are creases
 
 bool has_corner(const Triangle& face, VertexId v) { return face[0] == v || face[1] == v || face[2] == v; }
 
@@ -69,10 +71,7 @@ float FilteredFaces::median_difference() const {
                 if (g > f && has_corner(surface_.faces[g], b))
                     differences.push_back((normals_[g] - normals_[f]).SquaredNorm());
         }
-    if (differences.empty()) return 0;
-    const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-    std::nth_element(differences.begin(), middle, differences.end());
-    return *middle;
+    return differences.empty() ? 0.0F : median(std::move(differences));
 }
 
 }  // namespace neuralmesh

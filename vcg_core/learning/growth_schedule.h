@@ -11,11 +11,11 @@
 
 namespace neuralmesh {
 
-/// Signals after which growth that has not reached its goal is forced: no more collapses, no more maturity,
-/// so that every C_vs signals add a vertex. (Growth stalls where more vertices are asked for than the target
-/// space has places to win, a handful of points for instance.)
+/// Signals after which growth that has not reached its goal is forced: there are no more collapses, and
+/// vertices no longer need maturity, so that every C_vs signals add a vertex. (Growth stalls if the goal
+/// exceeds the number of vertices that can win, for instance with a handful of points.)
 inline std::int64_t growth_budget(const LearnerOptions& options) {
-    constexpr std::int64_t kBase = 100000;  ///< for small networks, which take their time to unfold
+    constexpr std::int64_t kBase = 100000;  ///< for small networks, which need more signals per vertex
     const std::int64_t per_vertex =
         4 * std::int64_t{options.signals_per_split} + 2 * std::int64_t{options.min_wins_per_split};
     return per_vertex * options.grow_to + kBase;

@@ -20,11 +20,12 @@ namespace neuralmesh {
 namespace {
 
 constexpr int kMostInBatch = 512;      ///< signals whose data stay in the cache
-constexpr int kTypicalSignals = 4096;  ///< place a border between two threads' slabs to about 1 %
+constexpr int kTypicalSignals = 4096;  ///< enough to divide the signals between two slabs to about 1 %
 constexpr int kPrefetchDistance = 8;   ///< signals between the prefetch and the use of a winner's counters
 constexpr int kReportEvery = 1000;     ///< signals between two looks at the progress and at the stop criteria
 
-/// From a random stream of its own, so that the signals of the learning do not depend on the threads.
+/// A sample of signals by which slabs are cut. It has its own generator, so that the signals of the learning
+/// do not depend on the number of threads.
 std::vector<vcg::Point3f> typical_signals(const TargetSpace& target, int threads) {
     std::vector<vcg::Point3f> drawn;
     Random random(1);
@@ -49,10 +50,10 @@ Learner::Learner(const TargetSpace& target, const LearnerOptions& options, Netwo
       batch_(options.threads, typical_signals(target, options.threads)),
       memory_order_(state_, batch_) {}
 
-StopReason Learner::run(int per_vertex, Progress& progress) {
+StopReason Learner::run(int landing_signals, Progress& progress) {
     const LearnerOptions& options = state_.options;
     // Shares of the progress by the signals that each phase is likely to take; growth seldom needs fewer.
-    const auto landing = static_cast<double>(settling_signals(per_vertex, network().vertex_count()));
+    const auto landing = static_cast<double>(settling_signals(landing_signals, network().vertex_count()));
     const auto growth = static_cast<double>(std::int64_t{options.signals_per_split} *
                                             (options.grow_to - network().vertex_count()));
     const auto settling =
@@ -62,7 +63,7 @@ StopReason Learner::run(int per_vertex, Progress& progress) {
     PartOf second(progress, landing / whole, (landing + growth) / whole);
     PartOf third(progress, (landing + growth) / whole, 1);
 
-    if (!settle(per_vertex, first, false)) return StopReason::cancelled;
+    if (!settle(landing_signals, first, false)) return StopReason::cancelled;
     const StopReason grown = grow(second);
     if (grown != StopReason::target_reached) return grown;
     return settle(options.settling_signals_per_vertex, third) ? grown : StopReason::cancelled;
@@ -153,7 +154,7 @@ bool Learner::settle(int per_vertex, Progress& progress, bool observe) {
     crease_measure_ = CreaseMeasure();
     const std::int64_t begin = signals();
     const std::int64_t end = begin + settling_signals(per_vertex, network().vertex_count());
-    // In the first fifth the mesh still moves on from its growth.
+    // The first fifth is not observed: there the mesh still moves as a result of its growth.
     std::int64_t next_moment = begin + (end - begin) / 5;
     while (signals() < end) {
         learn_batch(static_cast<int>(std::min<std::int64_t>(batch_size(), end - signals())), [] {});

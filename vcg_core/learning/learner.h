@@ -37,11 +37,11 @@ public:
     Learner(const Learner&) = delete;
     Learner& operator=(const Learner&) = delete;
 
-    /// Settles the start mesh for \p per_vertex signals per vertex, grows it to options.grow_to vertices and
-    /// settles it again for options.settling_signals_per_vertex. Stops early if the normals turn less than
-    /// options.stop_below_turn, if \p progress asks to stop, or at signal_bound(). The network is valid then,
-    /// too.
-    StopReason run(int per_vertex, Progress& progress);
+    /// Settles the start mesh for \p landing_signals signals per vertex, grows it to options.grow_to vertices
+    /// and settles it again for options.settling_signals_per_vertex. Ends early if the normals turn less than
+    /// options.stop_below_turn, if \p progress asks to stop, or if growth reaches signal_bound(). The network
+    /// is valid whatever the reason.
+    StopReason run(int landing_signals, Progress& progress);
 
     /// Basic Step for a batch of \p count signals (1 to BasicStepBatch::kMostSignals): moves winners and
     /// their rings. All steps of a batch start from the same network state; a batch of one is the paper's
@@ -53,7 +53,7 @@ public:
     /// Basic Step and counters of one signal.
     void basic_step(const vcg::Point3f& s) { learn_counters(basic_steps(&s, 1).front()); }
     /// Number of signals in a batch of run(): vertices / kVerticesPerSignal, so that the steps of a batch
-    /// rarely overlap; smaller while they do. 1 to the letter of the paper.
+    /// rarely overlap; smaller while they do. 1 if options.min_wins_per_split is 0.
     int batch_size() const;
     static constexpr int kVerticesPerSignal = 32;
     /// Vertex Split, see vertex_split.h. False if the network has options.grow_to vertices already, or if no
@@ -71,7 +71,7 @@ public:
     const Network& network() const { return state_.network; }
     const UtilityCounters& utility_counters() const { return state_.utility_counters; }
     const FeatureCounters& feature_counters() const { return state_.feature_counters; }
-    /// Of the last settle(); empty if it did not observe.
+    /// Observed by the last settle(); without moments if that did not observe.
     const CreaseMeasure& crease_measure() const { return crease_measure_; }
     std::int64_t signals() const { return state_.signals; }
     std::int64_t splits() const { return state_.splits; }

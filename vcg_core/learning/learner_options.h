@@ -8,8 +8,8 @@ namespace neuralmesh {
 
 /// What is added to the winner's utility counter.
 enum class UtilityIncrement {
-    n_delta,  ///< the normal counter: the mesh gets denser where the surface bends
-    one,      ///< the signal counter: the density of the mesh follows that of the cloud
+    n_delta,  ///< eq 4: the mesh gets denser where the surface bends
+    one,      ///< the density of the mesh follows that of the cloud
 };
 
 /// The paper's constants, and what it leaves open.
@@ -36,7 +36,7 @@ struct LearnerOptions {
     int settling_signals_per_vertex = 60;  ///< signals after the last split
     bool observe_creases = false;          ///< settling fills Learner::crease_measure()
     int random_seed = 1;
-    int threads = 0;  ///< 0: as many as the machine has
+    int threads = 0;  ///< 0: one per core
 };
 
 }  // namespace neuralmesh

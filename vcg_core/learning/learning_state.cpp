@@ -46,8 +46,8 @@ VertexId LearningState::split(VertexId v, int first, int count, const vcg::Point
     activity.resize(network.slot_count());
     utility_counters.share(v, u, squared_mean_edge(network, v), squared_mean_edge(network, u));
     feature_counters.inherit(v, u);
-    // A vertex born since the last Half-Edge Collapse has not been inactive since then. To the letter of the
-    // paper it has, unless it has won.
+    // A new vertex counts as active, so that the next Half-Edge Collapse keeps it. To the letter of the
+    // paper it is inactive until it wins.
     activity.set(u, to_the_letter() ? 0 : signals);
     ++splits;
     return u;

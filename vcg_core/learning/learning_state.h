@@ -23,7 +23,7 @@ struct LearningState {
     LearningState(const LearningState&) = delete;
     LearningState& operator=(const LearningState&) = delete;
 
-    /// Network::split(); the twins share the utility counter (see eq 5), the new one inherits the feature
+    /// Network::split(). Both vertices share the utility counter (see eq 5); the new one inherits the feature
     /// counter.
     VertexId split(VertexId v, int first, int count, const vcg::Point3f& where);
     /// Network::collapse().
@@ -34,6 +34,7 @@ struct LearningState {
     /// Network::renumber().
     void renumber(const std::vector<VertexId>& order);
 
+    /// True if options switch off all that the paper does not have: maturity, batches, edge flips.
     bool to_the_letter() const { return options.min_wins_per_split == 0; }
 
     const LearnerOptions options;

@@ -12,19 +12,19 @@
 namespace neuralmesh {
 
 /// Renumbers the vertices of a growing network along a space-filling curve: the vertices that a Basic Step
-/// visits then share cache lines and pages, and those that different threads visit do not. This changes ids,
-/// and of the results only what depends on the order of ids. Small networks fit into the cache anyway and
-/// keep their order.
+/// visits then share cache lines and pages, and those that different threads visit do not. Results change
+/// only where they depend on the order of ids, as ties and the order of collapses do. Small networks fit into
+/// the cache and keep their order.
 class MemoryOrder {
 public:
-    /// Keeps references to both.
+    /// Keeps references to the arguments.
     MemoryOrder(LearningState& state, BasicStepBatch& batch) : state_(state), batch_(batch) {}
 
     /// Renumbers whenever the network has grown by a quarter, and leaves free ids between the vertices for
-    /// those to come. O(n log n) then, O(1) else.
+    /// new ones. O(n log n) then, O(1) otherwise.
     void update_while_growing();
-    /// Renumbers, without free ids, if splits or collapses came after the last time. For before a long phase
-    /// without them. O(n log n).
+    /// Renumbers, without free ids, if there were splits or collapses since the last time. Call it before a
+    /// long phase without them. O(n log n).
     void finish();
 
 private:

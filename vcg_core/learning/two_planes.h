@@ -13,22 +13,22 @@
 
 namespace neuralmesh {
 
-/// The angle of two planes near a place, and how near their line of intersection passes.
+/// The angle between two planes, and the distance of a point from their line of intersection.
 struct Crease {
     float turn = 0;              ///< (2 sin(theta / 2))^2 = 2 - 2 cos(theta), theta the angle of the planes
-    float squared_distance = 0;  ///< of the place from the line, in squared edge lengths
+    float squared_distance = 0;  ///< of the point from the line, in squared edge lengths
 };
 
-/// Fits two planes to the faces around a place.
+/// Fits two planes to the faces around a point.
 class TwoPlanes {
 public:
     /// Keeps references. \p faces are those of \p network.
     TwoPlanes(const Network& network, const FilteredFaces& faces)
         : network_(network), faces_(faces), visited_(faces.count(), -1) {}
 
-    /// The crease near the place \p x, where the mean edge is \p edge long, by the two-ring of the vertex \p
-    /// v of the network. A turn of 0 if all its faces have the same normal. O(faces of the two-ring,
-    /// squared).
+    /// The crease near the point \p x, by the faces of the two-ring of the vertex \p v of the network. \p
+    /// edge is the unit of the distance. The turn is 0 if all these faces have the same normal. O(k^2) for k
+    /// faces.
     Crease crease_near(const vcg::Point3f& x, float edge, VertexId v);
 
 private:

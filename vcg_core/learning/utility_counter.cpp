@@ -19,7 +19,7 @@ void UtilityCounters::win(VertexId w, double amount) {
 
 void UtilityCounters::share(VertexId v, VertexId u, double f_v, double f_u) {
     const double sum = f_v + f_u;
-    counters_.divide(v, u, sum > 0 ? f_v / sum : 0.5);
+    counters_.divide(v, u, sum > 0 ? f_v / sum : 0.5);  // by F_v of eq 5
     for (const VertexId w : {v, u}) {
         wins_[w] = 0;
         tournament_.set(w, maturity_ == 0 ? counters_.key(w) : Tournament::kNone);

@@ -13,7 +13,7 @@ namespace neuralmesh {
 
 namespace {
 
-constexpr int kMostTried = 32;  ///< vertices
+constexpr int kMostTried = 32;  ///< vertices whose star cannot be halved, before the step gives up
 
 /// The edges of a star that go to the new vertex, by position in the ring: \p count of them from \p first on.
 struct Half {
@@ -43,8 +43,8 @@ int irregularity_after(const Network& network, VertexId v, const Half& half) {
            valence_irregularity(end_valence(half.first + half.count - 1));
 }
 
-/// Walking "equally" both ways leaves one edge more or less on either side open: of the choices, this takes
-/// the one with the most regular valences.
+/// The two walks from the longest edge may differ by one edge in length, and so may the two halves. Of these
+/// choices, takes the one with the most regular valences.
 Half halve_star(const Network& network, VertexId v, int longest) {
     const Ring& ring = network.ring(v);
     const int k = ring.valence;

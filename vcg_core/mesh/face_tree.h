@@ -13,7 +13,7 @@
 
 namespace neuralmesh {
 
-/// A binary tree of axis-aligned boxes, split at the median of the faces' centres along the longest side.
+/// A binary tree of axis-aligned boxes, divided at the median of the faces' centres along the longest side.
 /// Queries may run at the same time in several threads. vcglib's grids are slower here, where the sizes of
 /// faces differ by factors of hundreds. Eigen's KdBVH finds the same faces, but makes a whole run 14 % longer
 /// (100,000 points, 10,000 vertices, one thread).

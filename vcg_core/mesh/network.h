@@ -44,6 +44,7 @@ public:
     int vertex_count() const { return vertex_count_; }
     /// Ids are in [0, slot_count()); those that are not alive() are free.
     int slot_count() const { return static_cast<int>(rings_.size()); }
+    /// True if id v is used, for v in [0, slot_count()).
     bool alive(VertexId v) const { return ring(v).valence != 0; }
     /// The used ids in ascending order: for (VertexId v : network.vertices()). The loop may remove vertices
     /// but must not add any.
@@ -58,6 +59,7 @@ public:
     /// The vertex slots. slots()[-1] is a sentinel: infinitely far, and the end of every list of links.
     VertexRecord* slots() { return slots_.data() + 1; }
     const VertexRecord* slots() const { return slots_.data() + 1; }
+    /// Reserves memory for that many vertices.
     void reserve(int vertices);
     /// Memory in use, without reserved capacity.
     std::size_t bytes() const {
@@ -96,9 +98,10 @@ public:
     /// occurs once. Later splits take a free id near the id of the parent. \return as compact(). O(vertices).
     PerVertex<VertexId> renumber(const std::vector<VertexId>& order);
 
+    /// O(vertices), as all functions from here on.
     int face_count() const;
     int edge_count() const;
-    /// All faces, each once, starting with its smallest vertex, ordered by that vertex. O(vertices).
+    /// All faces, each once, starting with its smallest vertex, ordered by that vertex.
     std::vector<Triangle> faces() const;
     /// V - E + F.
     int euler_characteristic() const { return vertex_count() - edge_count() + face_count(); }
@@ -106,14 +109,14 @@ public:
     /// Per slot the number of its component, in the order of their smallest vertices; -1 for free slots.
     PerVertex<int> components() const;
     /// Reverses the orientation of every closed component with a negative enclosed volume, so faces are
-    /// counter-clockwise seen from outside. O(vertices).
+    /// counter-clockwise seen from outside.
     void orient_outward();
     int boundary_loop_count() const;
     /// Sum over the components, from the Euler characteristic: components - (euler + loops) / 2.
     int genus() const;
 
     /// Checks the manifold conditions, the padding, the positions and the counts. \return a sentence about
-    /// the first violation, empty if there is none. O(vertices).
+    /// the first violation, empty if there is none.
     std::string validate() const;
 
 private:

@@ -44,18 +44,18 @@ bool folds(const Network& net, VertexId v, const Point3f& where, VertexId except
 }
 
 /// A half-edge collapse in the queue.
-struct Candidate {
+struct QueuedCollapse {
     float squared_length;
     VertexId gone, kept;
 
     /// Shorter edges first. Ties are ordered by ids, so the result does not depend on the queue.
-    bool operator<(const Candidate& other) const {
+    bool operator<(const QueuedCollapse& other) const {
         if (squared_length != other.squared_length) return squared_length > other.squared_length;
         return std::pair(gone, kept) > std::pair(other.gone, other.kept);
     }
 };
 
-using Queue = std::priority_queue<Candidate>;
+using Queue = std::priority_queue<QueuedCollapse>;
 
 bool result_valence_fits(const Network& net, VertexId gone, VertexId kept) {
     return net.ring(gone).valence + net.ring(kept).valence - 4 <= kMaxValence - kSpareValence;
@@ -75,8 +75,8 @@ void collapse_short_edge(Network& net, VertexId v, float squared_bound) {
     }
 }
 
-/// Reduces a mesh of many more than \p vertices vertices quickly, to not fewer than that: in every sweep over
-/// the vertices, it collapses edges shorter than a bound that grows from sweep to sweep. O(n) per sweep.
+/// Quickly reduces a mesh of many more than \p vertices vertices, to no fewer than that. Every sweep over the
+/// vertices collapses edges shorter than a bound that grows from sweep to sweep. O(n) per sweep.
 void collapse_in_sweeps(Network& net, int vertices, float squared_bound) {
     constexpr int kSweeps = 24;
     constexpr float kGrowth = 1.5F;

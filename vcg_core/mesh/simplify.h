@@ -10,8 +10,8 @@
 namespace neuralmesh {
 
 /// Reduces the closed mesh \p network to at most \p vertices vertices by half-edge collapses, the shortest
-/// edges first, and evens it by edge flips and tangential smoothing. Preserves the topology; stops above \p
-/// vertices if no further collapse does. No valence rises above 12. O(n log n).
+/// edges first, and evens it by edge flips and tangential smoothing. Preserves the topology; if no further
+/// collapse does, more vertices remain. No valence rises above 12. O(n log n).
 void simplify(Network& network, int vertices);
 
 }  // namespace neuralmesh

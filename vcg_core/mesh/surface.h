@@ -53,15 +53,16 @@ inline Vector3 unit_normal(const Surface& surface, int face) {
     return area_vector(surface, face).normalized();
 }
 
-/// Unit normal of the face that contains the directed edge \p b to \p a, the neighbour of a face with the
-/// edge a to b; 0 on a boundary.
+/// Unit normal of the face beyond the edge \p a to \p b of a face, which has it as b to a; 0 on a boundary.
+/// O(valence).
 Vector3 normal_beyond(const Surface& surface, VertexId a, VertexId b);
 
-/// Mean length of the edges, those on a boundary counted half. The surface has a face.
+/// Mean length of the edges; those on a boundary have half the weight. O(faces). \pre the surface has a face
 float mean_edge_length(const Surface& surface);
 
-/// Adds to every vertex's value those of its neighbours, \p times over: sums over a neighbourhood of that
-/// many rings, in which near vertices weigh more. O(times x vertices).
+/// Adds the values of its neighbours to the value of every vertex, and repeats this \p times times. The
+/// results are sums over neighbourhoods of that many rings, in which near vertices weigh more. O(times x
+/// vertices).
 template <class Value>
 void spread_over_rings(const Network& network, PerVertex<Value>& values, int times) {
     for (int time = 0; time < times; ++time) {

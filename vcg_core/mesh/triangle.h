@@ -14,8 +14,8 @@
 
 namespace neuralmesh {
 
-/// Positions and directions where much is computed with them: Eigen's, for its expression templates and
-/// boxes. The network itself stores vcglib's points.
+/// A position or direction in geometric computations: Eigen's type, for its expression templates and boxes.
+/// The network itself stores vcglib's points.
 using Vector3 = Eigen::Vector3f;
 
 inline Vector3 to_eigen(const vcg::Point3f& p) { return {p[0], p[1], p[2]}; }
@@ -41,7 +41,8 @@ inline float triangle_quality(const Vector3& a, const Vector3& b, const Vector3&
 /// The point of a triangle that is nearest to a given point.
 struct Foot {
     float squared_distance;
-    std::array<float, 3> weights;  ///< barycentric; exactly 0 for the corners that have no part in it
+    /// Barycentric. If the foot lies on an edge or a corner, the weights of the other corners are exactly 0.
+    std::array<float, 3> weights;
 };
 
 namespace detail {

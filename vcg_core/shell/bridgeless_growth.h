@@ -24,8 +24,8 @@ namespace neuralmesh {
 void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
                           NodeSet& solid);
 
-/// The level of twice the radius of \p level, to which its solid is grown. Level 0 is grown to level 2; at
-/// most Region::kMaxLevel.
+/// The level to which the solid at \p level is grown: that of twice its radius, at most Region::kMaxLevel.
+/// Level 0 is grown to level 2.
 int grown_level(int level);
 
 /// The components of the solid at \p level, without specks, grown to grown_level().

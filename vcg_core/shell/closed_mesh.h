@@ -18,12 +18,11 @@ struct ClosedMesh {
     int level = 0;  ///< of the solid
 };
 
-/// A mesh of the topology of \p vote at one of its levels, from the lattice of \p region. The mesh lies as
-/// far outside the points as the radius of the level, so the smallest level is tried first, and solids that
-/// are not grown before grown ones. It is made on every third or second node if that keeps the topology,
-/// because a mesh of fewer faces takes less time to reduce; else on all nodes, where the topology is the
-/// counted one. The network is empty if the solid is. O(nodes + faces log faces) for each of up to nine
-/// meshes.
+/// A mesh of the topology of \p vote at one of its levels, from the lattice of \p region. The mesh lies
+/// outside the points by the radius of the level, so smaller levels are tried first, and plain solids before
+/// grown ones. The mesh is made on every third or second node if that keeps the topology, because fewer faces
+/// take less time to reduce. Otherwise it is made on all nodes, where it has exactly the topology counted.
+/// The network is empty if the solid is. O(nodes + faces log faces) for each of up to nine meshes.
 ClosedMesh closed_mesh(const Region& region, const TopologyVote& vote);
 
 }  // namespace neuralmesh

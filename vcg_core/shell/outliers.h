@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Which points of a cloud are not of its surface: far ones, before a lattice is laid over the cloud, and
-// isolated ones, once the solid is known.
+// Points of a cloud that do not belong to its surface: far ones, found before a lattice is laid over the
+// cloud, and isolated ones, found once the solid is known.
 #pragma once
 
 #include <vcg/space/box3.h>
@@ -21,10 +21,12 @@ namespace neuralmesh {
 /// together. O(points).
 vcg::Box3f main_box(const std::vector<vcg::Point3f>& points);
 
-/// 1 for each outlier; empty if there are none. Outliers are points outside region.lattice, and points in
-/// groups too small for a component that are farther than the radius of \p level from all larger groups and
-/// either outside \p solid or so deep inside that they are not of its surface. Fringe points (examine())
-/// close to the surface are none. O(points), and O(nodes) if small groups exist.
+/// 1 for each outlier; empty if there are none. A point is an outlier if it lies outside region.lattice, or
+/// if all of these hold:
+/// - its group is too small for a component,
+/// - it is farther than the radius of \p level from all larger groups,
+/// - it lies outside \p solid, or too deep inside to be on the solid's surface.
+/// Fringe points, which examine() leaves out, are never outliers. O(points + nodes).
 std::vector<std::uint8_t> outliers_of(const std::vector<vcg::Point3f>& points, const Region& region,
                                       const NodeSet& solid, int level);
 

@@ -17,6 +17,7 @@
 
 namespace neuralmesh {
 
+/// The figures of a cloud on one lattice.
 struct Region {
     static constexpr int kMaxRadius = 12;  ///< of the balls, in lattice steps
     static constexpr int kMaxLevel = kMaxRadius * kMaxRadius;
@@ -29,7 +30,7 @@ struct Region {
     bool encloses_space = false;
     double widest_opening = 0;  ///< radius of the widest sealed opening, in the unit of the points; 0: none
     long long total_points = 0;
-    long long min_points = 0;  ///< of a component
+    long long min_points = 0;  ///< that a component holds
     PerLevel<LevelTopology> topologies;
 
     /// The other members are empty until examine() fills them.
@@ -43,8 +44,8 @@ struct Region {
 ///
 /// Spaces with an opening of at most 0.6 of their width are sealed: on the lattice itself those with openings
 /// up to kMaxRadius, on one of about 40 steps per side those with wider ones. If there is neither, the points
-/// are a single layer; then large hollows are sealed whose opening is up to 0.8 as wide (a head scanned down
-/// to the neck).
+/// are a single layer. Then large hollows are sealed, too, if their opening is at most 0.8 times as wide as
+/// they are (a head scanned down to the neck).
 ///
 /// A component holds at least \p component_share of the points and at least \p min_component_points, or a
 /// quarter of the points if that is less. O(nodes + points).

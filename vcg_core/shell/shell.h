@@ -6,21 +6,19 @@
 //
 // 1. A lattice is laid over the cloud, as fine as the density of the points allows (lattice.h).
 // 2. The solid at radius r is the set of nodes that the centre of a ball of radius r cannot reach from
-// outside
-//    without the ball touching a point. Spaces much wider than their opening are sealed: they are the inside
-//    of a surface with gaps between its points (clearance.h, region.h).
+//    outside without the ball touching a point. Spaces much wider than their opening are sealed: they are
+//    the inside of a surface with gaps between its points (clearance.h, region.h).
 // 3. Components and handles are counted at all radii (level_topology.h), on two lattices. The topology that
 //    persists over the largest range of radii is chosen (topology_vote.h).
-// 4. If the vote is unclear, the solids are grown without bridging gaps, which tells handles from gaps
-// between
-//    points and from parts that nearly touch (bridgeless_growth.h), on more lattices (lattice_survey.h).
-// 5. Marching tetrahedra turn the chosen solid into a mesh (closed_mesh.h), and half-edge collapses, which
-// keep
+// 4. If the vote is unclear, the solids are grown without bridging gaps, on more lattices. This tells
+//    handles from gaps between points and from parts that nearly touch (bridgeless_growth.h,
+//    lattice_survey.h).
+// 5. Marching tetrahedra turn the chosen solid into a mesh (closed_mesh.h). Half-edge collapses, which keep
 //    the topology, reduce it (simplify.h).
 //
-// Outliers make no component. An isolated group of points is a component if it holds at least 1 % of the
-// points (component_share) and kSpeckPoints of them: of 200,000 points a group of 1,999 is an outlier. So are
-// single points deep inside. The start mesh leaves them out, and a warning says how many they are.
+// Outliers make no component. An isolated group of points makes one if it holds at least 1 % of the points
+// (component_share) and at least kSpeckPoints: of 200,000 points, a group of 1,999 is outliers. Single points
+// deep inside are outliers, too. The start mesh leaves outliers out, and a warning says how many they are.
 #pragma once
 
 #include <cstdint>
@@ -41,8 +39,9 @@ struct ShellOptions {
     /// per handle, and more if the topology needs them.
     int max_vertices = 400;
     int target_vertices = 10000;
-    /// Nodes of the first lattice. About 30 bytes and 0.3 microseconds per node; where parts nearly touch, up
-    /// to eight times the nodes, and 9 bytes more per node for each of at most eight threads.
+    /// Upper limit of the nodes of the first lattice. A node costs about 30 bytes and 0.3 microseconds. Where
+    /// parts nearly touch, a further lattice has up to eight times as many nodes, and a node takes 9 bytes
+    /// more for each of at most eight threads.
     double max_nodes = 5.0e5;
     int max_nodes_per_side = 256;
     /// The lattice is as fine as possible with this many points per occupied node on average.
@@ -51,12 +50,11 @@ struct ShellOptions {
     double component_share = 0.01;
     /// Points drawn from a target with faces.
     int samples = 200000;
-    /// As in Settings. The mesh does not depend on it.
+    /// 0: one per core. The mesh does not depend on it.
     int threads = 0;
 
     static constexpr int kSpeckPoints = 20;
-    /// Outliers that are a larger share of the cloud are learned: then they are not rare errors but a part of
-    /// it.
+    /// If outliers are a larger share of the cloud, they are learned: then they are not rare errors.
     static constexpr double kMaxOutlierShare = 0.1;
 };
 

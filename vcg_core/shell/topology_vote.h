@@ -22,7 +22,7 @@ struct TopologyVote {
     int genus = 0;
     double confidence = 0;    ///< share of the votes, in [0, 1]
     bool grown = false;       ///< true: the topologies are those of grown solids
-    int lattice = 0;          ///< the lattice of the range
+    int lattice = 0;          ///< index of the lattice of the range
     std::vector<int> levels;  ///< of the range, rising; only those of at most twice the smallest radius
 };
 

@@ -21,8 +21,8 @@ namespace neuralmesh {
 
 /// The frame of the core: the centre of the bounding box is the origin, its diagonal has length 1. Converted
 /// in double, so the precision of learning in float does not depend on the position and the size of the
-/// cloud. If nearly all points lie in less than a thousandth of the box, their centre is the origin, as float
-/// resolves most there.
+/// cloud. If nearly all points lie in a box of less than a thousandth of the diagonal, the centre of that box
+/// is the origin, because float has its highest resolution there.
 struct Frame {
     vcg::Point3d centre{0, 0, 0};
     double diagonal = 1;
@@ -38,12 +38,12 @@ class TargetSpace {
 public:
     /// A cloud. \p point_at(i), i in [0, count), returns point i as vcg::Point3d; it is called more than once
     /// per point. \throws InputError if there are no points, coordinates are not finite, fewer than 4 points
-    /// are distinct, or all lie on a line
+    /// are distinct, or all lie on a line. O(count)
     template <class PointAt>
     static TargetSpace points(std::size_t count, const PointAt& point_at);
 
     /// Triangles; a signal is uniform over their area. \p corner_at(i, k), i in [0, count), k in 0..2,
-    /// returns corner k of triangle i. \throws InputError as points(), and if the total area is 0
+    /// returns corner k of triangle i. \throws InputError as points(), and if the total area is 0. O(count)
     template <class CornerAt>
     static TargetSpace triangles(std::size_t count, const CornerAt& corner_at);
 
@@ -52,7 +52,7 @@ public:
     vcg::Point3f sample(Random& random) const;
 
     /// The cloud without the points i with left_out[i] != 0, in a frame of its own; nothing if the remaining
-    /// points span no surface. O(points).
+    /// points span no surface. O(points). \pre !has_faces()
     std::optional<TargetSpace> without(const std::vector<std::uint8_t>& left_out) const;
 
     /// The cloud without duplicate points, in the same frame, if more than a tenth of the points are exact
