@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Main program of a fuzz target without libFuzzer: replays the inputs in text files, one per line in
-// hexadecimal
-// ('#' starts a comment), so the corpus is a test with any compiler.
+// Main program of a fuzz target without libFuzzer: replays the inputs in text files, so that the corpus is a
+// test with any compiler. An input is a line in hexadecimal; '#' starts a comment.
 #include <fstream>
 #include <iostream>
 #include <string>

@@ -38,7 +38,7 @@ int failures_before(Network& network, const Change& change) {
     }
 }
 
-TEST(OutOfMemory, ASplitThatHasNoRoomIsNotBegun) {
+TEST(OutOfMemory, AFailedSplitChangesNothing) {
     Network network = referee::network_of(shapes::icosphere(1));
     int failures = 0;
     for (VertexId v = 0; v < 12; ++v) {
@@ -51,7 +51,7 @@ TEST(OutOfMemory, ASplitThatHasNoRoomIsNotBegun) {
     EXPECT_EQ(network.vertex_count(), 54);
 }
 
-TEST(OutOfMemory, ACollapseThatHasNoRoomIsNotBegun) {
+TEST(OutOfMemory, AFailedCollapseChangesNothing) {
     for (const bool with_gaps : {false, true}) {
         Network network = referee::network_of(shapes::icosphere(1));
         if (with_gaps) {

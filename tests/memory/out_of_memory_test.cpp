@@ -131,20 +131,20 @@ void expect_the_sentence_where_it_fails(const Settings& settings, Failure failur
     EXPECT_EQ(bytes_of(out).substr(0, out.vert.size() * sizeof(Vertex)), expected);
 }
 
-TEST(OutOfMemory, OneFailedAllocationBecomesTheSentence) {
+TEST(OutOfMemory, OneFailedAllocationIsReported) {
     std::uint64_t salt = 0;
     for (const Settings& settings : variants())
         expect_the_sentence_where_it_fails(settings, Failure::once,
                                            "There is not enough memory for this mesh", ++salt);
 }
 
-TEST(OutOfMemory, NothingLeftAtAllIsStillSaid) {
+TEST(OutOfMemory, ExhaustedMemoryIsReported) {
     std::uint64_t salt = 100;
     for (const Settings& settings : variants())
         expect_the_sentence_where_it_fails(settings, Failure::from_then_on, "Out of memory.", ++salt);
 }
 
-TEST(OutOfMemory, ALoopDoesWithTheThreadsItCanHave) {
+TEST(OutOfMemory, ALoopRunsOnTheThreadsThereAre) {
     constexpr int kChunks = 50;
     const auto loop = [] {
         std::array<std::atomic<int>, kChunks> done{};

@@ -40,7 +40,7 @@ long long resident_bytes() {
     return resident * sysconf(_SC_PAGESIZE);
 }
 
-TEST(RepeatedRuns, HundredRunsLeaveNothingBehind) {
+TEST(RepeatedRuns, HundredRunsLeakNothing) {
     const shapes::Cloud cloud = shapes::torus_cloud(500);
     Settings settings;
     settings.target_vertices = 100;

@@ -21,7 +21,7 @@ TEST(Bits, AreThoseOfIeee754) {
     EXPECT_EQ(bit_cast<double>(std::uint64_t{1}), std::numeric_limits<double>::denorm_min());
 }
 
-TEST(Bits, SurviveTheWayThereAndBack) {
+TEST(Bits, SurviveConversionThereAndBack) {
     Random random(1);
     for (int i = 0; i < 10000; ++i) {
         const std::uint64_t word = std::uint64_t{random.bits()} << 32 | random.bits();

@@ -11,7 +11,7 @@
 namespace neuralmesh {
 namespace {
 
-TEST(Indexed, HoldsWhatAVectorHolds) {
+TEST(Indexed, BehavesAsAVector) {
     Indexed<int> values(3, 7);
     values[1] = 5;
     values.push_back(9);

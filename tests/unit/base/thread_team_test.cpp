@@ -33,7 +33,7 @@ TEST(ThreadTeam, DoesEveryChunkOnce) {
     }
 }
 
-TEST(ThreadTeam, WakesWhoHasGoneToSleep) {
+TEST(ThreadTeam, WakesSleepingHelpers) {
     ThreadTeam team(3);
     for (int round = 0; round < 20; ++round) {
         std::vector<int> done(ThreadTeam::kMost, 0);
@@ -57,7 +57,7 @@ TEST(ThreadTeam, HelpersTakePart) {
     EXPECT_TRUE(helped);
 }
 
-TEST(ThreadTeam, DoesOneThingBesideTheCaller) {
+TEST(ThreadTeam, RunsABackgroundTaskOnce) {
     for (const int members : {1, 2, 5}) {
         ThreadTeam team(members);
         int done = 0;
@@ -69,7 +69,7 @@ TEST(ThreadTeam, DoesOneThingBesideTheCaller) {
     }
 }
 
-TEST(ThreadTeam, AHelperDoesItWhileTheCallerGoesOn) {
+TEST(ThreadTeam, ABackgroundTaskRunsInAHelper) {
     ThreadTeam team(2);
     std::atomic<bool> helped{false};
     const auto body = [&] { helped = true; };

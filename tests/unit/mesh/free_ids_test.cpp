@@ -13,7 +13,7 @@
 namespace neuralmesh {
 namespace {
 
-TEST(FreeIds, GiveANearOneWhereThereIsOne) {
+TEST(FreeIds, TakeReturnsANearIdIfThereIsOne) {
     FreeIds ids;
     for (const int id : {3, 70, 75, 200, 1000}) ids.add(id);
     EXPECT_EQ(ids.take(74), 75);
@@ -26,7 +26,7 @@ TEST(FreeIds, GiveANearOneWhereThereIsOne) {
     EXPECT_EQ(ids.count(), 0);
 }
 
-TEST(FreeIds, GiveEachIdOnce) {
+TEST(FreeIds, TakeReturnsEachIdOnce) {
     FreeIds ids;
     std::set<int> expected;
     Random random(2);

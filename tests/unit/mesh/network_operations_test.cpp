@@ -123,7 +123,7 @@ void try_split(const Network& before, VertexId v, int first, int count, Tally& t
     expect_sound(network, census(before.faces()));
 }
 
-TEST(Network, EverySplitDoesWhatItSaysOrRefuses) {
+TEST(Network, EverySplitIsExactOrRefused) {
     Tally tally;
     for (const Start& start : starts()) {
         SCOPED_TRACE(start.name);
@@ -192,19 +192,19 @@ Tally try_all_pairs(const Operation& operation) {
     return tally;
 }
 
-TEST(Network, EveryCollapseKeepsTheTopologyOrRefuses) {
+TEST(Network, EveryCollapseIsExactOrRefused) {
     const Tally tally = try_all_pairs(try_collapse);
     EXPECT_GT(tally.done, 300);
     EXPECT_GT(tally.refused, 1000);
 }
 
-TEST(Network, EveryFlipSwapsOneEdgeOrRefuses) {
+TEST(Network, EveryFlipIsExactOrRefused) {
     const Tally tally = try_all_pairs(try_flip);
     EXPECT_GT(tally.done, 300);
     EXPECT_GT(tally.refused, 1000);
 }
 
-TEST(Network, OperationsOnASphereKeepItOutwards) {
+TEST(Network, OperationsOnASphereKeepItsVolume) {
     const Network before = network_of(shapes::icosphere(2));
     const double volume = enclosed_volume(before);
     ASSERT_GT(volume, 0);

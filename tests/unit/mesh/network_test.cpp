@@ -31,7 +31,7 @@ using referee::census;
 using referee::network_of;
 using shapes::Shape;
 
-TEST(Network, CountsWhatItIsBuiltFrom) {
+TEST(Network, HasTheCountsOfItsFaces) {
     for (const Start& start : starts()) {
         SCOPED_TRACE(start.name);
         const Network network = network_of(start.shape);
@@ -204,7 +204,7 @@ void expect_refused(const Shape& shape, const char* why) {
     EXPECT_THROW(network_of(shape), TopologyError) << why;
 }
 
-TEST(Network, RefusesWhatIsNoOrientedManifold) {
+TEST(Network, RefusesNonManifolds) {
     Shape s = shapes::tetrahedron();
     std::swap(s.faces[0][0], s.faces[0][1]);
     expect_refused(s, "one face turned over");

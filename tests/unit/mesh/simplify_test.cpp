@@ -39,7 +39,7 @@ void expect_simplified(const shapes::Shape& shape, const std::vector<int>& count
     }
 }
 
-TEST(Simplify, GivesExactlyTheVerticesAskedFor) {
+TEST(Simplify, GivesTheExactNumberOfVertices) {
     expect_simplified(shapes::icosphere(4), {12, 50, 100, 500, 2000, 2562, 5000});
 }
 

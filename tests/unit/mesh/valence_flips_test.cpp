@@ -109,7 +109,7 @@ TEST(ValenceFlips, KeepTheHighestValenceAllowed) {
     for (const VertexId v : network.vertices()) EXPECT_LE(network.ring(v).valence, std::max(6, before[v]));
 }
 
-TEST(ValenceFlips, AskTheRule) {
+TEST(ValenceFlips, AreRefusedByTheRule) {
     Network network = with_random_flips(referee::network_of(shapes::icosphere(2)), 400);
     const auto faces = network.faces();
     EXPECT_EQ(flip_edges_for_valence(network, {never}), 0);

@@ -10,7 +10,7 @@
 namespace neuralmesh {
 namespace {
 
-TEST(SignalStream, ComeInTheOrderOfTheRandomNumbers) {
+TEST(SignalStream, DoesNotDependOnDrawingAhead) {
     const TargetSpace target = targets::target_of(shapes::sphere_cloud(500));
     constexpr int kMost = 64;
     SignalStream signals(target, 7, kMost);

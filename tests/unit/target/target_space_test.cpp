@@ -35,7 +35,7 @@ void expect_complaint(const Cloud& cloud, const std::string& part) {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-TEST(TargetSpace, RefusesNothing) { expect_complaint({}, "no points"); }
+TEST(TargetSpace, RefusesAnEmptyCloud) { expect_complaint({}, "no points"); }
 
 TEST(TargetSpace, CountsCoordinatesThatAreNotFinite) {
     Cloud cloud = shapes::sphere_cloud(100);
@@ -85,7 +85,7 @@ TEST(TargetSpace, RefusesPointsOnALineWhereverItIs) {
     }
 }
 
-TEST(TargetSpace, TakesAnythingThatIsNoLine) {
+TEST(TargetSpace, AcceptsPointsThatAreNotOnALine) {
     for (const Placement& place : kPlacements) {
         SCOPED_TRACE(testing::Message() << place.offset[0] << " scale " << place.scale);
         EXPECT_EQ(complaint(placed(shapes::sphere_cloud(100), place)), "");
@@ -103,7 +103,7 @@ TEST(TargetSpace, RefusesABoxBeyondDoublePrecision) {
     expect_complaint(placed(shapes::sphere_cloud(50), {{0, 0, 0}, 1e-200}), "scale it");
 }
 
-TEST(TargetSpace, TakesAPlaneNearTheEndOfDouble) {
+TEST(TargetSpace, AcceptsCoordinatesNearTheLimitOfDouble) {
     const double far = 1.7e308;
     const TargetSpace target = target_of({{far, 0, 0}, {far, 1, 0}, {far, 0, 1}, {far, 1, 1}});
     EXPECT_EQ(target.frame().centre, Point3d(far, 0.5, 0.5));
@@ -127,7 +127,7 @@ TEST(TargetSpace, FrameIsCentredWithDiagonalOne) {
     }
 }
 
-TEST(TargetSpace, ReadsPointsAndTrianglesAsTheyAre) {
+TEST(TargetSpace, KeepsPointsAndCorners) {
     const TargetSpace points = target_of(shapes::sphere_cloud(10));
     EXPECT_FALSE(points.has_faces());
     const TargetSpace faces = target_of(shapes::cube());
@@ -243,7 +243,7 @@ TEST(TargetSpace, LeavesPointsOut) {
 }
 
 /// The new frame equals that of the cloud without the far point.
-TEST(TargetSpace, LeavesAFarPointOutWithoutATrace) {
+TEST(TargetSpace, LeavesAFarPointOutOfTheFrame) {
     Cloud cloud = shapes::sphere_cloud(1000);
     const TargetSpace alone = target_of(cloud);
     cloud.emplace_back(3e5, -1e5, 7e5);
@@ -256,13 +256,13 @@ TEST(TargetSpace, LeavesAFarPointOutWithoutATrace) {
         ASSERT_LT((rest->frame().outside(rest->positions()[i]) - cloud[i]).Norm(), 1e-6) << i;
 }
 
-TEST(TargetSpace, SaysWhereAFewFarPointsHideTheRest) {
+TEST(TargetSpace, ExplainsThatFarPointsHideTheRest) {
     Cloud cloud = shapes::sphere_cloud(1000);
     cloud.emplace_back(1e30, 0, 0);
     expect_complaint(cloud, "delete the few that lie far away");
 }
 
-TEST(TargetSpace, LeavesNothingOutIfNoSurfaceRemains) {
+TEST(TargetSpace, RefusesToLeaveNoSurface) {
     Cloud line;
     for (int i = 0; i < 30; ++i) line.emplace_back(i, 0, 0);
     line.emplace_back(15, 10, 0);
@@ -273,36 +273,36 @@ TEST(TargetSpace, LeavesNothingOutIfNoSurfaceRemains) {
 }
 
 /// The positions of each_place_once(), empty if it returns nothing.
-std::vector<vcg::Point3f> places_once(const Cloud& cloud) {
+std::vector<vcg::Point3f> without_duplicates(const Cloud& cloud) {
     const std::optional<TargetSpace> once = target_of(cloud).each_place_once();
     return once ? once->positions() : std::vector<vcg::Point3f>();
 }
 
-TEST(TargetSpace, TakesAFewRepeatsAsTheyAre) {
+TEST(TargetSpace, KeepsAFewDuplicates) {
     Cloud cloud = shapes::sphere_cloud(1000);
     for (int i = 0; i < 100; ++i) cloud.push_back(cloud[static_cast<std::size_t>(i)]);
-    EXPECT_TRUE(places_once(cloud).empty());
-    EXPECT_TRUE(places_once(shapes::sphere_cloud(300000)).empty());
+    EXPECT_TRUE(without_duplicates(cloud).empty());
+    EXPECT_TRUE(without_duplicates(shapes::sphere_cloud(300000)).empty());
 }
 
-TEST(TargetSpace, TakesEveryPlaceOnceWhereManyRepeat) {
+TEST(TargetSpace, RemovesManyDuplicates) {
     Cloud cloud = shapes::sphere_cloud(1000);
     cloud[0] = {0.0, 0.5, 0.5};
     for (int i = 0; i < 112; ++i) cloud.push_back(cloud[static_cast<std::size_t>(i)]);
-    EXPECT_EQ(places_once(cloud).size(), 1000U);
+    EXPECT_EQ(without_duplicates(cloud).size(), 1000U);
 }
 
 /// Clouds whose share of duplicates is estimated: many duplicates of one point, and one each of many.
-TEST(TargetSpace, SeesRepeatsInLargeClouds) {
+TEST(TargetSpace, FindsDuplicatesInLargeClouds) {
     Cloud heavy = shapes::sphere_cloud(300000);
     heavy.insert(heavy.end(), 200000, heavy[5]);
-    EXPECT_EQ(places_once(heavy).size(), 300000U);
+    EXPECT_EQ(without_duplicates(heavy).size(), 300000U);
     Cloud twice = shapes::sphere_cloud(300000);
     for (std::size_t i = 0; i < 60000; ++i) twice.push_back(twice[i]);
-    EXPECT_EQ(places_once(twice).size(), 300000U);
+    EXPECT_EQ(without_duplicates(twice).size(), 300000U);
 }
 
-TEST(TargetSpace, FacesAreNeverRepeats) {
+TEST(TargetSpace, DoesNotTreatFacesAsDuplicates) {
     shapes::Shape shape = shapes::cube();
     EXPECT_FALSE(target_of(shape).each_place_once().has_value());
 }
