@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What depends on the compiler, the processor or the operating system, each with a portable branch. Vector
-// arithmetic is in simd.h; no other file of the core names a compiler builtin.
+// Extensions of compilers, processors and operating systems, each with a portable branch. Vector arithmetic
+// is in simd.h; no other file of the core uses such extensions.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 #include <sys/mman.h>
 #endif
 
-/// Inlines a function even where the compiler would not.
+/// Inlines a function regardless of its size.
 #if defined(__GNUC__)
 #define NEURALMESH_ALWAYS_INLINE [[gnu::always_inline]] inline
 #elif defined(_MSC_VER)
@@ -26,14 +26,14 @@
 
 namespace neuralmesh {
 
-/// Starts loading the cache line of \p address. Any address is allowed; nothing else happens.
+/// Starts to load the cache line of \p address, which may be any address, even an invalid one.
 NEURALMESH_ALWAYS_INLINE void prefetch([[maybe_unused]] const void* address) {
 #ifdef __GNUC__
     __builtin_prefetch(address);
 #endif
 }
 
-/// The same for a cache line that will be written, which other cores then have to give up.
+/// As prefetch(), for a cache line that will be written: other cores give up their copies.
 NEURALMESH_ALWAYS_INLINE void prefetch_for_write([[maybe_unused]] const void* address) {
 #ifdef __GNUC__
     __builtin_prefetch(address, 1);
@@ -71,7 +71,7 @@ inline int highest_bit(std::uint64_t word) {
 #endif
 }
 
-/// \p from, which is aligned to \p Alignment bytes, with that promise to the compiler.
+/// Returns \p from and promises the compiler that it is aligned to \p Alignment bytes.
 template <std::size_t Alignment, class T>
 NEURALMESH_ALWAYS_INLINE T* assume_aligned(T* from) {
 #ifdef __GNUC__
@@ -81,7 +81,7 @@ NEURALMESH_ALWAYS_INLINE T* assume_aligned(T* from) {
 #endif
 }
 
-/// One turn of a loop that waits for another thread: lets the other thread of the core run and saves power.
+/// For loops that wait for another thread: saves power and leaves the core to its other hardware thread.
 inline void spin_pause() {
 #ifdef __SSE2__
     _mm_pause();
@@ -91,8 +91,8 @@ inline void spin_pause() {
 /// Size and alignment of a huge page.
 constexpr std::size_t kHugePageBytes = std::size_t{1} << 21;
 
-/// Asks the system to back the whole huge pages of \p memory, aligned to kHugePageBytes, by huge pages. A
-/// refusal changes nothing but the speed.
+/// Asks the system to use huge pages for \p memory, which is aligned to kHugePageBytes. The system may
+/// refuse; that affects the speed only.
 inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
     madvise(memory, bytes / kHugePageBytes * kHugePageBytes, MADV_HUGEPAGE);
