@@ -7,6 +7,7 @@
 
 #include "bytes.h"
 #include "tests/unit/support/referee.h"
+#include "tests/unit/support/targets.h"
 #include "vcg_core/reconstruct.h"
 
 namespace {
@@ -67,7 +68,7 @@ std::vector<vcg::Point3d> points_of(Bytes& bytes) {
 }
 
 TargetSpace target_of(const std::vector<vcg::Point3d>& points, bool faces) {
-    if (!faces) return TargetSpace::points(points.size(), [&](std::size_t i) { return points[i]; });
+    if (!faces) return targets::target_of(points);
     return TargetSpace::triangles(
         points.size() / 3, [&](std::size_t i, int k) { return points[3 * i + static_cast<std::size_t>(k)]; });
 }

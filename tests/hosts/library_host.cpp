@@ -14,8 +14,6 @@
 #include <common/plugins/interfaces/filter_plugin.h>
 #include <common/plugins/plugin_manager.h>
 
-#include <unistd.h>
-
 #include <QApplication>
 #include <iostream>
 #include <thread>
@@ -129,19 +127,12 @@ private:
     QAction* action_;
 };
 
-/// Resident memory of this process.
-long long resident_bytes() {
-    long long size = 0, resident = 0;
-    std::ifstream("/proc/self/statm") >> size >> resident;
-    return resident * sysconf(_SC_PAGESIZE);
-}
-
 void repeat(Host& host, const char* layer, const char* out) {
     for (int i = 0; i < 20; ++i) host.learn(layer, out);
-    const long long before = resident_bytes(), living = allocations::living();
+    const long long before = allocations::resident_bytes(), living = allocations::living();
     for (int i = 0; i < 100; ++i) host.learn(layer, out);
     const long long blocks = allocations::living() - living;
-    std::cout << "{\"blocks\": " << blocks << ", \"bytes\": " << resident_bytes() - before << "}"
+    std::cout << "{\"blocks\": " << blocks << ", \"bytes\": " << allocations::resident_bytes() - before << "}"
               << std::endl;
 }
 

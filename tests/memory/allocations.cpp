@@ -5,9 +5,12 @@
 // realloc and free in our own objects to them, but not those within libraries.
 #include "allocations.h"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <cstddef>
 #include <cstdlib>
+#include <fstream>
 #include <new>
 
 namespace {
@@ -94,5 +97,12 @@ void fail_at(long long nth, Failure failure) {
 
 long long count() { return made; }
 long long living() { return alive; }
+
+long long resident_bytes() {
+    long long size = 0;
+    long long resident = 0;
+    std::ifstream("/proc/self/statm") >> size >> resident;
+    return resident * sysconf(_SC_PAGESIZE);
+}
 
 }  // namespace neuralmesh::allocations

@@ -20,6 +20,8 @@ void fail_at(long long nth, Failure failure = Failure::once);
 long long count();
 /// Blocks allocated since the start of the program and not yet freed.
 long long living();
+/// Resident memory of this process.
+long long resident_bytes();
 
 }  // namespace neuralmesh::allocations
 

@@ -4,14 +4,12 @@
 // Many runs in one process: no block leaks, the process does not grow, and simultaneous runs in two threads
 // give the same bytes as single ones.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstring>
-#include <fstream>
 #include <string>
 #include <thread>
 
-#include "allocations.h"
+#include "tests/memory/allocations.h"
 #include "tests/unit/support/soundness.h"
 
 namespace neuralmesh {
@@ -32,14 +30,6 @@ std::string learn(const shapes::Cloud& cloud, const Settings& settings) {
     return bytes_of(reconstruct(soundness::target_of(cloud), settings, progress));
 }
 
-/// Resident memory of this process.
-long long resident_bytes() {
-    long long size = 0;
-    long long resident = 0;
-    std::ifstream("/proc/self/statm") >> size >> resident;
-    return resident * sysconf(_SC_PAGESIZE);
-}
-
 TEST(RepeatedRuns, HundredRunsLeakNothing) {
     const shapes::Cloud cloud = shapes::torus_cloud(500);
     Settings settings;
@@ -50,7 +40,7 @@ TEST(RepeatedRuns, HundredRunsLeakNothing) {
     constexpr int kWarmUp = 20;
     for (int i = 0; i < kWarmUp + 100; ++i) {
         if (i == kWarmUp) {
-            before = resident_bytes();
+            before = allocations::resident_bytes();
             living = allocations::living();
         }
         settings.start_mesh = i % 4 == 0 ? kShell : kTetrahedron;
@@ -59,7 +49,7 @@ TEST(RepeatedRuns, HundredRunsLeakNothing) {
         learn(cloud, settings);
     }
     EXPECT_EQ(allocations::living(), living);
-    const long long grown = resident_bytes() - before;
+    const long long grown = allocations::resident_bytes() - before;
     RecordProperty("grown_bytes", std::to_string(grown));
     // The heap of the C library may keep ten kilobytes per run. Blocks of our own are counted above; this
     // finds other memory, such as the stacks of threads.

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Does the start mesh get components and genus right? shell_topology [FILE.ply:COMPONENTS:GENUS ...]
-// Clouds of 20,000 and 200,000 points drawn from each surface and its bare vertices, with and without noise,
-// of the files given and of three shapes made in code. Prints a Markdown table, a row per cloud, and the
-// score per column.
+// Compares components and genus of start meshes with the true ones:
+//   shell_topology [FILE.ply:COMPONENTS:GENUS ...]
+// Uses the given surfaces and three made in code. From each it draws clouds of 20,000 and 200,000 points at
+// four noise levels, and takes the bare vertices without noise. Prints a Markdown table with a row per cloud,
+// and how many surfaces were right for each number of points and noise level.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +15,7 @@
 
 #include "tests/experiments/tools/ply_mesh.h"
 #include "tests/unit/support/shell_shapes.h"
+#include "tests/unit/support/targets.h"
 #include "vcg_core/shell/shell.h"
 
 namespace {
@@ -67,7 +69,7 @@ bool measure(const Model& model, std::size_t samples, double noise_percent) {
     const double noise = noise_percent / 100 * diagonal(model.surface);
     const std::vector<vcg::Point3d> cloud =
         samples == 0 ? model.surface.positions : shell_shapes::sample(model.surface, samples, random, noise);
-    const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+    const TargetSpace target = targets::target_of(cloud);
     NoProgress progress;
     const auto start = std::chrono::steady_clock::now();
     const StartMesh mesh = shell_of(target, ShellOptions(), random, progress);

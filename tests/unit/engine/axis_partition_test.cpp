@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Every point lies in one slab, and each slab has equally many.
+// Every point lies in exactly one slab, and all slabs hold equally many points of the sample.
 #include "vcg_core/engine/axis_partition.h"
 
 #include <gtest/gtest.h>

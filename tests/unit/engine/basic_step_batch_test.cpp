@@ -1,30 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The number of threads changes nothing.
+// Batches give the same bytes for any number of threads.
 #include "vcg_core/engine/basic_step_batch.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
-#include "vcg_core/target/target_space.h"
+#include "tests/unit/support/targets.h"
 
 namespace neuralmesh {
 namespace {
 
-/// A network whose steps are taken by some number of threads. As it moves, its vertices cross the borders of
-/// their slabs.
-struct Course {
-    Course(const TargetSpace& target, int threads)
+/// A network and its batches of Basic Steps on the given number of threads. As vertices move, they cross the
+/// borders of their slabs.
+struct BatchRun {
+    BatchRun(const TargetSpace& target, int threads)
         : network(start(target)), search(network), steps(threads, typical(target)) {}
 
     static Network start(const TargetSpace& target) {
-        shapes::Shape torus = shapes::torus_grid(40, 24);
-        for (vcg::Point3d& p : torus.positions) p = vcg::Point3d::Construct(target.frame().inside(p));
-        return referee::network_of(torus);
+        return targets::network_in_frame(target, shapes::torus_grid(40, 24));
     }
     static std::vector<vcg::Point3f> typical(const TargetSpace& target) {
         Random random(9);
@@ -39,7 +36,7 @@ struct Course {
     std::vector<StepResult> results;  ///< of the last batch
 };
 
-void expect_same(const Course& a, const Course& b) {
+void expect_same(const BatchRun& a, const BatchRun& b) {
     ASSERT_EQ(a.results.size(), b.results.size());
     for (std::size_t i = 0; i < a.results.size(); ++i) {
         ASSERT_EQ(a.results[i].winner, b.results[i].winner) << "signal " << i;
@@ -51,12 +48,12 @@ void expect_same(const Course& a, const Course& b) {
     }
 }
 
-TEST(BasicStepBatch, AreTheSameBytesForAnyNumberOfThreads) {
+TEST(BasicStepBatch, GivesTheSameBytesForAnyNumberOfThreads) {
     const shapes::Cloud cloud = shapes::torus_cloud(5000, 0.01);
-    const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
-    Course alone(target, 1);
-    Course two(target, 2);
-    Course five(target, 5);
+    const TargetSpace target = targets::target_of(cloud);
+    BatchRun alone(target, 1);
+    BatchRun two(target, 2);
+    BatchRun five(target, 5);
     Random random(3);
     const StepRates rates{0.06F, 0.05F, 5};
     std::vector<vcg::Point3f> drawn(1000);
@@ -65,7 +62,7 @@ TEST(BasicStepBatch, AreTheSameBytesForAnyNumberOfThreads) {
         const int count = 240 + static_cast<int>(random.below(760));
         for (int i = 0; i < count; ++i) drawn[static_cast<std::size_t>(i)] = target.sample(random);
         const auto v = static_cast<VertexId>(random.below(900));
-        for (Course* run : {&alone, &two, &five}) {
+        for (BatchRun* run : {&alone, &two, &five}) {
             run->results = run->steps.take(drawn.data(), count, rates, run->network, run->search);
             ASSERT_EQ(static_cast<int>(run->results.size()), count);
             if (!run->network.can_split(v, 0, 4)) continue;

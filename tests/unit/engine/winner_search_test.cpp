@@ -31,9 +31,8 @@ VertexId nearest_by_linear_search(const Network& network, const vcg::Point3f& s)
 }
 
 /// The shape as a network inside the core's frame, with a bounding-box diagonal of about 1.
-Network in_frame(shapes::Shape shape, double scale = 0.28) {
-    for (vcg::Point3d& p : shape.positions) p *= scale;
-    return referee::network_of(shape);
+Network in_frame(const shapes::Shape& shape, double scale = 0.28) {
+    return referee::network_of(shapes::scaled(shape, scale));
 }
 
 vcg::Point3f random_point(Random& random, float reach) {
@@ -267,12 +266,12 @@ TEST(WinnerSearch, IsLinearSearchWithADividedTable) {
         }
 }
 
-TEST(WinnerSearch, FollowsMovesThatItIsToldOfLater) {
+TEST(WinnerSearch, IsExactAfterDeferredCellChanges) {
     Network network = in_frame(shapes::torus_grid(24, 16));
     WinnerSearch search(network);
     Random random(5);
     for (int round = 0; round < 30; ++round) {
-        // Two lists, as of two threads; a vertex always in the same.
+        // Two lists, as two threads make them. All changes of a vertex are in one list.
         std::vector<WinnerSearch::CellChange> cell_changes[2];
         for (int i = 0; i < 300; ++i) {
             const VertexId v = random_vertex(network, random);

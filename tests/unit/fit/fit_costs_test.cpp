@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Gains of flips and splits and costs of collapses, against carrying them out and measuring again.
+// Predicted gains of flips and splits and costs of collapses, against those measured after the operation.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 /// A rough torus in a dense cloud: about 60 points per face, so no face lacks any.
 FitScene torus_scene() {
-    return {noisy_network(shapes::torus_grid(20, 10), 0.03), shapes::torus_cloud(24000)};
+    return {referee::network_of(shapes::torus_grid(20, 10), 0.03), shapes::torus_cloud(24000)};
 }
 
 std::vector<int> faces_with_edge(const Surface& surface, VertexId a, VertexId b) {
@@ -32,7 +32,7 @@ std::vector<int> faces_with_edge(const Surface& surface, VertexId a, VertexId b)
     return result;
 }
 
-/// The drop of the sum of squared distances by a flip, by flipping.
+/// Flips the edge, and returns by how much the sum of squared distances drops.
 double measured_drop(const FitScene& scene, VertexId a, VertexId b) {
     const std::vector<Vector3> points = points_of(scene.points, faces_with_edge(scene.surface, a, b));
     Network flipped = scene.network;
@@ -62,7 +62,7 @@ bool flip_harms(const FitScene& scene, VertexId a, VertexId b) {
     return false;
 }
 
-TEST(FindFlips, GainsWhatTheFlipBrings) {
+TEST(FindFlips, GainIsTheMeasuredDrop) {
     const FitScene scene = torus_scene();
     ThreadTeam team(1);
     constexpr float kLeastGain = 1e-4F;
@@ -106,7 +106,7 @@ TEST(FlipEdges, FlipsApartAndLeavesBarredVerticesAlone) {
     EXPECT_EQ(flip_edges(network, flips, PerVertex<char>(barred.size(), 1)), 0);
 }
 
-TEST(FindCollapses, CostsWhatTheCollapseDoes) {
+TEST(FindCollapses, CostIsTheMeasuredRise) {
     const FitScene scene = torus_scene();
     ThreadTeam team(1);
     const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
@@ -143,7 +143,7 @@ TEST(FindCollapses, CostsWhatTheCollapseDoes) {
 }
 
 TEST(FindCollapses, MeasuresSmallStarsExactly) {
-    const FitScene scene(noisy_network(shapes::torus_grid(20, 10), 0.03), shapes::torus_cloud(5000));
+    const FitScene scene(referee::network_of(shapes::torus_grid(20, 10), 0.03), shapes::torus_cloud(5000));
     ThreadTeam team(2);
     int measured = 0;
     for (const Collapse& collapse : find_collapses(scene.network, scene.surface, scene.points, team)) {
@@ -177,7 +177,7 @@ FitScene wave_scene() {
         const double turns = 6 * shapes::kPi / (high - low);
         cloud.emplace_back(x, y, 0.01 * (high - low) * std::sin(turns * x) * std::cos(turns * y));
     }
-    return {noisy_network(grid, 0), cloud};
+    return {referee::network_of(grid), cloud};
 }
 
 /// A collapse that costs nothing, away from the edge to be split.
@@ -190,7 +190,7 @@ Collapse free_collapse(const Network& network, const EdgeSplit& split) {
     return {Collapse::kForbidden, 0, -1};
 }
 
-TEST(FindSplits, GainsWhatTheSplitBrings) {
+TEST(FindSplits, GainIsTheMeasuredDrop) {
     const FitScene scene = wave_scene();
     ThreadTeam team(1);
     const double edge = static_cast<double>(mean_edge_length(scene.surface));
@@ -221,7 +221,7 @@ TEST(FindSplits, GainsWhatTheSplitBrings) {
     EXPECT_GT(measured, 10);
 }
 
-TEST(FindSplits, LeavesOutWhatGainsLess) {
+TEST(FindSplits, OmitsGainsBelowTheBound) {
     const FitScene scene = wave_scene();
     ThreadTeam team(1);
     const std::vector<EdgeSplit> all = find_splits(scene.network, scene.surface, scene.points, 0, team);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The points of a fit: their choice, their faces, their noise, where they are missing, and the error at those
-// held out.
+// The points of a fit: sampling, assignment to faces, noise variance, support of faces, and the error at
+// held-out points.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +43,8 @@ TEST(ChoosePoints, HoldsOutAtMostTenThousand) {
 }
 
 TEST(PointsByFace, HaveEveryPointWithItsNearestFace) {
-    const FitScene scene(noisy_network(shapes::torus_grid(20, 10), 0.02), shapes::torus_cloud(2000, 0.02));
+    const FitScene scene(referee::network_of(shapes::torus_grid(20, 10), 0.02),
+                         shapes::torus_cloud(2000, 0.02));
     const FaceTree tree(scene.surface);
     std::size_t i = 0;
     for (int f = 0; f < scene.surface.face_count(); ++f)
@@ -58,7 +59,7 @@ TEST(PointsByFace, HaveEveryPointWithItsNearestFace) {
 }
 
 TEST(PointsByFace, UpdateTheirFeet) {
-    FitScene scene(noisy_network(shapes::icosphere(2), 0), shapes::sphere_cloud(2000));
+    FitScene scene(referee::network_of(shapes::icosphere(2)), shapes::sphere_cloud(2000));
     ThreadTeam team(2);
     for (Vector3& p : scene.surface.positions) p *= 1.1F;
     scene.points.update_feet(scene.surface, team);
@@ -72,7 +73,7 @@ TEST(PointsByFace, UpdateTheirFeet) {
 }
 
 TEST(NoiseVariance, IsThatOfANoisyPlane) {
-    const Surface plane(noisy_network(shapes::grid(10, 10), 0));
+    const Surface plane(referee::network_of(shapes::grid(10, 10)));
     for (double sigma : {0.001, 0.01}) {
         const PointsByFace points =
             points_on(plane, 100, [&](Random& random) { return sigma * normal_deviate(random); });
@@ -81,12 +82,12 @@ TEST(NoiseVariance, IsThatOfANoisyPlane) {
 }
 
 TEST(NoiseVariance, IsNotThatOfTheMisfit) {
-    const Surface sphere(noisy_network(shapes::icosphere(2), 0));
+    const Surface sphere(referee::network_of(shapes::icosphere(2)));
     EXPECT_LT(noise_variance(sphere, points_on(sphere, 20, [](Random&) { return 0.1; })), 1e-10);
 }
 
 TEST(NoiseVariance, IsZeroWithTooFewPoints) {
-    const Surface sphere(noisy_network(shapes::icosphere(2), 0));
+    const Surface sphere(referee::network_of(shapes::icosphere(2)));
     const auto noise = [](Random& random) { return 0.1 * normal_deviate(random); };
     EXPECT_EQ(noise_variance(sphere, points_on(sphere, 3, noise)), 0);
     EXPECT_GT(noise_variance(sphere, points_on(sphere, 4, noise)), 0);
@@ -96,7 +97,7 @@ constexpr VertexId kSpike = 7;
 
 /// A sphere with one vertex pulled far out, and the points of the sphere.
 FitScene spike_scene() {
-    Network network = noisy_network(shapes::icosphere(3), 0);
+    Network network = referee::network_of(shapes::icosphere(3));
     network.set_position(kSpike, network.position(kSpike) * 2.0F);
     return {std::move(network), shapes::sphere_cloud(20000)};
 }
@@ -112,7 +113,7 @@ TEST(Support, IsMissingAtTheTipOfASpike) {
 }
 
 TEST(Support, ForbidsToStretchSurfaceOverAHole) {
-    const FitScene scene(noisy_network(shapes::icosphere(3), 0), shapes::sphere_cloud(40000));
+    const FitScene scene(referee::network_of(shapes::icosphere(3)), shapes::sphere_cloud(40000));
     const Support support(scene.network, scene.surface, scene.points);
     const Triangle face = scene.surface.faces[0];
     const float area = area_vector(scene.surface, 0).norm();
@@ -131,7 +132,7 @@ TEST(Support, ForbidsToStretchSurfaceOverAHole) {
 }
 
 TEST(HeldOut, MeasuresAlongTheNormals) {
-    const Network network = noisy_network(shapes::icosphere(4), 0);
+    const Network network = referee::network_of(shapes::icosphere(4));
     const Surface sphere(network);
     ThreadTeam team(2);
     std::vector<Vector3> points;
@@ -150,8 +151,8 @@ TEST(HeldOut, MeasuresAlongTheNormals) {
 // Points with noise of .03: a surface crumpled as much is nearer to them than the true one, but not along the
 // normals of the true one.
 TEST(HeldOut, DoesNotPreferACrumpledSurface) {
-    const Network smooth = noisy_network(shapes::icosphere(4), 0);
-    const Network crumpled = noisy_network(shapes::icosphere(4), 0.06);
+    const Network smooth = referee::network_of(shapes::icosphere(4));
+    const Network crumpled = referee::network_of(shapes::icosphere(4), 0.06);
     std::vector<Vector3> points;
     for (const vcg::Point3d& p : shapes::sphere_cloud(4000, 0.03))
         points.push_back(to_eigen(vcg::Point3f::Construct(p)));

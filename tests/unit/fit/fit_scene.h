@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A network with points around it, as the steps of the fit meet them.
+// Networks with points around them: the input of the steps of the fit.
 #pragma once
 
 #include <algorithm>
@@ -10,19 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
 #include "vcg_core/fit/points_by_face.h"
 
 namespace neuralmesh {
-
-/// The shape with every vertex moved by up to \p noise.
-inline Network noisy_network(const shapes::Shape& shape, double noise, std::uint64_t seed = 3) {
-    Random random(seed);
-    std::vector<vcg::Point3f> positions;
-    for (const vcg::Point3d& p : shape.positions)
-        positions.push_back(vcg::Point3f::Construct(p + shapes::in_ball(random) * noise));
-    return Network(positions, std::vector<Triangle>(shape.faces.begin(), shape.faces.end()));
-}
 
 /// Points spread evenly over every face of \p surface, as many on each, at \p height(random) above it.
 template <class Height>

@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "tests/unit/support/shapes.h"
+#include "tests/unit/support/targets.h"
 #include "vcg_core/mesh/self_crossings.h"
 #include "vcg_core/rms_error.h"
 
@@ -19,20 +20,8 @@ namespace {
 
 using shapes::Cloud;
 using shapes::Shape;
-
-TargetSpace target_of(const Cloud& cloud) {
-    return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
-}
-
-/// The shape as a network in the frame of the target, every vertex moved by up to \p noise (in diagonals).
-Network network_of(const Shape& shape, const TargetSpace& target, double scale = 1, double noise = 0) {
-    Random random(3);
-    std::vector<vcg::Point3f> positions;
-    for (const vcg::Point3d& p : shape.positions)
-        positions.push_back(target.frame().inside(p * scale) +
-                            vcg::Point3f::Construct(shapes::in_ball(random) * noise));
-    return Network(positions, std::vector<Triangle>(shape.faces.begin(), shape.faces.end()));
-}
+using targets::network_in_frame;
+using targets::target_of;
 
 FitReport fit(Network& network, const TargetSpace& target, const FitOptions& options = {}, int threads = 1) {
     NoProgress progress;
@@ -71,7 +60,7 @@ bool same_bytes(const Network& a, const Network& b) {
 TEST(Fit, BringsAnInflatedSphereToThePoints) {
     const Cloud cloud = shapes::sphere_cloud(20000);
     const TargetSpace target = target_of(cloud);
-    Network network = network_of(shapes::icosphere(3), target, 1.1, 0.005);
+    Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 1.1), 0.005);
     const double before = rms(target, network);
     const FitReport report = fit(network, target);
     EXPECT_TRUE(report.improved);
@@ -85,7 +74,7 @@ TEST(Fit, BringsAnInflatedSphereToThePoints) {
 
 TEST(Fit, KeepsTheHandleOfATorus) {
     const TargetSpace target = target_of(shapes::torus_cloud(20000));
-    Network network = network_of(shapes::torus_grid(30, 16), target, 1.05, 0.005);
+    Network network = network_in_frame(target, shapes::scaled(shapes::torus_grid(30, 16), 1.05), 0.005);
     const double before = rms(target, network);
     fit(network, target);
     EXPECT_LT(rms(target, network), before / 5);
@@ -97,7 +86,7 @@ TEST(Fit, KeepsTheHandleOfATorus) {
 // No edge of the icosphere lies on an edge of the cube: vertices have to move there.
 TEST(Fit, FindsTheCreasesOfACube) {
     const TargetSpace target = target_of(shapes::box_cloud(20000));
-    Network network = network_of(shapes::icosphere(3), target, 0.6);
+    Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 0.6));
     fit(network, target);
     EXPECT_LT(rms(target, network), 0.0012);
     EXPECT_EQ(network.validate(), "");
@@ -105,7 +94,7 @@ TEST(Fit, FindsTheCreasesOfACube) {
 
 TEST(Fit, GivesTheSameBytesForAnyNumberOfThreads) {
     const TargetSpace target = target_of(shapes::torus_cloud(8000, 0.01));
-    Network one = network_of(shapes::torus_grid(40, 20), target, 1.05, 0.005);
+    Network one = network_in_frame(target, shapes::scaled(shapes::torus_grid(40, 20), 1.05), 0.005);
     Network two = one;
     Network five = one;
     FitOptions options;
@@ -122,7 +111,7 @@ TEST(Fit, GivesTheSameBytesForAnyNumberOfThreads) {
 TEST(Fit, SmoothsNoiseRatherThanChasingIt) {
     const Cloud noisy = shapes::sphere_cloud(6420, 0.03);
     const TargetSpace target = target_of(noisy);
-    Network network = network_of(shapes::icosphere(3), target, 1, 0.006);
+    Network network = network_in_frame(target, shapes::icosphere(3), 0.006);
     const auto error = [&] {
         double sum = 0;
         for (VertexId v = 0; v < network.slot_count(); ++v) {
@@ -142,7 +131,7 @@ TEST(Fit, IsNotDrawnByOutliers) {
     Random random(4);
     for (int i = 0; i < 400; ++i) cloud.push_back(shapes::in_ball(random) * 1.7);
     const TargetSpace target = target_of(cloud);
-    Network network = network_of(shapes::icosphere(3), target, 1, 0.004);
+    Network network = network_in_frame(target, shapes::icosphere(3), 0.004);
     fit(network, target);
     double worst = 0;
     for (VertexId v = 0; v < network.slot_count(); ++v)
@@ -156,7 +145,7 @@ TEST(Fit, MakesNoSpikesWhereThereAreNoPoints) {
     for (vcg::Point3d& p : cloud) p[2] = std::abs(p[2]);
     cloud.emplace_back(0.0, 0.0, -1.0);
     const TargetSpace target = target_of(cloud);
-    Network network = network_of(shapes::icosphere(3), target, 1.02, 0.003);
+    Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 1.02), 0.003);
     fit(network, target);
     EXPECT_EQ(network.validate(), "");
     for (VertexId v = 0; v < network.slot_count(); ++v) {
@@ -167,13 +156,13 @@ TEST(Fit, MakesNoSpikesWhereThereAreNoPoints) {
     EXPECT_GT(sharpest_fold(network), -0.6);
 }
 
-TEST(Fit, LeavesAMeshAloneThatIsRight) {
+TEST(Fit, LeavesAnExactMeshAlone) {
     const Shape sphere = shapes::icosphere(2);
     // The points are drawn from its own faces.
     const TargetSpace target = TargetSpace::triangles(sphere.faces.size(), [&](std::size_t i, int k) {
         return sphere.positions[static_cast<std::size_t>(sphere.faces[i][static_cast<std::size_t>(k)])];
     });
-    Network network = network_of(sphere, target);
+    Network network = network_in_frame(target, sphere);
     const double before = rms(target, network);
     const FitReport report = fit(network, target);
     EXPECT_LE(report.rms_fitted, report.rms_unfitted);
@@ -182,7 +171,7 @@ TEST(Fit, LeavesAMeshAloneThatIsRight) {
 
 TEST(Fit, FitsAnOpenMesh) {
     const TargetSpace target = target_of(shapes::plane_cloud(5000));
-    Network network = network_of(shapes::grid(12, 12), target, 0.98, 0.005);
+    Network network = network_in_frame(target, shapes::scaled(shapes::grid(12, 12), 0.98), 0.005);
     const double before = rms(target, network);
     fit(network, target);
     EXPECT_LT(rms(target, network), before / 2);
@@ -192,16 +181,16 @@ TEST(Fit, FitsAnOpenMesh) {
 
 TEST(Fit, LeavesAMeshAloneWithHardlyAnyPoints) {
     const TargetSpace target = target_of(shapes::sphere_cloud(30));
-    Network network = network_of(shapes::icosphere(1), target);
+    Network network = network_in_frame(target, shapes::icosphere(1));
     const Network before = network;
     const FitReport report = fit(network, target);
     EXPECT_FALSE(report.improved);
     EXPECT_TRUE(same_bytes(before, network));
 }
 
-TEST(Fit, SaysWhereEveryVertexComesFrom) {
+TEST(Fit, ReportsTheSourceOfEveryVertex) {
     const TargetSpace target = target_of(shapes::box_cloud(20000));
-    Network network = network_of(shapes::icosphere(3), target, 0.6);
+    Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 0.6));
     const Network before = network;
     const FitReport report = fit(network, target);
     ASSERT_EQ(report.sources.size(), network.slot_count());
@@ -215,11 +204,11 @@ TEST(Fit, SaysWhereEveryVertexComesFrom) {
     EXPECT_LE(moved, report.moved_vertices);
 }
 
-// An inserted vertex takes over the counter of the place where it lies: no neighbour of its source was
-// nearer.
-TEST(Fit, TakesCountersFromWhereTheyWereLearned) {
+// The source of an inserted vertex, whose counters it takes, is the nearest vertex: no neighbour of the
+// source was nearer.
+TEST(Fit, TakesCountersFromTheNearestVertex) {
     const TargetSpace target = target_of(shapes::box_cloud(20000));
-    Network network = network_of(shapes::icosphere(3), target, 0.6);
+    Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 0.6));
     const Network before = network;
     const FitReport report = fit(network, target);
     int taken_over = 0;
@@ -241,10 +230,10 @@ public:
     bool operator()(double, const char*) override { return false; }
 };
 
-TEST(Fit, TakesOutTheVerticesItMissesLeast) {
-    // On a cube the eight corners suffice; of the vertices in its sides none is missed.
+TEST(Fit, RemovesTheVerticesOfLeastCost) {
+    // A cube needs its eight corners only: removing vertices inside its sides costs nothing.
     const TargetSpace target = target_of(shapes::box_cloud(20000));
-    Network network = network_of(shapes::icosphere(3), target, 0.6);
+    Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 0.6));
     const int before = network.vertex_count();
     FitOptions options;
     options.reduce_to = 60;
@@ -258,10 +247,10 @@ TEST(Fit, TakesOutTheVerticesItMissesLeast) {
     for (VertexId v = 0; v < network.slot_count(); ++v) EXPECT_EQ(report.sources[v] >= 0, network.alive(v));
 }
 
-TEST(Fit, TakesOutNoMoreThanTheTopologyAllows) {
-    // A torus has at least seven vertices, and a tetrahedron's four are fewer than it can come down to.
+TEST(Fit, RemovesNoMoreThanTheTopologyAllows) {
+    // A triangulated torus has at least seven vertices, so it cannot be reduced to four.
     const TargetSpace target = target_of(shapes::torus_cloud(8000, 0));
-    Network network = network_of(shapes::torus_grid(20, 10), target);
+    Network network = network_in_frame(target, shapes::torus_grid(20, 10));
     FitOptions options;
     options.reduce_to = 4;
     fit(network, target, options);
@@ -272,7 +261,7 @@ TEST(Fit, TakesOutNoMoreThanTheTopologyAllows) {
 
 TEST(Fit, StopsWhenAskedTo) {
     const TargetSpace target = target_of(shapes::sphere_cloud(5000));
-    Network network = network_of(shapes::icosphere(2), target, 1.1);
+    Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(2), 1.1));
     const Network before = network;
     Stop stop;
     const FitReport report = fit_to_points(network, target, {}, 1, 1, stop);
@@ -280,10 +269,10 @@ TEST(Fit, StopsWhenAskedTo) {
     EXPECT_TRUE(same_bytes(before, network));
 }
 
-// Before any smoothing and any reduction.
-TEST(Fit, StoppedAtOnceItLeavesATangledMeshAsItWas) {
+// Cancelled before smoothing and reduction have begun.
+TEST(Fit, CancelledAtOnceItLeavesATangledMeshUnchanged) {
     const TargetSpace target = target_of(shapes::sphere_cloud(5000));
-    Network network = network_of(shapes::icosphere(3), target, 1.1, 0.05);
+    Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 1.1), 0.05);
     ThreadTeam team(1);
     ASSERT_FALSE(self_crossings(Surface(network), team).empty());
     const Network before = network;
@@ -308,13 +297,13 @@ TEST(Fit, ReportsHowMuchOfItIsDone) {
         int standing_still = 0;
     };
     const TargetSpace target = target_of(shapes::sphere_cloud(5000));
-    Network network = network_of(shapes::icosphere(3), target, 1.1, 0.05);
+    Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 1.1), 0.05);
     FitOptions options;
     options.reduce_to = 100;
     Watch progress;
     fit_to_points(network, target, options, 1, 1, progress);
     EXPECT_EQ(network.vertex_count(), 100);
-    EXPECT_LT(progress.standing_still, 2) << "the first round of the reduction takes none out";
+    EXPECT_LT(progress.standing_still, 2) << "the first round of the reduction removes none";
     EXPECT_GT(progress.last, 0.6);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The normal equations against their definition, their solution against Eigen's direct solvers.
+// The normal equations against their definition, and their solution against Eigen's direct solvers.
 #include "vcg_core/fit/least_squares.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ Matrix matrix_of(const PointToPlaneSystem& system, int slots, float lambda) {
 }
 
 struct LeastSquares : testing::Test {
-    Network network = noisy_network(shapes::icosphere(2), 0.02);
+    Network network = referee::network_of(shapes::icosphere(2), 0.02);
     Surface surface{network};
     PointsByFace points = points_on(surface, 12, sine);
     ThreadTeam team{2};
@@ -70,14 +70,14 @@ TEST_F(LeastSquares, IsSolvedAsByDirectSolvers) {
         EXPECT_LT((dense - sparse).norm(), 1e-8 * dense.norm());
         const Vector exact = flat(system.solve(lambda, {1e-6, 2000}));
         EXPECT_LT((exact - dense).norm(), 1e-3 * dense.norm()) << lambda;
-        // What the fit asks for: an energy close to the least one.
+        // The fit needs an energy close to the minimum.
         const auto energy = [&](const Vector& u) { return (0.5 * u.dot(matrix * u) - u.dot(right_side)); };
         const Vector solved = flat(system.solve(lambda));
         EXPECT_LT(energy(solved) - energy(dense), 1e-2 * -energy(dense)) << lambda;
     }
 }
 
-// Of the points' part alone: sum of w ((n.e)^2 + kTangential |e_t|^2), as the header has it.
+// The energy of the points, without bending: sum of w ((n.e)^2 + kTangential |e_t|^2), as the header defines.
 TEST_F(LeastSquares, MeasuresThePointsAsDefined) {
     constexpr double kTangential = 0.03;
     const PointsByFace none(surface, {}, {});
@@ -103,7 +103,7 @@ TEST_F(LeastSquares, MeasuresThePointsAsDefined) {
             };
             expected += energy(1) - energy(0);
         }
-    // Three times the influence adds twice the points' part, and nothing else.
+    // Tripling the influence of all points adds twice their energy, and no bending.
     const auto energy = [&](const PointToPlaneSystem& s) {
         PerVertex<Vector3> image(u.size(), Vector3::Zero());
         s.multiply(0, u, image);
@@ -112,9 +112,9 @@ TEST_F(LeastSquares, MeasuresThePointsAsDefined) {
     EXPECT_NEAR((energy(heavy) - energy(system)) / 2, expected, 1e-3 * std::abs(expected));
 }
 
-// Points at the same height above every face of a plane: it moves there, but for the weak pull back.
+// All points lie at the same height above a plane: it moves to them, nearly without sliding sideways.
 TEST(PointToPlaneSystem, LiftsAPlaneToItsPoints) {
-    const Network plane = noisy_network(shapes::grid(8, 8), 0);
+    const Network plane = referee::network_of(shapes::grid(8, 8));
     const Surface surface(plane);
     ThreadTeam team(1);
     const PointsByFace points = points_on(surface, 30, [](Random&) { return 0.05; });
@@ -125,12 +125,12 @@ TEST(PointToPlaneSystem, LiftsAPlaneToItsPoints) {
     }
 }
 
-// On a plane no gap is open, whatever the shapes of the triangles, and none opens by a tilt of the plane.
+// A plane has no bending energy, whatever the shapes of its triangles, and none after it is tilted.
 TEST(BendingTerms, AreZeroOnAPlane) {
     shapes::Shape grid = shapes::grid(8, 8);
     Random random(9);
     for (vcg::Point3d& p : grid.positions) p += vcg::Point3d(0.02, 0.01, 0) * shapes::signed_unit(random);
-    const Network network = noisy_network(grid, 0);
+    const Network network = referee::network_of(grid);
     const Surface surface(network);
     ThreadTeam team(1);
     const PointToPlaneSystem system(network, surface, points_on(surface, 10, sine), team);
@@ -144,7 +144,7 @@ TEST(BendingTerms, AreZeroOnAPlane) {
     system.multiply(100, tilt, bent);
     system.multiply(0, tilt, plain);
     EXPECT_LT((flat(bent) - flat(plain)).norm(), 1e-3 * flat(plain).norm());
-    // A bump does open gaps.
+    // A bump has bending energy.
     tilt[40][2] += 1;
     system.multiply(100, tilt, bent);
     system.multiply(0, tilt, plain);

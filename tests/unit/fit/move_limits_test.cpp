@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Displacements within the limits stay; after others no face is worse than the rules allow.
+// Displacements within the limits are kept; larger ones are shortened until every face obeys the face rules.
 #include "vcg_core/fit/move_limits.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ void expect_within_rules(const Surface& before, const Surface& after) {
 }
 
 TEST(MoveLimits, LeavesSmallDisplacementsAlone) {
-    const Network network = noisy_network(shapes::icosphere(3), 0);
+    const Network network = referee::network_of(shapes::icosphere(3));
     const Surface surface(network);
     const PerVertex<Vector3> u = random_displacements(network.slot_count(), 0.01F, 1);
     const PerVertex<Vector3> moved = MoveLimits(network, surface).bounded(u);
@@ -50,7 +50,7 @@ TEST(MoveLimits, LeavesSmallDisplacementsAlone) {
 }
 
 TEST(MoveLimits, BoundsLargeDisplacements) {
-    const Network network = noisy_network(shapes::icosphere(3), 0.01);
+    const Network network = referee::network_of(shapes::icosphere(3), 0.01);
     const Surface surface(network);
     const MoveLimits limits(network, surface);
     for (float size : {0.1F, 1.0F, 100.0F}) {
@@ -70,8 +70,8 @@ TEST(MoveLimits, BoundsLargeDisplacements) {
     }
 }
 
-TEST(MoveLimits, LeavesAVertexThatIsToMoveNowhere) {
-    const Network network = noisy_network(shapes::icosphere(2), 0);
+TEST(MoveLimits, DoesNotMoveAVertexByNaN) {
+    const Network network = referee::network_of(shapes::icosphere(2));
     const Surface surface(network);
     PerVertex<Vector3> u(network.slot_count(), Vector3(0.01F, 0, 0));
     u[3][1] = std::numeric_limits<float>::quiet_NaN();
@@ -80,11 +80,11 @@ TEST(MoveLimits, LeavesAVertexThatIsToMoveNowhere) {
     EXPECT_NE(moved[4], surface.positions[4]);
 }
 
-// A flat box whose lid is to come down through its floor.
+// A flat box whose lid would move through its floor.
 TEST(MoveLimits, ShortensUntilTheGuardAccepts) {
     shapes::Shape box = shapes::icosphere(3);
     for (vcg::Point3d& p : box.positions) p[2] *= 0.02;
-    const Network network = noisy_network(box, 0);
+    const Network network = referee::network_of(box);
     const Surface surface(network);
     ThreadTeam team(2);
     ASSERT_TRUE(self_crossings(surface, team).empty());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Moving and removing vertices: counts, topology, and what must stay apart.
+// Moving and removing vertices: counts, topology, and operations that must not touch each other.
 #include "vcg_core/fit/redistribute.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ FitScene cube_scene() {
     shapes::Shape shape = shapes::icosphere(3);
     for (vcg::Point3d& p : shape.positions)
         p /= 2 * std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
-    return {noisy_network(shape, 0.001), shapes::box_cloud(30000)};
+    return {referee::network_of(shape, 0.001), shapes::box_cloud(30000)};
 }
 
 TEST(Redistribute, KeepsTheVertexCountAndTheTopology) {
@@ -86,7 +86,7 @@ TEST(Redistribute, LeavesBarredVerticesAlone) {
 
 // Edges that end on the boundary are split in their middle; the boundary keeps its vertices.
 TEST(Redistribute, LeavesTheBoundaryAlone) {
-    const Network grid = noisy_network(shapes::grid(8, 8), 0);
+    const Network grid = referee::network_of(shapes::grid(8, 8));
     const auto boundary = [](const Network& network) {
         PerVertex<char> result(network.slot_count(), 0);
         for (VertexId v : network.vertices()) result[v] = static_cast<char>(network.ring(v).open);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/unit/support/crumpled.h"
+#include "tests/unit/support/targets.h"
 #include "vcg_core/fit/crossing_guard.h"
 #include "vcg_core/fit/fit.h"
 
@@ -18,11 +19,6 @@ namespace {
 
 using shapes::Shape;
 
-std::vector<SelfCrossing> crossings(const Surface& surface, int threads) {
-    ThreadTeam team(threads);
-    return self_crossings(surface, team);
-}
-
 /// The crossings that untangle() leaves.
 std::vector<SelfCrossing> smoothed_out(Network& network, int threads) {
     ThreadTeam team(threads);
@@ -30,7 +26,7 @@ std::vector<SelfCrossing> smoothed_out(Network& network, int threads) {
     return *untangle(network, team, progress);
 }
 
-TEST(CrossingGuard, ObjectsToWhatIsNewBeyondWhatWasThere) {
+TEST(CrossingGuard, ObjectsToNewCrossingsIfMoreFacesCross) {
     const SelfCrossing a{0, 1, 2, 3, 4, 5};
     const SelfCrossing b{6, 7, 8, 9, 10, 11};
     CrossingGuard strict;
@@ -57,15 +53,15 @@ TEST(Untangle, SmoothsOutACrumpledCap) {
     for (VertexId u = 0; u < network.slot_count(); ++u)
         moved += network.position(u) == before.position(u) ? 0 : 1;
     EXPECT_GT(moved, 0);
-    EXPECT_LT(moved, 200) << "far from it nothing moves";
+    EXPECT_LT(moved, 200) << "vertices far from the cap do not move";
 }
 
-TEST(Untangle, LeavesAloneWhatItCannotMend) {
+TEST(Untangle, AddsNoCrossingsWhereSmoothingFails) {
     for (const double noise : {0.6, 1.5}) {
         Network network = crumpled_sphere(noise);
         const Network before = network;
-        const std::size_t before_it = crossings(Surface(network), 1).size();
-        EXPECT_LE(smoothed_out(network, 1).size(), before_it);
+        const std::size_t crossings_before = crossings(Surface(network), 1).size();
+        EXPECT_LE(smoothed_out(network, 1).size(), crossings_before);
         Network again = before;
         smoothed_out(again, 3);
         for (VertexId v = 0; v < network.slot_count(); ++v) EXPECT_EQ(network.position(v), again.position(v));
@@ -95,7 +91,7 @@ bool same_positions(const Network& a, const Network& b) {
     return true;
 }
 
-TEST(Untangle, StopsBeforeAnySearchWithTheMeshAsItWas) {
+TEST(Untangle, CancelledItLeavesTheMeshUnchanged) {
     const Network before = crumpled_sphere(0.6);
     ThreadTeam team(1);
     int last = 1;
@@ -109,7 +105,7 @@ TEST(Untangle, StopsBeforeAnySearchWithTheMeshAsItWas) {
     EXPECT_GT(last, 3);
 }
 
-TEST(Untangle, DoesNotTryWhereAllFacesLieInEachOther) {
+TEST(Untangle, GivesUpIfEveryFaceIsNearManyOthers) {
     // Corners anywhere in a ball: every face is near half of the others.
     Network network = crumpled_sphere(0);
     Random random(4);
@@ -134,12 +130,10 @@ shapes::Cloud plate_cloud(int count, double thickness) {
 TEST(Fit, DoesNotMakeAPlateCutItself) {
     for (const double thickness : {0.02, 0.05, 0.1}) {
         const shapes::Cloud cloud = plate_cloud(20000, thickness);
-        const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
-        const Shape sphere = shapes::icosphere(2);
-        std::vector<vcg::Point3f> positions;
-        for (const vcg::Point3d& p : sphere.positions)
-            positions.push_back(target.frame().inside({0.7 * p[0], 0.7 * p[1], 0.8 * thickness * p[2]}));
-        Network network(positions, std::vector<Triangle>(sphere.faces.begin(), sphere.faces.end()));
+        const TargetSpace target = targets::target_of(cloud);
+        Shape flattened = shapes::icosphere(2);
+        for (vcg::Point3d& p : flattened.positions) p = {0.7 * p[0], 0.7 * p[1], 0.8 * thickness * p[2]};
+        Network network = targets::network_in_frame(target, flattened);
         ASSERT_TRUE(cut_faces(network).empty());
         NoProgress progress;
         const FitReport report = fit_to_points(network, target, {}, 1, 1, progress);
@@ -151,7 +145,7 @@ TEST(Fit, DoesNotMakeAPlateCutItself) {
 
 TEST(Fit, LeavesNoMoreCrossingsThanThereWere) {
     const shapes::Cloud cloud = plate_cloud(20000, 0.03);
-    const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+    const TargetSpace target = targets::target_of(cloud);
     Network network = crumpled_sphere(0.12);
     for (VertexId v = 0; v < network.slot_count(); ++v) {
         vcg::Point3f p = network.position(v) * 0.05F;

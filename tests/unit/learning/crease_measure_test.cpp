@@ -11,6 +11,7 @@
 
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
+#include "tests/unit/support/targets.h"
 #include "vcg_core/learning/learner.h"
 
 namespace neuralmesh {
@@ -18,14 +19,11 @@ namespace {
 
 /// A network that has learned a cloud, with its crease values.
 struct Learned {
-    Learned(const shapes::Cloud& cloud, int vertices)
-        : target(TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; })) {
+    Learned(const shapes::Cloud& cloud, int vertices) : target(targets::target_of(cloud)) {
         options.grow_to = vertices;
         options.utility_increment = UtilityIncrement::one;
         options.settling_signals_per_vertex = 0;
-        shapes::Shape start = shapes::icosphere(1);
-        for (vcg::Point3d& p : start.positions) p *= 0.3;
-        Learner learner(target, options, referee::network_of(start));
+        Learner learner(target, options, referee::network_of(shapes::scaled(shapes::icosphere(1), 0.3)));
         NoProgress progress;
         learner.run(100, progress);
         CreaseMeasure measure;
@@ -135,9 +133,9 @@ TEST(CreaseMeasure, IsIndifferentToScale) {
     for (VertexId v = 0; v < a.size(); ++v) EXPECT_NEAR(a[v], b[v], 1e-4F);
 }
 
-/// Without a moment, the present positions count as one. A shown vertex has the planes of its source, but its
-/// own distance from their line.
-TEST(CreaseMeasure, JudgesAShownVertexWhereItLies) {
+/// If nothing was observed, the present positions are measured. A vertex of the result has the planes of its
+/// source, but its own distance from the line in which they meet.
+TEST(CreaseMeasure, MeasuresAMovedVertexWhereItLies) {
     const Learned run(shapes::box_cloud(40000), 1500);
     const CreaseMeasure none;
     CreaseMeasure one;

@@ -19,9 +19,8 @@ namespace {
 
 using targets::target_of;
 
-Network start_of(shapes::Shape shape, double scale) {
-    for (vcg::Point3d& p : shape.positions) p *= scale;
-    return referee::network_of(shape);
+Network start_of(const shapes::Shape& shape, double scale) {
+    return referee::network_of(shapes::scaled(shape, scale));
 }
 
 /// Equal connectivity and wins, positions within \p tolerance, counters within 1 %: delta is a difference of
@@ -196,7 +195,7 @@ TEST(Learner, ReachesItsTargetOnAnOpenMeshToo) {
     }
 }
 
-/// Checks the fractions reported to it.
+/// Checks the fractions that the learner reports.
 class Fractions : public Progress {
 public:
     bool operator()(double fraction, const char* text) override {

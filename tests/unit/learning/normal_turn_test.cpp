@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The measure that eq 8 stops at.
+// The stop criterion of eq 8: mean turn of the winner's normal.
 #include "vcg_core/learning/normal_turn.h"
 
 #include <gtest/gtest.h>
@@ -31,8 +31,8 @@ TEST(NormalTurn, ForgetsInTenSignalsPerVertex) {
     EXPECT_NEAR(turn.degrees(), std::sqrt(1 / std::exp(1.0)), 0.01);
 }
 
-/// One signal in two hundred has nearly all of the sum, as at the tip of an ear. Over 1000 signals the root
-/// of the mean square would at some time be less than half of what it is over all of them.
+/// One signal in two hundred contributes nearly all of the sum, as at a sharp tip. A window of 1000 signals
+/// would at times hold so few of them that the turn drops to less than half.
 TEST(NormalTurn, HasNoDips) {
     NormalTurn turn;
     Random random(5);

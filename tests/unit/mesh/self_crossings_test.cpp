@@ -26,11 +26,6 @@ class CutFace : public vcg::Face<CutTypes, vcg::face::VertexRef, vcg::face::Norm
                                  vcg::face::BitFlags> {};
 class CutMesh : public vcg::tri::TriMesh<std::vector<CutVertex>, std::vector<CutFace>> {};
 
-std::vector<SelfCrossing> crossings(const Surface& surface, int threads) {
-    ThreadTeam team(threads);
-    return self_crossings(surface, team);
-}
-
 std::vector<SelfCrossing> after(const Surface& surface, const Surface& before,
                                 const std::vector<SelfCrossing>& known, int threads) {
     ThreadTeam team(threads);

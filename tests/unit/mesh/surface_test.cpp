@@ -12,6 +12,7 @@
 #include <set>
 #include <utility>
 
+#include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
 #include "vcg_core/mesh/face_tree.h"
 #include "vcg_core/mesh/face_walk.h"
@@ -19,14 +20,7 @@
 namespace neuralmesh {
 namespace {
 
-/// The shape with every vertex moved by up to \p noise.
-Network network_of(const shapes::Shape& shape, double noise = 0) {
-    Random random(3);
-    std::vector<vcg::Point3f> positions;
-    for (const vcg::Point3d& p : shape.positions)
-        positions.push_back(vcg::Point3f::Construct(p + shapes::in_ball(random) * noise));
-    return Network(positions, std::vector<Triangle>(shape.faces.begin(), shape.faces.end()));
-}
+using referee::network_of;
 
 Network network_with_free_slots() {
     Network network = network_of(shapes::icosphere(2), 0.02);

@@ -28,7 +28,7 @@ Network mesh_of_level(const Lattice& lattice, const PerNode<SquaredRadius>& clea
     return Network(mesh.positions, mesh.faces);
 }
 
-/// The start mesh rests on this: at every level the topology counted is that of the mesh.
+/// The choice of the start mesh relies on this: at every level the counted topology is that of the mesh.
 TEST(LevelTopology, IsThatOfTheMesh) {
     int handles = 0;
     for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "tests/unit/support/referee.h"
 #include "tests/unit/support/small_lattice.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/shell/level_topology.h"
@@ -28,17 +29,6 @@ PerNode<float> random_values(const Lattice& lattice, std::uint64_t seed, std::ui
     return values;
 }
 
-double volume(const IndexedMesh<float>& mesh) {
-    double six_volumes = 0;
-    for (const auto& [a, b, c] : mesh.faces) {
-        const auto p = [&](int i) {
-            return vcg::Point3d::Construct(mesh.positions[static_cast<std::size_t>(i)]);
-        };
-        six_volumes += p(a) * (p(b) ^ p(c));
-    }
-    return six_volumes / 6;
-}
-
 /// The boundary of a solid has twice its Euler characteristic, whatever its components, handles and cavities.
 TEST(MarchingTetrahedra, SurfaceHasTwiceTheEulerCharacteristicOfTheSolid) {
     const Lattice lattice = small_lattice();
@@ -51,7 +41,7 @@ TEST(MarchingTetrahedra, SurfaceHasTwiceTheEulerCharacteristicOfTheSolid) {
         ASSERT_EQ(network.validate(), "");
         EXPECT_EQ(network.boundary_loop_count(), 0);
         EXPECT_EQ(network.euler_characteristic(), 2 * euler_characteristic(lattice, solid)) << seed;
-        EXPECT_GT(volume(mesh), 0);
+        EXPECT_GT(referee::enclosed_volume(mesh), 0);
         for (const VertexId v : network.vertices()) {
             EXPECT_GE(network.ring(v).valence, 4);
             EXPECT_LE(network.ring(v).valence, 12);

@@ -11,14 +11,16 @@
 #include <cstring>
 #include <string>
 
+#include "tests/unit/support/referee.h"
 #include "tests/unit/support/shell_shapes.h"
+#include "tests/unit/support/targets.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
 namespace {
 
 StartMesh shell(const std::vector<vcg::Point3d>& cloud, const ShellOptions& options = {}) {
-    const TargetSpace target = TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+    const TargetSpace target = targets::target_of(cloud);
     Random random(1);
     NoProgress progress;
     return shell_of(target, options, random, progress);
@@ -29,23 +31,12 @@ StartMesh shell_of_samples(const shell_shapes::Shape& shape, std::size_t count, 
     return shell(shell_shapes::sample(shape, count, random, noise));
 }
 
-double volume(const StartMesh& mesh) {
-    double six_volumes = 0;
-    for (const auto& [a, b, c] : mesh.faces) {
-        const auto p = [&](int i) {
-            return vcg::Point3d::Construct(mesh.positions[static_cast<std::size_t>(i)]);
-        };
-        six_volumes += p(a) * (p(b) ^ p(c));
-    }
-    return six_volumes / 6;
-}
-
 bool warns_of(const StartMesh& mesh, const std::string& word) {
     return std::any_of(mesh.warnings.begin(), mesh.warnings.end(),
                        [&](const std::string& w) { return w.find(word) != std::string::npos; });
 }
 
-/// All that is promised of every start mesh, whatever the cloud.
+/// What holds for every start mesh, whatever the cloud.
 void expect_sound(const StartMesh& mesh) {
     const Network network(mesh.positions, mesh.faces);
     EXPECT_EQ(network.validate(), "");
@@ -56,7 +47,7 @@ void expect_sound(const StartMesh& mesh) {
         EXPECT_GE(network.ring(v).valence, 3);
         EXPECT_LE(network.ring(v).valence, 12);
     }
-    EXPECT_GT(volume(mesh), 0);
+    EXPECT_GT(referee::enclosed_volume(mesh), 0);
 }
 
 void expect_topology(const StartMesh& mesh, int components, int genus) {
@@ -95,7 +86,7 @@ TEST(Shell, ThinWalledCupStaysOpen) {
     const StartMesh mesh = shell_of_samples(shell_shapes::cup(1, 2, 0.06), 20000);
     expect_topology(mesh, 1, 0);
     // In a frame of diagonal 1 a filled cup has a volume of 0.151, and more at the shell's distance.
-    EXPECT_LT(volume(mesh), 0.15);
+    EXPECT_LT(referee::enclosed_volume(mesh), 0.15);
 }
 
 TEST(Shell, NoiseDoesNotMakeHandles) {
@@ -128,7 +119,7 @@ TEST(Shell, OpenScanIsClosedWithAWarning) {
     const StartMesh mesh = shell(cloud);
     expect_topology(mesh, 1, 0);
     EXPECT_TRUE(mesh.encloses_space);
-    EXPECT_GT(volume(mesh), 0.08);  // a ball in a frame of diagonal 1: about 0.1
+    EXPECT_GT(referee::enclosed_volume(mesh), 0.08);  // a ball in a frame of diagonal 1: about 0.1
     EXPECT_TRUE(warns_of(mesh, "holes"));
 }
 

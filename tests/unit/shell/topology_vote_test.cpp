@@ -46,7 +46,7 @@ TEST(TopologyVote, SmallerRadiiCountMore) {
     EXPECT_DOUBLE_EQ(vote.confidence, 0.5 / (0.5 + 1 / 2.0 - 1 / 6.0));
 }
 
-TEST(TopologyVote, ComponentsAreToldApartLikeHandles) {
+TEST(TopologyVote, ComponentsCountLikeHandles) {
     const TopologyVote vote = persistent_topology({{{1, 4, 0}, {2, 1, 0}, {4, 4, 0}, {64, 4, 0}}}, {1});
     EXPECT_EQ(vote.components, 4);
     // Two ranges of one topology: their votes add up, and the one with more votes gives the levels.

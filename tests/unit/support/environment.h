@@ -14,7 +14,7 @@
 namespace neuralmesh::environment {
 
 /// The integer in the environment variable \p name, or \p otherwise if it is not set. Any other value, or a
-/// number below \p low, fails the test, which would else pass without having tried anything.
+/// number below \p low, fails the test: otherwise it would pass without having run anything.
 inline int number_of(const char* name, int otherwise, int low) {
     const char* text = std::getenv(name);
     if (text == nullptr) return otherwise;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Slow and simple checks of meshes, from their lists of faces alone.
+// Networks of shapes, and slow and simple checks of meshes from their lists of faces.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -18,10 +18,12 @@
 
 namespace neuralmesh::referee {
 
-/// The shape as a network.
-inline Network network_of(const shapes::Shape& shape) {
+/// The shape as a network, every vertex moved by up to \p noise.
+inline Network network_of(const shapes::Shape& shape, double noise = 0, std::uint64_t seed = 3) {
+    Random random(seed);
     std::vector<vcg::Point3f> positions;
-    for (const vcg::Point3d& p : shape.positions) positions.push_back(vcg::Point3f::Construct(p));
+    for (const vcg::Point3d& p : shape.positions)
+        positions.push_back(vcg::Point3f::Construct(p + shapes::in_ball(random) * noise));
     return {positions, shape.faces};
 }
 
@@ -119,17 +121,24 @@ inline Census census(const std::vector<Triangle>& faces) {
     return result;
 }
 
-/// Six times the volume that the faces enclose; positive if they are counter-clockwise seen from outside.
+/// The volume that the faces enclose; positive if they are counter-clockwise seen from outside.
 template <class Position>
 double enclosed_volume(const std::vector<Triangle>& faces, const Position& position) {
-    double sum = 0;
+    double six_volumes = 0;
     for (const Triangle& f : faces) {
         const auto a = vcg::Point3d::Construct(position(f[0]));
         const auto b = vcg::Point3d::Construct(position(f[1]));
         const auto c = vcg::Point3d::Construct(position(f[2]));
-        sum += a * (b ^ c);
+        six_volumes += a * (b ^ c);
     }
-    return sum;
+    return six_volumes / 6;
+}
+
+/// The same of a mesh with vectors of positions and faces.
+template <class Mesh>
+double enclosed_volume(const Mesh& mesh) {
+    return enclosed_volume(mesh.faces,
+                           [&](VertexId v) { return mesh.positions[static_cast<std::size_t>(v)]; });
 }
 
 inline double enclosed_volume(const Network& network) {

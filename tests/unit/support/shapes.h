@@ -29,6 +29,11 @@ inline void append(Shape& shape, const Shape& part, const vcg::Point3d& offset) 
     for (const auto& [a, b, c] : part.faces) shape.faces.push_back({first + a, first + b, first + c});
 }
 
+inline Shape scaled(Shape shape, double factor) {
+    for (vcg::Point3d& p : shape.positions) p *= factor;
+    return shape;
+}
+
 // Small meshes without faces of no area, for tests of connectivity.
 
 inline Shape tetrahedron() {
