@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Signals per second of the learning loop, and where the time goes: search, smoothing, normals, counters,
-// moves, topology. Whole steps with one thread and with two, the parts with one. The cloud is 200,000 points
-// of a bumpy torus made here.
+// Signals per second of the learning loop, on one thread and on two, and of its parts on one thread: search,
+// smoothing, normals, counters, moves, topology. The cloud is 200,000 points of a bumpy torus, made here.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -213,14 +212,14 @@ void part_displacements(benchmark::State& state) {
 
 void part_counters(benchmark::State& state) {
     Network network = learned(static_cast<int>(state.range(0)));
-    const auto who = winners(network);
+    const auto winner_ids = winners(network);
     UtilityCounters utility(0.95, 30);
     FeatureCounters features(0.95);
     WindowMean mean(1000);
     utility.resize(network.slot_count());
     features.resize(network.slot_count());
     for (auto _ : state)
-        for (const VertexId w : who) {
+        for (const VertexId w : winner_ids) {
             mean.add(1e-4);
             utility.win(w, 1e-4 / mean.mean());
             features.win(w, 1e-4 / mean.mean());
@@ -232,9 +231,9 @@ void part_counters(benchmark::State& state) {
 void part_moves(benchmark::State& state) {
     Network network = learned(static_cast<int>(state.range(0)));
     WinnerSearch search(network);
-    const auto who = winners(network);
+    const auto winner_ids = winners(network);
     for (auto _ : state)
-        for (const VertexId w : who) {
+        for (const VertexId w : winner_ids) {
             search.move(w, network.position(w));
             const Ring& ring = network.ring(w);
             for (int i = 0; i < ring.valence; ++i) search.move(ring[i], network.position(ring[i]));

@@ -19,7 +19,7 @@ using namespace neuralmesh;
 
 constexpr double kTwoPi = 6.283185307179586;
 
-/// Point i of the torus, the same for any number of points; every 100th far from it where there are outliers.
+/// Point i of the torus, the same for any number of points; if \p outliers, every 100th is far from it.
 vcg::Point3d point(std::uint64_t i, bool outliers) {
     Random random(i);
     const double u = kTwoPi * static_cast<double>(random.unit());

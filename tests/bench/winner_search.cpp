@@ -82,7 +82,7 @@ void ours(benchmark::State& state) {
 }
 BENCHMARK(ours)->Arg(45)->Arg(141)->Arg(447)->Unit(benchmark::kMillisecond);
 
-/// What vcglib's indices ask of a point.
+/// A point with the interface that vcglib's indices need.
 struct Point {
     using ScalarType = float;
     vcg::Point3f p;

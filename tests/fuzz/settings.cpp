@@ -122,7 +122,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Settings settings = settings_of(bytes, sound);
     try {
         settings.check();
-        expect(sound, "check() let a value pass that is out of its range");
+        expect(sound, "check() accepted a value that is out of its range");
     } catch (const SettingError& error) {
         fuzz::expect_sentence(error.what());
         expect(!sound, "check() refused values that are all in their ranges");

@@ -29,12 +29,12 @@ TEST(Actions, CountsBeyondIntAreTheLargestInt) {
                                             {60LL * 20'000'000 * 100, kLargest}}) {
         report.signals = signals;
         EXPECT_EQ(figure(figures(report), "signals").count(), expected) << signals;
-        // The log has room for them.
+        // The log has the exact number.
         EXPECT_NE(log_lines(report)[1].find("signals=" + std::to_string(signals) + " "), std::string::npos);
     }
 }
 
-TEST(Actions, TellsTheNumberOfWarnings) {
+TEST(Actions, CountTheWarningsAndLogThemSeparately) {
     Report report;
     EXPECT_EQ(figure(figures(report), "warnings").count(), 0);
     report.warnings = {"One.", "Two."};
@@ -42,14 +42,14 @@ TEST(Actions, TellsTheNumberOfWarnings) {
     for (const std::string& line : log_lines(report)) EXPECT_EQ(line.find("One."), std::string::npos) << line;
 }
 
-TEST(Actions, SaysWhyLearningEnded) {
+TEST(Actions, LogWhyLearningEnded) {
     Report report;
     report.stop_reason = StopReason::converged;
     EXPECT_NE(log_lines(report)[0].find("'Stop below mean counter'"), std::string::npos)
         << log_lines(report)[0];
 }
 
-TEST(Actions, SaysWhereCoordinatesAreCountedFrom) {
+TEST(Actions, StateTheOriginOfTheCoordinates) {
     const std::string sentence = sentence_on_origin({1e7, -4999950, 107});
     EXPECT_NE(sentence.find("(10000000, -4999950, 107)"), std::string::npos) << sentence;
 }

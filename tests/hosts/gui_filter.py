@@ -137,7 +137,7 @@ def press(session, dialog, column):
 
 
 def apply_filter(session, dialog, seconds):
-    """Presses Apply and waits until MeshLab logs that the filter ran; throws if it failed."""
+    """Presses Apply and waits until MeshLab logs that the filter ran; raises GuiError if it failed."""
     def finished():
         session.check_alive()
         if session.windows("Filter Failure|Filtering Error|Uncaught|Error"):
@@ -156,7 +156,7 @@ def count_colorful(picture, size):
 
 
 def wait_for_main_window(session):
-    """MeshLab's main window; throws if MeshLab lists plugins that it could not load instead."""
+    """MeshLab's main window; raises GuiError if MeshLab lists plugins that it could not load instead."""
     def look():
         session.check_alive()
         if session.windows("^Error while loading plugins"):

@@ -24,7 +24,7 @@ class GuiError(RuntimeError):
 
 
 def require_programs(*names):
-    """Throws GuiError naming every program of `names` that is not installed."""
+    """Raises GuiError naming every program of `names` that is not installed."""
     missing = [name for name in names if shutil.which(name) is None]
     if missing:
         raise GuiError(f"{', '.join(missing)} not found: install the Debian packages "
@@ -32,14 +32,14 @@ def require_programs(*names):
 
 
 def wait_until(condition, what, seconds=30.0):
-    """Polls `condition` until it returns something true and returns that. Throws GuiError."""
+    """Polls `condition` until it returns something true and returns that. Raises GuiError."""
     deadline = time.monotonic() + seconds
     while True:
         result = condition()
         if result:
             return result
         if time.monotonic() > deadline:
-            raise GuiError(f"Waited {seconds:g} s in vain for {what}.")
+            raise GuiError(f"Timed out after {seconds:g} s of waiting for {what}.")
         time.sleep(POLL_SECONDS)
 
 

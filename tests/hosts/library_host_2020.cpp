@@ -58,7 +58,7 @@ public:
         document.Log.print(logged);
         const auto truth = [](bool value) { return value ? "true" : "false"; };
         std::cout << "{\"learned\": " << truth(learned) << ", \"escaped\": " << truth(escaped)
-                  << ", \"told\": " << truth(logged.join(' ').contains("signals="))
+                  << ", \"reported\": " << truth(logged.join(' ').contains("signals="))
                   << ", \"layers\": " << document.size() << ", \"current\": \""
                   << document.mm()->label().toStdString() << "\", \"vn\": " << document.mm()->cm.vn << "}"
                   << std::endl;

@@ -73,7 +73,7 @@ def test_no_bad_alloc_leaves_the_plugin_in_meshlab_2020(build):
         assert not outcome["escaped"], f"run {index}"
         expected = (2, "Neural Mesh", 100) if outcome["learned"] else (1, "layer", 1000)
         assert (outcome["layers"], outcome["current"], outcome["vn"]) == expected, f"run {index}: {outcome}"
-        assert outcome["learned"] or not outcome["told"], f"run {index} reports a mesh that does not exist"
+        assert outcome["learned"] or not outcome["reported"], f"run {index} reports a mesh that does not exist"
     assert sum(1 for outcome in starved if not outcome["learned"]) > len(starved) / 2
 
 

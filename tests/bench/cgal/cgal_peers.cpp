@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// CGAL's ways from a cloud to a mesh of N vertices, to be timed beside ours:
+// Reconstructs a mesh of about N vertices from a cloud with CGAL, for comparison with the neural mesh:
 //   cgal_peers advancing-front|alpha-wrap CLOUD.ply OUT.ply target_vertices=N
-// writes the mesh and prints its seconds without reading and writing. Advancing Front meshes all points and
-// is reduced by CGAL's edge collapse; Alpha Wrap's vertices follow from alpha, which is looked for
-// beforehand.
+// writes the mesh and prints the seconds, without reading and writing files. Advancing Front meshes all
+// points, then CGAL's edge collapse reduces the mesh. The number of vertices of Alpha Wrap depends on alpha;
+// the search for alpha is not timed.
 #include <CGAL/Advancing_front_surface_reconstruction.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/IO/read_points.h>
@@ -32,7 +32,7 @@ using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
 void reduce(Mesh& mesh, std::size_t vertices) {
     namespace Simplification = CGAL::Surface_mesh_simplification;
-    // Three edges a vertex, but for the topology.
+    // A closed mesh has about three edges per vertex.
     const Simplification::Count_stop_predicate<Mesh> stop(3 * vertices);
     Simplification::edge_collapse(mesh, stop);
     mesh.collect_garbage();
@@ -51,14 +51,14 @@ Mesh advancing_front(Points points, std::size_t vertices) {
     return mesh;
 }
 
-/// With the offset that CGAL's manual shows, a twentieth of alpha.
+/// The offset is a twentieth of alpha, as in CGAL's manual.
 Mesh wrap(const Points& points, double alpha) {
     Mesh mesh;
     CGAL::alpha_wrap_3(points, alpha, alpha / 20, mesh);
     return mesh;
 }
 
-/// The alpha whose wrap has about so many vertices: their number goes with its inverse square.
+/// The alpha whose wrap has about \p vertices vertices. Their number is nearly proportional to 1 / alpha^2.
 double alpha_for(const Points& points, std::size_t vertices) {
     const CGAL::Bbox_3 box = CGAL::bbox_3(points.begin(), points.end());
     double alpha = std::hypot(box.x_span(), box.y_span(), box.z_span()) / 50;
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
     const auto vertices = static_cast<std::size_t>(std::stoul(wanted.substr(key.size())));
     Points points;
     if (!CGAL::IO::read_points(argv[2], std::back_inserter(points)) || points.empty()) {
-        std::fprintf(stderr, "%s: no points could be read from it.\n", argv[2]);
+        std::fprintf(stderr, "No points could be read from %s.\n", argv[2]);
         return 1;
     }
     const double alpha = method == "alpha-wrap" ? alpha_for(points, vertices) : 0;

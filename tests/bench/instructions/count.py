@@ -53,11 +53,11 @@ def main():
     recorded = float(RECORDED.read_text())
     print(f"{now:.0f} instructions per signal, recorded {recorded:.0f}: {100 * (now / recorded - 1):+.1f} %")
     if now > recorded * (1 + MOST_ABOVE):
-        print("The learning loop has become dearer by more than 5 %. Where it should be, record the new figure:\n"
+        print("That is over 5 % more than recorded. If the increase is intended, record the new count:\n"
               f"  {Path(__file__).name} --record {options.program}")
         return 1
     if now < recorded * (1 - MOST_ABOVE):
-        print("It has become cheaper; record the new figure, so that it stays so.")
+        print("That is over 5 % less than recorded: record the new count, so that a later increase is noticed.")
     return 0
 
 

@@ -31,7 +31,7 @@ from compare_accuracy import by_case, geometric_mean, table, topology_right
 
 TABLE_MODELS = ("bunny", "koala", "fandisk", "kitten", "rocker-arm", "eight", "block", "genus3")
 SMALL_MODELS = ("torus", "two-spheres", "linked-tori", "filleted-cube")
-# In 20,000 points with noise of .3 % the parts of the other models cannot be sentences apart.
+# With 20,000 points and noise of .3 %, neighbouring parts of the other models cannot be separated.
 SMALL_NOISY_MODELS = ("torus", "filleted-cube")
 PEERS = ("poisson", "poisson-smooth")
 EXTRA_TOPOLOGY = ("turbine",)  # not counted in the goal

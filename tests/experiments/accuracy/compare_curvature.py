@@ -60,8 +60,7 @@ def filter_values(meshes, name):
 def normal_spread(points, truth, radius):
     """1 - |mean of the true normals within radius|, from 0 (flat) upwards, at the true surface next to each point.
 
-    Normals of another sheet (more than a right angle from the nearest one) do not count, or every thin wall would be
-    a feature.
+    Normals at more than a right angle from the nearest one belong to the other side of a thin wall and are left out.
     """
     tree = cKDTree(truth.points)
     _, nearest = tree.query(points)

@@ -175,7 +175,7 @@ def load_model(name, data=None):
             return load_mesh(Path(data, rest))
         else:
             reasons.append(f"Its file {rest} needs a data folder: give --data or set NEURAL_MESH_DATA.")
-    raise ModelError(f"The model {name} is not to be had. " + " ".join(reasons))
+    raise ModelError(f"The model {name} is not available. " + " ".join(reasons))
 
 
 def diagonal(points):

@@ -49,8 +49,7 @@ def reconstruct_poisson_smooth(meshes, _count):
 def reconstruct_ball_pivoting(meshes, count):
     """Poisson-disk thinning to four times the vertices, normals, Ball Pivoting, small holes closed.
 
-    Straight on a random cloud Ball Pivoting takes minutes and leaves thousands of holes; thinning first is what
-    MeshLab's users are used_file to do.
+    Without thinning, Ball Pivoting takes minutes on a random cloud and leaves thousands of holes.
     """
     meshes.generate_sampling_poisson_disk(samplenum=4 * count, subsample=True)
     meshes.compute_normal_for_point_clouds()
@@ -85,7 +84,7 @@ def decimated(meshes, count):
     """Quadric Edge Collapse of the current mesh, in a new layer, to count vertices within 1 %.
 
     The filter counts faces, so the faces to ask for follow from the Euler characteristic. Where the collapse itself
-    changes that, it goes on from where it stands, or starts anew with a larger number if it went too far. Only the
+    changes that, it collapses further, or starts again with more faces if there are too few vertices. Only the
     work that led to the result is timed.
     """
     source = meshes.current_mesh_id()

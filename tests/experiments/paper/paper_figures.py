@@ -79,11 +79,11 @@ class Studio:
         for folder in (options.out, options.pictures):
             folder.mkdir(parents=True, exist_ok=True)
 
-    def had(self, names, count):
+    def first_available(self, names, count):
         """The first `count` subjects whose model is available."""
         found = []
         for name in names:
-            if len(found) < count and paper_runs.can_be_had(name, self.options.data):
+            if len(found) < count and paper_runs.is_available(name, self.options.data):
                 found.append(SUBJECTS[name])
         return found
 
@@ -177,7 +177,7 @@ def painted(path, vertices, faces, values, low, high):
 def fig1(studio):
     """The mesh is dense where curvature is high: captions give the correlation of density and curvature."""
     rows, captions, numbers_of_model = [], [], {}
-    for subject in studio.had(PAIR, 2):
+    for subject in studio.first_available(PAIR, 2):
         truth, faces = studio.surface(subject)
         curvature = mean_curvature(truth, faces)
         low, high = np.percentile(curvature, (5, 95))
@@ -200,7 +200,7 @@ def fig1(studio):
 
 def fig2(studio):
     """The counters of several models as colours."""
-    subjects = studio.had(SIX, 6)
+    subjects = studio.first_available(SIX, 6)
     meshes = [studio.mesh(subject, 10000)[0] for subject in subjects]
     pictures = [subject.pictures([mesh], "smooth", True)[0] for subject, mesh in zip(subjects, meshes)]
     titles = [subject.title for subject in subjects]
@@ -213,7 +213,7 @@ def fig2(studio):
 def fig3(studio):
     """Levels of detail, with the processor time of each on one thread."""
     rows, captions, numbers_of_model = [], [], {}
-    for subject in studio.had(PAIR, 2):
+    for subject in studio.first_available(PAIR, 2):
         made = [studio.mesh(subject, level, threads=1) for level in studio.options.levels]
         rows.append(subject.pictures([mesh for mesh, _ in made], "flat"))
         captions.append([f"{report['vertices']:,} vertices, {report['processor_seconds']:.1f} s" for _, report in made])

@@ -25,13 +25,13 @@ BRAIN = "mesh/brain_aim_18k.ply"
 
 
 class RunError(RuntimeError):
-    """A program that the experiment needs failed; the message holds what it said."""
+    """A program that the experiment needs failed; the message contains its output."""
 
 
 def surface(name, data=None):
     """Vertices and triangles of a model of models.py, or of "brain": the largest component of a scan's surface.
 
-    Throws models.ModelError when it cannot be had.
+    Raises models.ModelError if it is not available.
     """
     if name != "brain":
         return models.load_model(name, data)
@@ -44,7 +44,7 @@ def surface(name, data=None):
     return largest.vertex_matrix(), largest.face_matrix()
 
 
-def can_be_had(name, data=None):
+def is_available(name, data=None):
     """Whether surface() can provide the model. May download a package."""
     try:
         surface(name, data)
@@ -61,9 +61,8 @@ def output_of(command):
 
 
 def learn(program, cloud, out, **settings):
-    """Runs the core on a PLY file; returns its report, with its warnings under "warnings" and the time it kept
-    processors busy, reading and writing included, under "processor_seconds": on a machine that does other work, too, that
-    says more than the clock."""
+    """Runs the core on a PLY file; returns its report, with the warnings as "warnings" and the processor time, including
+    reading and writing, as "processor_seconds". Processor time depends less on other load than wall time."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     run = output_of([program, cloud, out, *(f"{key}={value}" for key, value in settings.items())])
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -129,8 +128,8 @@ def digest(data):
 class Kept:
     """The rows of an experiment on disk, so that an interrupted run continues where it stopped.
 
-    Rows that another build of the program made, or from another cloud or other settings, are not taken again: all
-    that is part of the key. One JSON object a line; a line that was being written when the run ended is left out.
+    The key contains the checksum of the program, the cloud and the settings, so only rows of equal runs are reused.
+    The file has one JSON object per line; an incomplete last line is ignored.
     """
 
     def __init__(self, path, program):

@@ -83,7 +83,7 @@ def all_rows(options):
     rows = []
     kept = paper_runs.Kept(options.out / "table1.rows.jsonl", options.learn)
     for name in options.models:
-        if not paper_runs.can_be_had(name, options.data):
+        if not paper_runs.is_available(name, options.data):
             print(f"{name} needs a data folder and is left out.", file=sys.stderr)
             continue
         surface = paper_runs.surface(name, options.data)
@@ -205,7 +205,7 @@ def main(arguments=None):
     except (models.ModelError, paper_runs.RunError) as error:
         sys.exit(str(error))
     if not rows:
-        sys.exit("None of the models is to be had: set NEURAL_MESH_DATA or install glmark2-data.")
+        sys.exit("None of the models is available: set NEURAL_MESH_DATA or install glmark2-data.")
     text = report(rows, options)
     (options.out / "table1.json").write_text(json.dumps(rows, indent=1))
     (options.out / "table1.md").write_text(text + "\n")

@@ -76,7 +76,7 @@ def measured(options):
     """Traces, stopped runs, and runs that all have the geometric mean of the stopped runs' vertices."""
     options.out.mkdir(parents=True, exist_ok=True)
     kept = paper_runs.Kept(options.out / "termination.rows.jsonl", options.learn)
-    names = [name for name in options.models if paper_runs.can_be_had(name, options.data)][:COUNT]
+    names = [name for name in options.models if paper_runs.is_available(name, options.data)][:COUNT]
     subjects = [Subject(name, options) for name in names]
     traces = {s.name: kept.row(s.trace, **s.key, most=options.most) for s in subjects}
     rows = []

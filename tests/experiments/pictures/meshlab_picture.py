@@ -71,7 +71,7 @@ class Picture:
 
 
 def camera_axes(view, up):
-    """Rows: right, up and towards the viewer, orthonormal. Throws ValueError for a degenerate view."""
+    """Rows: right, up and towards the viewer, orthonormal. Raises ValueError for a degenerate view."""
     towards = np.asarray(view, dtype="f8")
     right = np.cross(np.asarray(up, dtype="f8"), towards)
     if np.linalg.norm(right) < 1e-9 * max(1.0, np.linalg.norm(towards)):
@@ -187,7 +187,7 @@ def cut_to_size(drawing, size):
 def render(pictures, size=(600, 600), background=(255, 255, 255), margin=0.03):
     """Draws all pictures in one run of MeshLab; returns Pillow images of exactly `size` pixels.
 
-    margin: free border, as a part of the picture's height. Takes 2 to 4 s. Throws GuiError when
+    margin: free border, as a part of the picture's height. Takes 2 to 4 s. Raises GuiError when
     MeshLab cannot be run, ValueError for a mesh that cannot be drawn as asked.
     """
     pictures = list(pictures)
@@ -203,7 +203,7 @@ def render(pictures, size=(600, 600), background=(255, 255, 255), margin=0.03):
 
 
 def parse_numbers(text, count, separator, kind, meaning):
-    """`count` numbers; throws argparse's error, which says what the option means."""
+    """`count` numbers; raises argparse's error, which says what the option means."""
     try:
         values = tuple(kind(word) for word in text.split(separator))
     except ValueError:

@@ -39,7 +39,7 @@ def read_header(file, path):
 def read_vertices(path):
     """The vertex element of a PLY file (ascii or binary) as a structured array, one field per property.
 
-    Throws ValueError with a sentence when the file is not a PLY file or ends too soon.
+    Raises ValueError with a sentence when the file is not a PLY file or ends too soon.
     """
     with open(path, "rb") as file:
         storage, count, fields = read_header(file, path)

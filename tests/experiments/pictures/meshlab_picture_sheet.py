@@ -27,7 +27,7 @@ def legend_of_mesh(path, title, steps=128):
     """The colour scale of a mesh, derived from the quality and colours of its vertices.
 
     So it cannot differ from what the filter did. The ends are where the colour stops changing.
-    Throws ValueError when the mesh lacks quality or colours.
+    Raises ValueError when the mesh lacks quality or colours.
     """
     vertices = read_vertices(path)
     names = vertices.dtype.names

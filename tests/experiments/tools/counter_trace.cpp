@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What the candidates for a stop criterion do while a mesh grows, for paper_termination.py:
-// counter_trace IN.ply [parameter=value ...] learns the cloud, without settling, and prints a line of JSON
-// each time the mesh has doubled.
+// Traces the candidates for a stop criterion while a mesh grows, for paper_termination.py:
+// counter_trace IN.ply [parameter=value ...] learns the cloud without settling. Each time the number of
+// vertices has doubled, it prints a line of JSON.
 #include <cstdio>
 #include <exception>
 
@@ -19,9 +19,8 @@ using namespace neuralmesh;
 constexpr int kFirst = 500;  ///< vertices at the first line
 constexpr int kSignalsToLand = 100;
 
-/// Prints the learner's state when it has grown to twice what it was. The counters of eq 4 remember about
-/// twenty signals and so change from moment to moment: what is printed of them is the mean over the moments
-/// since the line before.
+/// Prints the learner's state each time the number of vertices has doubled. The counters of eq 4 cover only
+/// about twenty signals and fluctuate, so their mean over all calls since the previous line is printed.
 class Trace : public Progress {
 public:
     explicit Trace(const Learner& learner) : learner_(learner) {}
@@ -38,15 +37,15 @@ public:
         const int count = network.vertex_count();
         sum_eq4_ += eq4;
         mean_eq4_ += eq4 / count;
-        ++moments_;
+        ++calls_;
         if (count < next_) return true;
         std::printf(
             "{\"vertices\":%d,\"signals\":%lld,\"mean_eq4\":%.6g,\"sum_eq4\":%.6g,\"mean_eq6\":%.6g,"
             "\"mean_turn\":%.6g}\n",
-            count, static_cast<long long>(learner_.signals()), mean_eq4_ / moments_, sum_eq4_ / moments_,
+            count, static_cast<long long>(learner_.signals()), mean_eq4_ / calls_, sum_eq4_ / calls_,
             eq6 / count, learner_.mean_turn());
         next_ *= 2;
-        sum_eq4_ = mean_eq4_ = moments_ = 0;
+        sum_eq4_ = mean_eq4_ = calls_ = 0;
         return true;
     }
 
@@ -55,7 +54,7 @@ private:
     int next_ = kFirst;
     double sum_eq4_ = 0;
     double mean_eq4_ = 0;
-    double moments_ = 0;
+    double calls_ = 0;
 };
 
 int run(int argc, char** argv) {
@@ -64,9 +63,9 @@ int run(int argc, char** argv) {
     for (int i = 2; i < argc; ++i) set_parameter(settings, argv[i]);
     settings.check();
     const TargetSpace target = target_of_ply(argv[1], settings);
-    NoProgress nobody;
+    NoProgress no_progress;
     Random random(1);
-    const StartMesh shell = shell_of(target, ShellOptions(), random, nobody);
+    const StartMesh shell = shell_of(target, ShellOptions(), random, no_progress);
     Learner learner(target, learner_options_from(settings), Network(shell.positions, shell.faces));
     Trace trace(learner);
     learner.run(kSignalsToLand, trace);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What the experiments' programs share: PLY files through vcglib, and parameters as words.
+// Shared by the experiments' programs: reading PLY files with vcglib, and parameters from the command line.
 #pragma once
 
 #include <vcg/complex/complex.h>
@@ -32,7 +32,7 @@ inline void read_ply(const std::string& path, PlyMesh& mesh) {
         throw InputError("Cannot read " + path + " as PLY.");
 }
 
-/// What is learned from the PLY file \p path. \throws InputError as read_ply and target_space_of do
+/// The target space of the PLY file \p path. \throws InputError as read_ply and target_space_of do
 inline TargetSpace target_of_ply(const std::string& path, const Settings& settings) {
     PlyMesh mesh;
     read_ply(path, mesh);
@@ -41,8 +41,8 @@ inline TargetSpace target_of_ply(const std::string& path, const Settings& settin
     return target_space_of(mesh, identity, settings);
 }
 
-/// The number that \p text is, or 1 and 0 for true and false where \p kind says so. \return false if it is
-/// none
+/// Sets \p value to the number in \p text. For a boolean parameter, \p text may also be "true" or "false".
+/// \return false if \p text is neither
 inline bool read_value(const std::string& text, SettingInfo::Kind kind, double& value) {
     if (kind == SettingInfo::Kind::boolean && (text == "true" || text == "false")) {
         value = text == "true" ? 1 : 0;
@@ -53,8 +53,8 @@ inline bool read_value(const std::string& text, SettingInfo::Kind kind, double& 
     return !text.empty() && *end == '\0';
 }
 
-/// Stores \p word, parameter=value with any parameter of the settings table. \throws SettingError if it is
-/// not
+/// Sets a parameter from \p word, which is "parameter=value" with an id of the settings table.
+/// \throws SettingError if it is not
 inline void set_parameter(Settings& settings, const std::string& word) {
     const auto equals = word.find('=');
     for (const SettingInfo& info : setting_table()) {
