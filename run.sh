@@ -201,7 +201,7 @@ bench() {
         say "${program##*/}"
         "$program" --benchmark_out="$build/${program##*/}.json" --benchmark_out_format=json
     done
-    say "In a host, beside what people use today"
+    say "In pymeshlab, compared with common methods"
     "$venv/bin/python" tests/bench/in_host.py --out "$build/in_host.json" --cgal "$build/tests/cgal_peers" \
         --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
 }

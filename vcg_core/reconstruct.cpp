@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <string>
 
+#include "vcg_core/fit/rms_error.h"
 #include "vcg_core/learn_and_fit.h"
 #include "vcg_core/learning/feature_counter.h"
 #include "vcg_core/learning_task.h"
-#include "vcg_core/rms_error.h"
 
 namespace neuralmesh {
 

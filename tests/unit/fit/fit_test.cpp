@@ -12,8 +12,8 @@
 
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/targets.h"
+#include "vcg_core/fit/rms_error.h"
 #include "vcg_core/mesh/self_crossings.h"
-#include "vcg_core/rms_error.h"
 
 namespace neuralmesh {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/rms_error.h"
+#include "vcg_core/fit/rms_error.h"
 
 #include <cmath>
 
