@@ -47,6 +47,7 @@ StartMesh make_shell(const TargetSpace& target, const Settings& settings, Progre
     ShellOptions options;
     options.target_vertices = settings.target_vertices;
     options.threads = settings.threads;
+    options.learn_outliers = !settings.remove_outliers;
     Random random(stream_seed(settings.random_seed, Stream::shell));
     return shell_of(target, options, random, progress);
 }
@@ -151,7 +152,7 @@ std::string too_large(const StartMesh& shell, int final_vertices) {
 
 void begin_closed(LearningTask& task, StartMesh shell, const Settings& settings) {
     task.warnings.insert(task.warnings.end(), shell.warnings.begin(), shell.warnings.end());
-    if (settings.remove_outliers) remove_groups_without_component(task, shell.outliers, shell.positions);
+    remove_groups_without_component(task, shell.outliers, shell.positions);
     if (static_cast<int>(shell.positions.size()) > settings.target_vertices) {
         task.warnings.push_back(too_large(shell, settings.target_vertices));
         task.network = tetrahedron();

@@ -70,11 +70,12 @@ void set_figures(const LatticeSurvey& survey, int level, StartMesh& result) {
 }
 
 void set_outliers(const TargetSpace& target, const std::vector<Point3f>& points, const Region& region,
-                  const ClosedMesh& closed, StartMesh& result) {
+                  const ClosedMesh& closed, bool learn_outliers, StartMesh& result) {
     result.outliers = outliers_of(points, region, closed.solid, closed.level);
     result.ignored_points = std::count(result.outliers.begin(), result.outliers.end(), 1);
     const double most = ShellOptions::kMaxOutlierShare * static_cast<double>(points.size());
-    if (target.has_faces() || static_cast<double>(result.ignored_points) > most) result.outliers.clear();
+    if (learn_outliers || target.has_faces() || static_cast<double>(result.ignored_points) > most)
+        result.outliers.clear();
 }
 
 std::string percent(double value) {
@@ -136,7 +137,7 @@ StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Rando
     StartMesh result;
     set_mesh(closed.network, options, result);
     set_figures(survey, closed.level, result);
-    set_outliers(target, points, region, closed, result);
+    set_outliers(target, points, region, closed, options.learn_outliers, result);
     warn_of_uncertain_topology(survey, result);
     warn_of_open_surface(result);
     warn_of_outliers(static_cast<long long>(points.size()), region, result);

@@ -48,6 +48,8 @@ struct ShellOptions {
     double points_per_node = 1.1;
     /// A component holds at least this share of the points, and kSpeckPoints.
     double component_share = 0.01;
+    /// Outliers get no component, but are to be learned.
+    bool learn_outliers = false;
     /// Points drawn from a target with faces.
     int samples = 200000;
     /// 0: one per core. The mesh does not depend on it.

@@ -108,6 +108,7 @@ TEST(ShellFinished, EveryPointIsLearnedIfOutliersAreNotRemoved) {
     const NeuralMesh mesh =
         reconstruct(soundness::target_of(sphere_with_gross_outliers()), settings, progress);
     EXPECT_EQ(mesh.report.outliers, 0);
+    EXPECT_TRUE(has_warning(mesh, "points were ignored as outliers by the start mesh, but are learned"));
     double farthest = 0;
     for (const vcg::Point3d& p : mesh.positions) farthest = std::max(farthest, p.Norm());
     EXPECT_GT(farthest, 1.5) << "outliers pull at the mesh";
