@@ -25,6 +25,9 @@ constexpr double kShellMade = 0.6;  // of the progress
 constexpr double kWidestClosed = 0.066;
 /// Planes that are thicker than this say nothing about where the cloud is open.
 constexpr double kTooThick = 0.45;
+/// An open start mesh with more handles than this share of its vertices follows gaps between the points.
+/// Scanned rooms and buildings have up to .035.
+constexpr double kMostHandles = 0.05;
 
 /// The start mesh of the paper, in the middle of the cloud, which is the origin of the core's frame.
 Network tetrahedron() {
@@ -113,13 +116,16 @@ bool is_open(const StartMesh& shell, const Settings& settings) {
     return !shell.encloses_space || 2 * shell.widest_opening > widest;
 }
 
-/// The open start mesh of a cloud whose shell is open; nothing if the cloud has none, or one without
-/// boundary.
+/// The open start mesh of a cloud whose shell is open; nothing if the cloud has none that learning can begin
+/// with, or one without boundary.
 std::optional<OpenStart> try_open_start(const TargetSpace& target, const Settings& settings,
                                         Progress& progress) {
     try {
         OpenStart start = make_open_start(target, settings, progress);
-        if (start.loops > 0 && start.thickness < kTooThick) return start;
+        const auto vertices = static_cast<int>(start.positions.size());
+        if (start.loops > 0 && start.thickness < kTooThick && vertices <= settings.target_vertices &&
+            start.genus <= kMostHandles * vertices)
+            return start;
     } catch (const InputError&) {
     }
     return {};

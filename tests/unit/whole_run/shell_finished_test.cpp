@@ -18,9 +18,10 @@ namespace {
 
 using soundness::has_warning;
 
-NeuralMesh finished(const std::vector<vcg::Point3d>& cloud, int vertices) {
+NeuralMesh finished(const std::vector<vcg::Point3d>& cloud, int vertices, int surface = kAutomatic) {
     Settings settings;
     settings.target_vertices = vertices;
+    settings.surface = surface;
     NoProgress progress;
     return reconstruct(soundness::target_of(cloud), settings, progress);
 }
@@ -134,21 +135,21 @@ TEST(ShellFinished, AGroupOfOnePercentIsAComponent) {
     expect_closed(finished(cloud, 500), 500, 2, 0);
 }
 
-TEST(ShellFinished, HalfASphereIsClosedWithAWarning) {
+TEST(ShellFinished, HalfASphereIsClosedOnRequestWithAWarning) {
     Random random(14);
     std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
     shell_shapes::cut_off(cloud, [](const vcg::Point3d& p) { return p[2] > 0; });
-    const NeuralMesh mesh = finished(cloud, 500);
+    const NeuralMesh mesh = finished(cloud, 500, kClosedSurface);
     expect_closed(mesh, 500, 1, 0);
     EXPECT_TRUE(has_warning(mesh, "closed"));
 }
 
-TEST(ShellFinished, APlanePatchIsClosedWithAWarning) {
+TEST(ShellFinished, APlanePatchIsClosedOnRequestWithAWarning) {
     Random random(15);
     std::vector<vcg::Point3d> cloud;
     for (int i = 0; i < 10000; ++i)
         cloud.emplace_back(static_cast<double>(random.unit()), static_cast<double>(random.unit()), 0);
-    const NeuralMesh mesh = finished(cloud, 500);
+    const NeuralMesh mesh = finished(cloud, 500, kClosedSurface);
     expect_closed(mesh, 500, 1, 0);
     EXPECT_TRUE(has_warning(mesh, "closed"));
 }
