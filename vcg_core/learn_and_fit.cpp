@@ -23,7 +23,7 @@ int vertices_to_grow(const LearningTask& task, const Settings& settings) {
     constexpr int kLargestSurplus = 2500;
     constexpr std::size_t kPointsPerVertex = 10;
     const int final_vertices = settings.target_vertices;
-    if (!settings.fit_to_points || settings.utility_counter != kNormalCounter ||
+    if (!settings.fit_to_points || settings.utility_counter != kNormalVariation ||
         settings.start_mesh == kTetrahedron || !task.encloses_space || settings.stop_below_mean_counter > 0)
         return final_vertices;
     const int surplus = std::max(0, std::min(3 * final_vertices, kLargestSurplus - final_vertices / 2));
@@ -47,7 +47,7 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
     options.reduce_to = settings.target_vertices;
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
     // error is largest at the rim, and vertices inserted there stick out.
-    options.redistribute = settings.utility_counter == kNormalCounter && task.encloses_space;
+    options.redistribute = settings.utility_counter == kNormalVariation && task.encloses_space;
     return fit_to_points(network, task.target(), options, settings.threads,
                          stream_seed(settings.random_seed, Stream::fit), progress);
 }

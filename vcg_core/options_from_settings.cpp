@@ -17,7 +17,7 @@ LearnerOptions learner_options_from(const Settings& settings) {
     options.normalization_window = settings.normalization_window;
     options.stop_below_turn = settings.stop_below_mean_counter;
     options.utility_increment =
-        settings.utility_counter == kNormalCounter ? UtilityIncrement::n_delta : UtilityIncrement::one;
+        settings.utility_counter == kNormalVariation ? UtilityIncrement::n_delta : UtilityIncrement::one;
     options.grow_to = settings.target_vertices;
     options.min_wins_per_split = settings.min_wins_per_split;
     options.settling_signals_per_vertex = settings.settling_signals_per_vertex;

@@ -66,9 +66,9 @@ std::vector<SettingInfo> mesh_rows() {
             "5,000 on. Below, the network grows to more vertices, and the fit removes those that contribute "
             "least."),
         row(&S::surface, "surface", "Surface", {"Automatic", "Closed", "Open"},
-            "Whether the mesh has boundaries. Automatic: it is closed if the points enclose space, and open "
-            "where an opening is wider than 'Close holes up to'. Closed: it has none; a single scan is closed "
-            "around both of its sides. Open: it ends wherever the points end."),
+            "Whether the mesh has boundaries. Closed: it has none; a single scan is closed around both of its "
+            "sides. Open: it ends wherever the points end. Automatic: it is closed if the points enclose space "
+            "and no opening is wider than 'Close holes up to', else open. Thin walls may be taken for open."),
         row(&S::close_holes_up_to, "close_holes_up_to", "Close holes up to (% of diagonal)", -1, 100,
             "Holes of an open surface are closed up to this diameter of the smallest sphere around them, in "
             "percent of the bounding-box diagonal. -1: chosen from the spacing of the points. 0: none but gaps "

@@ -15,8 +15,8 @@ namespace neuralmesh {
 
 /// Which vertices are split (the paper's utility counter, sections 2 and 3).
 enum UtilityCounter : int {
-    kNormalCounter = 0,  ///< eq 4: where the normal varies; the mesh is dense where the surface bends
-    kSignalCounter = 1,  ///< where signals arrive; the mesh is as dense as the cloud
+    kNormalVariation = 0,  ///< eq 4: where the normal varies; the mesh is dense where the surface bends
+    kSignalCount = 1,      ///< where signals arrive; the mesh is as dense as the cloud
 };
 
 /// What the vertex quality of the result holds and what selects features.
@@ -41,9 +41,9 @@ enum SurfaceKind : int {
 /// All parameters of a run. setting_table() has their ranges and meanings.
 struct Settings {
     int target_vertices = 10000;
-    int surface = kAutomatic;
+    int surface = kClosedSurface;
     double close_holes_up_to = -1;  ///< % of the bounding-box diagonal; negative: chosen by the filter
-    int utility_counter = kNormalCounter;
+    int utility_counter = kNormalVariation;
     int start_mesh = kShell;
     bool fit_to_points = true;
     bool draw_from_faces = true;

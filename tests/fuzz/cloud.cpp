@@ -25,7 +25,7 @@ Settings settings_of(Bytes& bytes) {
     settings.start_mesh = (flags & 1) != 0 ? kTetrahedron : kShell;
     settings.fit_to_points = (flags & 2) != 0;
     settings.draw_from_faces = (flags & 4) != 0;
-    settings.utility_counter = (flags & 8) != 0 ? kSignalCounter : kNormalCounter;
+    settings.utility_counter = (flags & 8) != 0 ? kSignalCount : kNormalVariation;
     settings.feature_measure = (flags & 16) != 0 ? kCreaseMeasure : kFeatureCounter;
     // One input in eight has the costly combinations: settling takes at least 60,000 signals, and faces are
     // sampled 200,000 times for the shell and 50,000 times for the fit.

@@ -23,6 +23,17 @@ float cosine_at(const Point3f& a, const Point3f& b, const Point3f& c) {
     return lengths > 0 ? p * q / lengths : -1.0F;
 }
 
+/// The edges of \p faces between two vertices of \p loop.
+std::set<Edge> edges_within(std::vector<VertexId> loop, const std::vector<Triangle>& faces) {
+    std::set<Edge> edges;
+    std::sort(loop.begin(), loop.end());
+    const auto holds = [&loop](VertexId v) { return std::binary_search(loop.begin(), loop.end(), v); };
+    for (const Triangle& f : faces)
+        for (std::size_t k = 0; k < 3; ++k)
+            if (holds(f[k]) && holds(f[(k + 1) % 3])) edges.insert(edge(f[k], f[(k + 1) % 3]));
+    return edges;
+}
+
 }  // namespace
 
 std::vector<std::vector<VertexId>> boundary_loops(int vertices, const std::vector<Triangle>& faces) {
@@ -65,15 +76,8 @@ float smallest_sphere_diameter(const std::vector<Point3f>& points) {
 bool fill_hole(const std::vector<VertexId>& loop, const std::vector<Point3f>& positions, int most_neighbours,
                std::vector<int>& neighbours, std::vector<Triangle>& faces) {
     const auto at = [](auto& values, VertexId v) -> auto& { return values[static_cast<std::size_t>(v)]; };
-    std::set<Edge> present;  // edges between two vertices of the loop
+    std::set<Edge> present = edges_within(loop, faces);
     std::vector<VertexId> rest = loop;
-    std::sort(rest.begin(), rest.end());
-    for (const Triangle& f : faces)
-        for (std::size_t k = 0; k < 3; ++k)
-            if (std::binary_search(rest.begin(), rest.end(), f[k]) &&
-                std::binary_search(rest.begin(), rest.end(), f[(k + 1) % 3]))
-                present.insert(edge(f[k], f[(k + 1) % 3]));
-    rest = loop;
     std::vector<int> counts = neighbours;
     std::vector<Triangle> added;
     while (rest.size() > 3) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "vcg_core/mesh/ring.h"
 
@@ -183,46 +184,49 @@ Corners corners_of(const IndexedMesh<float>& mesh) {
     return result;
 }
 
+/// The corners at one vertex, grouped by fans: faces that share edges at the vertex. Each fan begins with its
+/// first corner in the order of \p corners.
+std::vector<std::vector<int>> fans_of(const IndexedMesh<float>& mesh, std::vector<int> corners) {
+    const auto neighbour = [&mesh](int corner, std::size_t ahead) {
+        const auto c = static_cast<std::size_t>(corner);
+        return mesh.faces[c / 3][(c % 3 + ahead) % 3];
+    };
+    const auto share_an_edge = [&neighbour](int a, int b) {
+        return neighbour(a, 1) == neighbour(b, 2) || neighbour(a, 2) == neighbour(b, 1);
+    };
+    std::vector<std::vector<int>> fans;
+    while (!corners.empty()) {
+        std::vector<int> fan{corners.front()};
+        corners.erase(corners.begin());
+        for (std::size_t k = 0; k < fan.size(); ++k) {
+            const int member = fan[k];
+            const auto rest = std::stable_partition(corners.begin(), corners.end(),
+                                                    [&](int other) { return !share_an_edge(member, other); });
+            fan.insert(fan.end(), rest, corners.end());
+            corners.erase(rest, corners.end());
+        }
+        fans.push_back(std::move(fan));
+    }
+    return fans;
+}
+
 /// Gives every fan of faces around a vertex, but for the first, a vertex of its own.
 void split_pinched_vertices(Contour& contour) {
     IndexedMesh<float>& mesh = contour.mesh;
     const Corners corners = corners_of(mesh);
-    std::vector<int> fan;
-    const auto neighbour = [&](int corner, std::size_t ahead) {
-        const auto c = static_cast<std::size_t>(corner);
-        return mesh.faces[c / 3][(c % 3 + ahead) % 3];
-    };
     for (std::size_t v = 0; v + 1 < corners.first.size(); ++v) {
-        const int begin = corners.first[v], count = corners.first[v + 1] - begin;
-        fan.assign(static_cast<std::size_t>(count), -1);
-        int fans = 0;
-        for (int seed = 0; seed < count; ++seed) {
-            if (fan[static_cast<std::size_t>(seed)] >= 0) continue;
-            std::vector<int> members{seed};
-            fan[static_cast<std::size_t>(seed)] = fans;
-            for (std::size_t k = 0; k < members.size(); ++k) {
-                const int own = corners.corner[static_cast<std::size_t>(begin + members[k])];
-                for (int other = 0; other < count; ++other) {
-                    if (fan[static_cast<std::size_t>(other)] >= 0) continue;
-                    const int its = corners.corner[static_cast<std::size_t>(begin + other)];
-                    if (neighbour(own, 1) != neighbour(its, 2) && neighbour(own, 2) != neighbour(its, 1))
-                        continue;
-                    fan[static_cast<std::size_t>(other)] = fans;
-                    members.push_back(other);
-                }
+        const auto begin = corners.corner.begin();
+        const std::vector<std::vector<int>> fans =
+            fans_of(mesh, {begin + corners.first[v], begin + corners.first[v + 1]});
+        for (std::size_t fan = 1; fan < fans.size(); ++fan) {
+            const auto copy = static_cast<VertexId>(mesh.positions.size());
+            const Point3f position = mesh.positions[v];
+            mesh.positions.push_back(position);
+            contour.plane.push_back(contour.plane[v]);
+            for (const int corner : fans[fan]) {
+                const auto c = static_cast<std::size_t>(corner);
+                mesh.faces[c / 3][c % 3] = copy;
             }
-            if (fans > 0) {
-                const auto copy = static_cast<VertexId>(mesh.positions.size());
-                const Point3f position = mesh.positions[v];
-                mesh.positions.push_back(position);
-                contour.plane.push_back(contour.plane[v]);
-                for (const int member : members) {
-                    const auto c =
-                        static_cast<std::size_t>(corners.corner[static_cast<std::size_t>(begin + member)]);
-                    mesh.faces[c / 3][c % 3] = copy;
-                }
-            }
-            ++fans;
         }
     }
 }

@@ -267,6 +267,23 @@ void add_warnings(const TargetSpace& target, const TangentPlanes& planes, long l
     result.warnings.push_back(text.str());
 }
 
+void check_enough_points(std::size_t points) {
+    if (points < static_cast<std::size_t>(OpenStartOptions::kLeastCloud))
+        throw InputError("The cloud has " + std::to_string(points) +
+                         " points, too few to show where a surface ends: choose surface 1 (closed), or give "
+                         "at least " +
+                         std::to_string(OpenStartOptions::kLeastCloud) + ".");
+}
+
+/// Copies the mesh and its topology to \p result.
+void write_mesh(const Network& network, OpenStart& result) {
+    for (VertexId v = 0; v < network.vertex_count(); ++v) result.positions.push_back(network.position(v));
+    result.faces = network.faces();
+    result.components = network.component_count();
+    result.genus = network.genus();
+    result.loops = network.boundary_loop_count();
+}
+
 }  // namespace
 
 OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options, Random& random,
@@ -276,11 +293,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     std::vector<Point3f> drawn;
     if (target.has_faces()) drawn = drawn_points(target, options.samples, random);
     const std::vector<Point3f>& points = target.has_faces() ? drawn : target.positions();
-    if (static_cast<int>(points.size()) < OpenStartOptions::kLeastCloud)
-        throw InputError("The cloud has " + std::to_string(points.size()) +
-                         " points, too few to show where a surface ends: choose surface 1 (closed), or give "
-                         "at least " +
-                         std::to_string(OpenStartOptions::kLeastCloud) + ".");
+    check_enough_points(points.size());
     const Box3f box = main_box(points);
     const TangentPlanes planes = tangent_planes(points, box, TangentPlaneOptions());
     check_for_surface(planes);
@@ -303,11 +316,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     simplify(network, std::min(options.max_vertices, options.target_vertices / 4));
     network.compact();
     orient_convex_side_outward(network);
-    for (VertexId v = 0; v < network.vertex_count(); ++v) result.positions.push_back(network.position(v));
-    result.faces = network.faces();
-    result.components = network.component_count();
-    result.genus = network.genus();
-    result.loops = network.boundary_loop_count();
+    write_mesh(network, result);
     result.thickness = static_cast<double>(planes.thickness);
     if (!target.has_faces()) result.outliers = outliers_of(points, box, planes, kept);
     add_warnings(target, planes, static_cast<long long>(points.size()), result);

@@ -69,6 +69,7 @@ private:
     bool has_close_neighbours(Place place, float radius) const;
     void gather_neighbours();
     void measure();
+    double evidence_alone(std::size_t suspect) const;
     void combine();
     double threshold() const;
 
@@ -220,35 +221,36 @@ void Suspects::measure() {
     });
 }
 
-/// The weights separate, by logistic regression, outliers from points of room and building scans.
+/// The evidence against a suspect without that of the suspects around it. The weights separate, by logistic
+/// regression, outliers from points of room and building scans.
+double Suspects::evidence_alone(std::size_t suspect) const {
+    constexpr double kFill = 37, kDensest = 1.6, kUsual = 3.5, kInPlane = -4, kOffset = -5.3;
+    double narrow = narrow_[suspect], wide = wide_[suspect];
+    int count = 1;
+    for (int k = 0; k < kSpacingNeighbour; ++k) {
+        const std::size_t other = suspect_at(neighbour(suspect, k));
+        if (other == kNobody) continue;
+        narrow += narrow_[other];
+        wide += wide_[other];
+        ++count;
+    }
+    std::array<float, kWide> spacings;
+    for (int k = 0; k < kWide; ++k) spacings[static_cast<std::size_t>(k)] = spacing_at(neighbour(suspect, k));
+    const float own = suspects_[suspect].spacing;
+    const auto log_ratio = [own](float other) {
+        return std::log(static_cast<double>(std::min(kMostRatio, own / std::max(other, own / kMostRatio))));
+    };
+    const float usual = median({spacings.begin(), spacings.begin() + kSpacingNeighbour});
+    std::nth_element(spacings.begin(), spacings.begin() + kWide / 10, spacings.end());
+    return kFill * std::min(narrow, wide) / count + kDensest * log_ratio(spacings[kWide / 10]) +
+           kUsual * log_ratio(usual) + kInPlane * in_plane_[suspect] + kOffset;
+}
+
+/// The evidence against each suspect, with that of the suspects around it. Weights as in evidence_alone().
 void Suspects::combine() {
-    constexpr double kFill = 37, kDensest = 1.6, kUsual = 3.5, kInPlane = -4,
-                     kOffset = -5.3;  // of a suspect by itself
     constexpr double kOwn = 0.7, kAround = 0.5, kCompany = 2, kCompanyOffset = -1;
     std::vector<double> alone(suspects_.size());
-    std::vector<float> near;
-    for (std::size_t i = 0; i < suspects_.size(); ++i) {
-        double narrow = narrow_[i], wide = wide_[i];
-        int count = 1;
-        for (int k = 0; k < kSpacingNeighbour; ++k) {
-            const std::size_t other = suspect_at(neighbour(i, k));
-            if (other == kNobody) continue;
-            narrow += narrow_[other];
-            wide += wide_[other];
-            ++count;
-        }
-        near.clear();
-        for (int k = 0; k < kWide; ++k) near.push_back(spacing_at(neighbour(i, k)));
-        const float own = suspects_[i].spacing;
-        const auto log_ratio = [own](float other) {
-            return std::log(
-                static_cast<double>(std::min(kMostRatio, own / std::max(other, own / kMostRatio))));
-        };
-        const float usual = median({near.begin(), near.begin() + kSpacingNeighbour});
-        std::nth_element(near.begin(), near.begin() + kWide / 10, near.end());
-        alone[i] = kFill * std::min(narrow, wide) / count + kDensest * log_ratio(near[kWide / 10]) +
-                   kUsual * log_ratio(usual) + kInPlane * in_plane_[i] + kOffset;
-    }
+    for (std::size_t i = 0; i < suspects_.size(); ++i) alone[i] = evidence_alone(i);
     evidence_.resize(suspects_.size());
     for (std::size_t i = 0; i < suspects_.size(); ++i) {
         double sum = 0;

@@ -27,7 +27,7 @@ Cloud crowded_sphere(double radius) {
 }
 
 TEST(BatchLimit, KeepsVerticesInPlaceWhereManySignalsCrowd) {
-    for (const auto& [radius, counter] : {std::pair(0.0, kNormalCounter), std::pair(0.01, kSignalCounter)}) {
+    for (const auto& [radius, counter] : {std::pair(0.0, kNormalVariation), std::pair(0.01, kSignalCount)}) {
         SCOPED_TRACE(testing::Message() << "radius " << radius << ", counter " << counter);
         Settings settings;
         settings.target_vertices = 800;

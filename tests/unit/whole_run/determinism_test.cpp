@@ -46,7 +46,7 @@ std::vector<Settings> variants() {
         settings.target_vertices = 300;
         settings.start_mesh = (i & 1) != 0 ? kTetrahedron : kShell;
         settings.fit_to_points = (i & 2) != 0;
-        settings.utility_counter = i == 1 || i == 2 ? kSignalCounter : kNormalCounter;
+        settings.utility_counter = i == 1 || i == 2 ? kSignalCount : kNormalVariation;
         result.push_back(settings);
     }
     // Few vertices, so that the network grows to more and the fit removes some.

@@ -262,7 +262,7 @@ std::vector<std::pair<const char*, Settings>> hostile_settings() {
     add("strongest smoothing", [](Settings& s) { s.smoothing_steps = 100, s.smoothing_rate = 1; });
     add("no settling", [](Settings& s) { s.settling_signals_per_vertex = 0; });
     add("signal counter to the letter",
-        [](Settings& s) { s.utility_counter = kSignalCounter, s.min_wins_per_split = 0; });
+        [](Settings& s) { s.utility_counter = kSignalCount, s.min_wins_per_split = 0; });
     return result;
 }
 
