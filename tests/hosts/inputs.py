@@ -174,9 +174,9 @@ def _clouds(random):
         "1 % gross outliers": Input(np.vstack([ball(), far_off]), outliers=20),
         "1 % near outliers": Input(np.vstack([ball(), far_off / 20]), outliers=20),
         "noise of 2 %": Input(noisy, rms=1.9, far=4),
-        # The result is a bowl: the few points of the other half are too far apart for a surface. On a sheet the fit
-        # moves vertices off by up to half an edge, which is .2 of 3.5.
-        "density 1000 : 1": Input(np.vstack([whole[dense], stray]), outliers=len(stray), volume=None, rms=.6, far=6),
+        # The result is a bowl: the few points of the other half are too far apart for a surface. How far its rim
+        # reaches towards them depends on the seed: by 3.6 to 7.2 % with seeds 1 to 5.
+        "density 1000 : 1": Input(np.vstack([whole[dense], stray]), outliers=len(stray), volume=None, rms=.6, far=7.5),
         # Scanners put points that they did not measure into one place.
         "most in one point": Input(np.vstack([ball(), np.repeat(ball()[:1], 20000, axis=0)])),
         # Points throughout a cube do not determine its surface.
