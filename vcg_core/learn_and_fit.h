@@ -5,6 +5,7 @@
 #pragma once
 
 #include "vcg_core/base/progress.h"
+#include "vcg_core/learning/learner_options.h"
 #include "vcg_core/learning_task.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/neural_mesh.h"
@@ -37,5 +38,8 @@ struct LearnedNetwork {
 /// to stop, the network has at most settings.target_vertices vertices. Fractions of \p progress run from
 /// kPrepared to 1. Cost: see growth_schedule.h and fit.h.
 LearnedNetwork learn_and_fit(const LearningTask& task, const Settings& settings, MonotoneProgress& progress);
+
+/// The learner's part of \p settings. It grows to settings.target_vertices.
+LearnerOptions learner_options_from(const Settings& settings);
 
 }  // namespace neuralmesh

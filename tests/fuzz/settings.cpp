@@ -9,8 +9,8 @@
 
 #include "bytes.h"
 #include "tests/unit/support/targets.h"
+#include "vcg_core/learn_and_fit.h"
 #include "vcg_core/learning/learner.h"
-#include "vcg_core/options_from_settings.h"
 
 namespace {
 

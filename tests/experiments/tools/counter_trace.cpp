@@ -8,8 +8,8 @@
 #include <exception>
 
 #include "tests/experiments/tools/ply_mesh.h"
+#include "vcg_core/learn_and_fit.h"
 #include "vcg_core/learning/learner.h"
-#include "vcg_core/options_from_settings.h"
 #include "vcg_core/shell/shell.h"
 
 namespace {

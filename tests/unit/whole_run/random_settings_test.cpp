@@ -14,8 +14,8 @@
 
 #include "tests/unit/support/environment.h"
 #include "tests/unit/support/soundness.h"
+#include "vcg_core/learn_and_fit.h"
 #include "vcg_core/learning/learner.h"
-#include "vcg_core/options_from_settings.h"
 
 namespace neuralmesh {
 namespace {
