@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <iomanip>
 #include <limits>
@@ -156,11 +155,17 @@ std::string sentence_on_origin(const Coordinates& origin) {
 }
 
 double from_host(double value) {
-    std::array<char, 64> digits{};
-    const auto end = std::to_chars(digits.begin(), digits.end(), static_cast<float>(value)).ptr;
-    double meant = value;
-    std::from_chars(digits.begin(), end, meant);
-    return meant;
+    // Not by std::to_chars(), which older C++ libraries lack for floating-point numbers.
+    constexpr int kDigits = std::numeric_limits<float>::max_digits10;
+    const auto rounded = static_cast<float>(value);
+    for (int digits = 1; digits <= kDigits; ++digits) {
+        std::stringstream text;
+        text.imbue(std::locale::classic());
+        double meant = 0;
+        text << std::setprecision(digits) << rounded;
+        if (text >> meant && static_cast<float>(meant) == rounded) return meant;
+    }
+    return value;  // not finite
 }
 
 std::string sentence_of_current_exception() {

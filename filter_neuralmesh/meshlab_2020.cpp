@@ -10,7 +10,6 @@
 #include "meshlab_2020.h"
 
 #include <common/mlapplication.h>
-#include <dlfcn.h>
 
 #include <new>
 #include <string>
@@ -18,16 +17,19 @@
 
 #include "host_layer.h"
 #include "host_parameters.h"
+#include "vcg_core/base/platform.h"
 
 namespace {
 
 using namespace neuralmesh;
 
+const std::string kBuiltScalar = std::is_same<MESHLAB_SCALAR, float>::value ? "float" : "double";
+
 /// The scalar type of the running MeshLab. Its library exports this function for that type only.
 std::string scalar_of_host() {
-    if (dlsym(RTLD_DEFAULT, "_Z14Matrix44mToXMLRN3vcg8Matrix44IfEER12QDomDocument") != nullptr)
+    if (is_exported("_Z14Matrix44mToXMLRN3vcg8Matrix44IfEER12QDomDocument", kBuiltScalar == "float"))
         return "float";
-    if (dlsym(RTLD_DEFAULT, "_Z14Matrix44mToXMLRN3vcg8Matrix44IdEER12QDomDocument") != nullptr)
+    if (is_exported("_Z14Matrix44mToXMLRN3vcg8Matrix44IdEER12QDomDocument", kBuiltScalar == "double"))
         return "double";
     return "unknown";
 }
@@ -35,11 +37,10 @@ std::string scalar_of_host() {
 /// Empty if this plugin fits the running MeshLab, else the sentence that says why it does not.
 std::string misfit() {
     const std::string built_for = NEURALMESH_HOST_VERSION;
-    const std::string built_scalar = std::is_same<MESHLAB_SCALAR, float>::value ? "float" : "double";
     const std::string running = MeshLabApplication::appVer().toStdString();
     const std::string running_scalar = scalar_of_host();
-    if (built_for == running && built_scalar == running_scalar) return {};
-    return "This Neural Mesh plugin is built for MeshLab " + built_for + " (" + built_scalar +
+    if (built_for == running && kBuiltScalar == running_scalar) return {};
+    return "This Neural Mesh plugin is built for MeshLab " + built_for + " (" + kBuiltScalar +
            "), but the running MeshLab is " + running + " (" + running_scalar +
            "). Replace the plugin by the one built for this MeshLab.";
 }

@@ -2,21 +2,30 @@
 // Copyright the Neural Mesh authors
 
 // Extensions of compilers, processors and operating systems, each with a portable branch. Vector arithmetic
-// is in simd.h; no other file of the core uses such extensions.
+// is in simd.h; no other file of the core and of the filter uses such extensions. NEURALMESH_PORTABLE chooses
+// the portable branches everywhere, to test them.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-#ifdef __SSE2__
+#if defined(__GNUC__) && !defined(NEURALMESH_PORTABLE)
+#define NEURALMESH_GNU
+#endif
+#if defined(__SSE2__) && !defined(NEURALMESH_PORTABLE)
+#define NEURALMESH_SSE2
+#endif
+
+#ifdef NEURALMESH_SSE2
 #include <emmintrin.h>
 #endif
-#ifdef __linux__
+#if defined(__linux__) && !defined(NEURALMESH_PORTABLE)
+#include <dlfcn.h>
 #include <sys/mman.h>
 #endif
 
 /// Inlines a function regardless of its size.
-#if defined(__GNUC__)
+#ifdef NEURALMESH_GNU
 #define NEURALMESH_ALWAYS_INLINE [[gnu::always_inline]] inline
 #elif defined(_MSC_VER)
 #define NEURALMESH_ALWAYS_INLINE __forceinline
@@ -28,21 +37,21 @@ namespace neuralmesh {
 
 /// Starts to load the cache line of \p address, which may be any address, even an invalid one.
 NEURALMESH_ALWAYS_INLINE void prefetch([[maybe_unused]] const void* address) {
-#ifdef __GNUC__
+#ifdef NEURALMESH_GNU
     __builtin_prefetch(address);
 #endif
 }
 
 /// As prefetch(), for a cache line that will be written: other cores give up their copies.
 NEURALMESH_ALWAYS_INLINE void prefetch_for_write([[maybe_unused]] const void* address) {
-#ifdef __GNUC__
+#ifdef NEURALMESH_GNU
     __builtin_prefetch(address, 1);
 #endif
 }
 
 /// Number of set bits.
 inline int bit_count(std::uint64_t word) {
-#ifdef __GNUC__
+#ifdef NEURALMESH_GNU
     return __builtin_popcountll(word);
 #else
     int count = 0;
@@ -53,7 +62,7 @@ inline int bit_count(std::uint64_t word) {
 
 /// Position of the lowest set bit. \pre word != 0
 inline int lowest_bit(std::uint64_t word) {
-#ifdef __GNUC__
+#ifdef NEURALMESH_GNU
     return __builtin_ctzll(word);
 #else
     return bit_count((word & (~word + 1)) - 1);
@@ -62,7 +71,7 @@ inline int lowest_bit(std::uint64_t word) {
 
 /// Position of the highest set bit. \pre word != 0
 inline int highest_bit(std::uint64_t word) {
-#ifdef __GNUC__
+#ifdef NEURALMESH_GNU
     return 63 - __builtin_clzll(word);
 #else
     int position = 0;
@@ -74,7 +83,7 @@ inline int highest_bit(std::uint64_t word) {
 /// Returns \p from and promises the compiler that it is aligned to \p Alignment bytes.
 template <std::size_t Alignment, class T>
 NEURALMESH_ALWAYS_INLINE T* assume_aligned(T* from) {
-#ifdef __GNUC__
+#ifdef NEURALMESH_GNU
     return static_cast<T*>(__builtin_assume_aligned(from, Alignment));
 #else
     return from;
@@ -83,7 +92,7 @@ NEURALMESH_ALWAYS_INLINE T* assume_aligned(T* from) {
 
 /// For loops that wait for another thread: saves power and leaves the core to its other hardware thread.
 inline void spin_pause() {
-#ifdef __SSE2__
+#ifdef NEURALMESH_SSE2
     _mm_pause();
 #endif
 }
@@ -94,8 +103,17 @@ constexpr std::size_t kHugePageBytes = std::size_t{1} << 21;
 /// Asks the system to use huge pages for \p memory, which is aligned to kHugePageBytes. The system may
 /// refuse; that affects the speed only.
 inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
-#if defined(__linux__) && defined(MADV_HUGEPAGE)
+#ifdef MADV_HUGEPAGE
     madvise(memory, bytes / kHugePageBytes * kHugePageBytes, MADV_HUGEPAGE);
+#endif
+}
+
+/// Whether a library of this process exports \p symbol; \p unknown where the system is not asked.
+inline bool is_exported([[maybe_unused]] const char* symbol, [[maybe_unused]] bool unknown) {
+#if defined(__linux__) && !defined(NEURALMESH_PORTABLE)
+    return dlsym(RTLD_DEFAULT, symbol) != nullptr;
+#else
+    return unknown;
 #endif
 }
 

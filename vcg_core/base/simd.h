@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Vectors of four and eight floats, and functions compiled for several instruction sets. Uses the vector
-// extensions of GCC (from 12 on) and clang, which compile for every processor.
+// Vectors of four and eight floats, and functions compiled for several instruction sets. With GCC and clang
+// they are vector extensions, which compile for every processor; elsewhere those of lanes.h.
 #pragma once
 
 #include <cmath>
@@ -12,17 +12,33 @@
 #include "vcg_core/base/bits.h"
 #include "vcg_core/base/platform.h"
 
-#ifdef __SSE2__
+#ifdef NEURALMESH_SSE2
 #include <emmintrin.h>
+#endif
+#ifndef NEURALMESH_GNU
+#include "vcg_core/base/lanes.h"
 #endif
 
 namespace neuralmesh {
 
+#ifdef NEURALMESH_GNU
 using Four = float __attribute__((vector_size(16)));
 using FourInts = std::int32_t __attribute__((vector_size(16)));
 using Eight = float __attribute__((vector_size(32), aligned(32)));
 using EightInts = std::int32_t __attribute__((vector_size(32), aligned(32)));
 using EightWords = std::uint32_t __attribute__((vector_size(32), aligned(32)));
+#else
+using Four = Lanes<float, 4>;
+using FourInts = Lanes<std::int32_t, 4>;
+using Eight = Lanes<float, 8>;
+using EightInts = Lanes<std::int32_t, 8>;
+using EightWords = Lanes<std::uint32_t, 8>;
+#endif
+
+// GCC has __builtin_shufflevector from 12 on.
+#if defined(NEURALMESH_GNU) && (defined(__clang__) || __GNUC__ >= 12)
+#define NEURALMESH_SHUFFLES
+#endif
 
 /// Loads 16 bytes, aligned to 16, unchanged.
 inline Four load_raw(const void* from) {
@@ -45,7 +61,7 @@ inline void store_xyz(void* to, Four v) {
 
 /// A mask whose bit i is set if words[i] == v, i = 0..3.
 inline unsigned equal_mask(const std::int32_t* words, std::int32_t v) {
-#ifdef __SSE2__
+#ifdef NEURALMESH_SSE2
     const __m128i four = _mm_loadu_si128(reinterpret_cast<const __m128i*>(words));
     return static_cast<unsigned>(_mm_movemask_ps(_mm_castsi128_ps(_mm_cmpeq_epi32(four, _mm_set1_epi32(v)))));
 #else
@@ -97,11 +113,20 @@ NEURALMESH_ALWAYS_INLINE void keep_where(const EightInts& mask, EightVectors& v)
 }
 
 /// Lane by lane, v = a where mask is -1, v = b where it is 0.
+template <class Lanes>
+NEURALMESH_ALWAYS_INLINE void choose(const EightInts& mask, const Lanes& a, const Lanes& b, Lanes& v) {
+#ifdef NEURALMESH_GNU
+    v = mask ? a : b;
+#else
+    for (int i = 0; i < 8; ++i) v[i] = mask[i] != 0 ? a[i] : b[i];
+#endif
+}
+
 NEURALMESH_ALWAYS_INLINE void choose(const EightInts& mask, const EightVectors& a, const EightVectors& b,
                                      EightVectors& v) {
-    v.x = mask ? a.x : b.x;
-    v.y = mask ? a.y : b.y;
-    v.z = mask ? a.z : b.z;
+    choose(mask, a.x, b.x, v.x);
+    choose(mask, a.y, b.y, v.y);
+    choose(mask, a.z, b.z, v.z);
 }
 
 /// Replaces every lane by its square root; the loop compiles to one instruction.
@@ -114,12 +139,24 @@ NEURALMESH_ALWAYS_INLINE void square_root(Eight& v) {
 
 /// The lanes of \p ints as floats.
 NEURALMESH_ALWAYS_INLINE void convert(const EightInts& ints, Eight& floats) {
+#ifdef NEURALMESH_GNU
     floats = __builtin_convertvector(ints, Eight);
+#else
+    for (int i = 0; i < 8; ++i) floats[i] = static_cast<float>(ints[i]);
+#endif
 }
 
 /// The lanes of \p v rounded towards 0.
-inline FourInts to_ints(Four v) { return __builtin_convertvector(v, FourInts); }
+inline FourInts to_ints(Four v) {
+#ifdef NEURALMESH_GNU
+    return __builtin_convertvector(v, FourInts);
+#else
+    return {static_cast<std::int32_t>(v[0]), static_cast<std::int32_t>(v[1]), static_cast<std::int32_t>(v[2]),
+            static_cast<std::int32_t>(v[3])};
+#endif
+}
 
+#ifdef NEURALMESH_SHUFFLES
 /// Transposes eight points (x, y, z, w) into their x, their y and their z; drops w.
 NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v) {
     const auto pair = [](const Four& low, const Four& high, Eight& both) {
@@ -172,6 +209,24 @@ NEURALMESH_ALWAYS_INLINE void transpose(const EightVectors& v, Four* to) {
     to[6] = __builtin_shufflevector(xy_high, z_high, 4, 5, 12, 13);
     to[7] = __builtin_shufflevector(xy_high, z_high, 6, 7, 14, 15);
 }
+#else
+NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v) {
+    for (int i = 0; i < 8; ++i) {
+        v.x[i] = p[i][0];
+        v.y[i] = p[i][1];
+        v.z[i] = p[i][2];
+    }
+}
+
+NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v, EightInts& last_words) {
+    transpose(p, v);
+    for (int i = 0; i < 8; ++i) last_words[i] = bit_cast<FourInts>(p[i])[3];
+}
+
+NEURALMESH_ALWAYS_INLINE void transpose(const EightVectors& v, Four* to) {
+    for (int i = 0; i < 8; ++i) to[i] = Four{v.x[i], v.y[i], v.z[i], 0};
+}
+#endif
 
 }  // namespace neuralmesh
 
@@ -187,8 +242,8 @@ NEURALMESH_ALWAYS_INLINE void transpose(const EightVectors& v, Four* to) {
 #endif
 #endif
 
-#if defined(__x86_64__) && defined(__ELF__) && !defined(NEURALMESH_ONE_INSTRUCTION_SET) && \
-    !defined(NEURALMESH_SANITIZED)
+#if defined(NEURALMESH_GNU) && defined(__x86_64__) && defined(__linux__) && \
+    !defined(NEURALMESH_ONE_INSTRUCTION_SET) && !defined(NEURALMESH_SANITIZED)
 #define NEURALMESH_MULTIVERSIONED __attribute__((target_clones("avx2", "default")))
 #else
 #define NEURALMESH_MULTIVERSIONED

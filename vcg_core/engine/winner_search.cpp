@@ -104,8 +104,8 @@ NEURALMESH_MULTIVERSIONED RankedVertex scan_eight_cells(const VertexRecord* slot
         const Eight z = p.z - s[2];
         const Eight distance = x * x + y * y + z * z;
         const EightInts better = (distance < least) | ((distance == least) & (ids < nearest));
-        least = better ? distance : least;
-        nearest = better ? ids : nearest;
+        choose(better, distance, least, least);
+        choose(better, ids, nearest, nearest);
         ids = next;
     } while ((links[0] & links[1] & links[2] & links[3] & links[4] & links[5] & links[6] & links[7]) >= 0);
     float distances[8];

@@ -179,7 +179,7 @@ double relative_plane_distance(const NearestPoints& cloud, Place place, const st
     if (!(solver.eigenvalues()[0] < kThin * solver.eigenvalues()[1])) return 0;
     const double own = std::sqrt(std::max(solver.eigenvalues()[0], 0.0) / static_cast<double>(others.size()));
     const Eigen::Vector3d offset = position(cloud, place) - extent.mean;
-    return std::abs(offset.dot(solver.eigenvectors().col(0))) / std::hypot(own, at_least);
+    return std::abs(offset.dot(solver.eigenvectors().col(0))) / std::sqrt(own * own + at_least * at_least);
 }
 
 void mark_isolated_clumps(const NearestPoints& cloud, std::vector<std::uint8_t>& out) {

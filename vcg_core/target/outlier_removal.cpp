@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "vcg_core/base/logarithm.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/target/isolated_groups.h"
 #include "vcg_core/target/nearest_points.h"
@@ -238,7 +239,8 @@ double Suspects::evidence_alone(std::size_t suspect) const {
     for (int k = 0; k < kWide; ++k) spacings[static_cast<std::size_t>(k)] = spacing_at(neighbour(suspect, k));
     const float own = suspects_[suspect].spacing;
     const auto log_ratio = [own](float other) {
-        return std::log(static_cast<double>(std::min(kMostRatio, own / std::max(other, own / kMostRatio))));
+        return portable_log(
+            static_cast<double>(std::min(kMostRatio, own / std::max(other, own / kMostRatio))));
     };
     const float usual = median({spacings.begin(), spacings.begin() + kSpacingNeighbour});
     std::nth_element(spacings.begin(), spacings.begin() + kWide / 10, spacings.end());
