@@ -93,6 +93,12 @@ void remove_outliers(LearningTask& task, int threads) {
     task.warnings.push_back(sentence);
 }
 
+/// Gives the points weights by which signals are even over the surface.
+void weigh_points(LearningTask& task, int threads) {
+    std::optional<TargetSpace> even = task.target().evenly(threads);
+    if (even) task.cleaned = std::move(even);
+}
+
 /// A group of points that got no component of the start mesh would be reached by a spike.
 void remove_groups_without_component(LearningTask& task, const std::vector<std::uint8_t>& outliers,
                                      std::vector<vcg::Point3f>& positions) {
@@ -174,23 +180,19 @@ void begin_closed(LearningTask& task, StartMesh shell, const Settings& settings)
             "learned with smoothing_steps 0, and its triangles are less even than usual.");
 }
 
-}  // namespace
-
-LearningTask prepare(const TargetSpace& given, const Settings& settings, Progress& progress) {
-    LearningTask task(given);
-    remove_repeated_points(task);
-    if (settings.remove_outliers && !given.has_faces()) remove_outliers(task, settings.threads);
+/// Makes the start mesh.
+void begin(LearningTask& task, const Settings& settings, Progress& progress) {
     if (settings.start_mesh == kTetrahedron) {
         if (settings.surface == kOpenSurface)
             task.warnings.push_back(
                 "The surface is closed, because start_mesh 1 (tetrahedron) is. Choose start_mesh 0 for an "
                 "open one.");
         task.network = tetrahedron();
-        return task;
+        return;
     }
     if (settings.surface == kOpenSurface) {
         begin_open(task, make_open_start(task.target(), settings, progress), settings);
-        return task;
+        return;
     }
     PartOf closing(progress, 0, kShellMade);
     PartOf opening(progress, kShellMade, 1);
@@ -199,10 +201,21 @@ LearningTask prepare(const TargetSpace& given, const Settings& settings, Progres
         std::optional<OpenStart> start = try_open_start(task.target(), settings, opening);
         if (start) {
             begin_open(task, std::move(*start), settings);
-            return task;
+            return;
         }
     }
     begin_closed(task, std::move(shell), settings);
+}
+
+}  // namespace
+
+LearningTask prepare(const TargetSpace& given, const Settings& settings, Progress& progress) {
+    LearningTask task(given);
+    remove_repeated_points(task);
+    if (settings.remove_outliers && !given.has_faces()) remove_outliers(task, settings.threads);
+    begin(task, settings, progress);
+    if (settings.even_sampling && settings.utility_counter != kSignalCount)
+        weigh_points(task, settings.threads);
     return task;
 }
 

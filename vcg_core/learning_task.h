@@ -22,9 +22,10 @@ struct LearningTask {
     /// The points to learn, in the frame that the network has, too.
     const TargetSpace& target() const { return cleaned ? *cleaned : given; }
 
-    const TargetSpace& given;            ///< as the caller passed it
-    std::optional<TargetSpace> cleaned;  ///< without repeated points and outliers; empty: all are learned
-    int outliers = 0;                    ///< number of points removed as such
+    const TargetSpace& given;  ///< as the caller passed it
+    std::optional<TargetSpace>
+        cleaned;       ///< without repeated points and outliers, or weighted; empty: as given
+    int outliers = 0;  ///< number of points removed as such
     Network network;
     int landing_signals = 0;  ///< per vertex, before growth, to bring a shell down to the points
     /// False for a sheet that is closed: its start mesh has two layers with nothing between them.
@@ -34,13 +35,16 @@ struct LearningTask {
 };
 
 /// Removes repeated points and, if settings.remove_outliers is on, outliers from \p given and makes the start
-/// mesh that \p settings asks for: the shell of the cloud, an open mesh of one layer, or a tetrahedron. A
-/// shell of more than settings.target_vertices vertices is replaced by a tetrahedron, with a warning; an open
-/// start mesh is not, because a tetrahedron would close it. If settings.surface is automatic and the cloud
-/// has no open surface, it is closed. A tetrahedron stays closed, with a warning if settings.surface is open.
-/// \p given must outlive the result. Fractions of \p progress run from 0 to 1.
-/// \throws what shell_of() throws; if settings.surface is open, what open_start() throws; SettingError if an
-/// open start mesh needs more than settings.target_vertices vertices
+/// mesh that \p settings asks for: the shell of the cloud, an open mesh of one layer, or a tetrahedron. If
+/// settings.even_sampling is on and settings.utility_counter does not follow the density of the points, those
+/// of an uneven cloud get weights.
+///
+/// A shell of more than settings.target_vertices vertices is replaced by a tetrahedron, with a warning; an
+/// open start mesh is not, because a tetrahedron would close it. If settings.surface is automatic and the
+/// cloud has no open surface, it is closed. A tetrahedron stays closed, with a warning if settings.surface is
+/// open. \p given must outlive the result. Fractions of \p progress run from 0 to 1. \throws what shell_of()
+/// throws; if settings.surface is open, what open_start() throws; SettingError if an open start mesh needs
+/// more than settings.target_vertices vertices
 LearningTask prepare(const TargetSpace& given, const Settings& settings, Progress& progress);
 
 }  // namespace neuralmesh

@@ -30,9 +30,11 @@ struct Report {
     double topology_confidence = 0;
     int outliers = 0;          ///< points that were not learned because of settings.remove_outliers
     int feature_vertices = 0;  ///< number of ones in NeuralMesh::features
-    double rms_error = 0;      ///< learned points to mesh, % of the diagonal of their bounding box
-    double mean_counter = 0;   ///< Mean(n_c) of eq 7
-    double seconds = 0;        ///< wall-clock time of reconstruct()
+    /// Learned points to mesh, % of the diagonal of their bounding box; weighted by area if the cloud was
+    /// sampled evenly (settings.even_sampling).
+    double rms_error = 0;
+    double mean_counter = 0;  ///< Mean(n_c) of eq 7
+    double seconds = 0;       ///< wall-clock time of reconstruct()
     StopReason stop_reason = StopReason::target_reached;
     std::vector<std::string> warnings;  ///< full sentences for the log
 };

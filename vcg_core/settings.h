@@ -49,6 +49,7 @@ struct Settings {
     bool draw_from_faces = true;
     bool selected_only = false;
     bool remove_outliers = true;  ///< only of points; see target/outlier_removal.h
+    bool even_sampling = true;    ///< only of points; see target/point_areas.h
     bool color_by_counter = true;
     bool select_features = false;
     int feature_measure = kFeatureCounter;

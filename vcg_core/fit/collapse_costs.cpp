@@ -53,7 +53,9 @@ public:
         if (around.missing_points > 0 || network_.ring(v).valence == 0 || !(around.twice_area > 0)) return 0;
         float least = Collapse::kForbidden;
         for (VertexId u : network_.ring(v)) least = std::min(least, quadric(v, u));
-        return least * static_cast<float>(around.points) / around.twice_area;
+        float weight = 0;
+        for (int f : surface_.faces_around(v)) weight += points_.weight(f);
+        return least * weight / around.twice_area;
     }
 
 private:

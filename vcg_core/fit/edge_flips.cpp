@@ -49,6 +49,7 @@ public:
 
     /// Drop of the sum of squared distances by the flip of \p q; negative if the flip must not be made.
     float gain(const Quad& q, float least_gain) const {
+        least_gain *= points_.mean_weight(q.f, q.g);
         const Shape shape = shape_of(q);
         if (!shape.unfolds && shape.turns_over) return -1;
         if (kFlipRules.folds(shape.old_fold, shape.new_fold)) return -1;

@@ -160,7 +160,7 @@ FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOp
     const auto wanted = static_cast<std::size_t>(std::max<long long>(
         options.min_points, static_cast<long long>(options.points_per_vertex) * vertices));
     PointChoice points = choose_points(target, wanted, random);
-    if (points.fitted.size() < kMinPoints || network.face_count() == 0) return report;
+    if (points.fitted.points.size() < kMinPoints || network.face_count() == 0) return report;
     const double learned_share = target.has_faces() ? 0.0
                                                     : kLearnedShare * network.vertex_count() /
                                                           static_cast<double>(target.positions().size());

@@ -81,7 +81,7 @@ std::vector<float> BendingSearch::next_weights(float least) {
 Fitter::Fitter(Network& network, PointChoice points, ThreadTeam& team)
     : network_(network),
       team_(team),
-      fitted_{std::move(points.fitted), {}},
+      fitted_(std::move(points.fitted)),
       held_out_(std::move(points.held_out)),
       sources_(own_sources(network)) {}
 
@@ -107,7 +107,7 @@ PointsByFace Fitter::assign(const Surface& surface, const std::vector<Hit>& hits
     noise_variance_ = neuralmesh::noise_variance(surface, points);
     const float squared = outlier_distance_ * outlier_distance_;
     for (PointsByFace::Assignment& a : points.all())
-        a.influence = std::min(1.0F, squared / std::max(a.foot.squared_distance, 1e-20F));
+        a.influence *= std::min(1.0F, squared / std::max(a.foot.squared_distance, 1e-20F));
     return points;
 }
 
@@ -236,7 +236,8 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
         set_directions(surface);
         solve(points, surface);
     }
-    fitted_.points.insert(fitted_.points.end(), set_aside_.begin(), set_aside_.end());
+    fitted_.points.insert(fitted_.points.end(), set_aside_.points.begin(), set_aside_.points.end());
+    fitted_.weights.insert(fitted_.weights.end(), set_aside_.weights.begin(), set_aside_.weights.end());
     set_aside_ = {};
     sources_ = own_sources(network_);
     return guard_.accepted().empty() || untangle_surface(untangling);
@@ -254,13 +255,18 @@ bool Fitter::remove_vertices(const Surface& surface, const PointsByFace& points,
 
 /// Part of the points, which are in random order, suffices for the reduction.
 void Fitter::set_points_aside() {
-    std::vector<Vector3>& fitted = fitted_.points;
-    const std::size_t kept = std::min(
-        fitted.size(), std::max(kMinReducingPoints, static_cast<std::size_t>(kReducingPointsPerVertex) *
-                                                        static_cast<std::size_t>(network_.vertex_count())));
-    const auto rest = fitted.begin() + static_cast<std::ptrdiff_t>(kept);
-    set_aside_.assign(rest, fitted.end());
-    fitted.erase(rest, fitted.end());
+    const std::size_t kept =
+        std::min(fitted_.points.size(),
+                 std::max(kMinReducingPoints, static_cast<std::size_t>(kReducingPointsPerVertex) *
+                                                  static_cast<std::size_t>(network_.vertex_count())));
+    const auto set_aside = [kept](auto& from, auto& to) {
+        if (from.empty()) return;
+        const auto rest = from.begin() + static_cast<std::ptrdiff_t>(kept);
+        to.assign(rest, from.end());
+        from.erase(rest, from.end());
+    };
+    set_aside(fitted_.points, set_aside_.points);
+    set_aside(fitted_.weights, set_aside_.weights);
 }
 
 PerVertex<VertexId> own_sources(const Network& network) {

@@ -87,7 +87,7 @@ private:
     Network& network_;
     ThreadTeam& team_;
     TrackedPoints fitted_;
-    std::vector<Vector3> set_aside_;  ///< fitted points that the reduction does not use
+    TrackedPoints set_aside_;  ///< fitted points that the reduction does not use
     HeldOut held_out_;
     float outlier_distance_ = 0;  ///< from the first assignment; fixed, so that errors stay comparable
     float noise_variance_ = 0;    ///< from the last assignment

@@ -81,8 +81,13 @@ double HeldOut::rms_error(const Surface& surface, float outlier_distance, Thread
         }
     });
     double sum = 0;
-    for (float d : squared) sum += static_cast<double>(std::min(d, outlier_distance * outlier_distance));
-    return std::sqrt(sum / static_cast<double>(squared.size()));
+    double weights = 0;
+    for (std::size_t i = 0; i < squared.size(); ++i) {
+        const double weight = tracked_.weights.empty() ? 1.0 : static_cast<double>(tracked_.weights[i]);
+        sum += weight * static_cast<double>(std::min(squared[i], outlier_distance * outlier_distance));
+        weights += weight;
+    }
+    return std::sqrt(sum / weights);
 }
 
 }  // namespace neuralmesh

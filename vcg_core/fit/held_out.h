@@ -16,7 +16,7 @@ namespace neuralmesh {
 /// it can compare two surfaces along the same ones.
 class HeldOut {
 public:
-    explicit HeldOut(std::vector<Vector3> points) { tracked_.points = std::move(points); }
+    explicit HeldOut(TrackedPoints points) : tracked_(std::move(points)) {}
 
     /// Finds the points on \p surface, exactly, and reorders them; set_directions() must follow.
     /// O(points x log faces).
@@ -27,7 +27,7 @@ public:
     /// O(points + vertices).
     void set_directions(const Network& network, const Surface& surface, ThreadTeam& team);
     /// Root mean square distance of the points from \p surface along their directions; each distance counts
-    /// up to \p outlier_distance. Expected O(points).
+    /// up to \p outlier_distance and with the weight of its point. Expected O(points).
     double rms_error(const Surface& surface, float outlier_distance, ThreadTeam& team) const;
 
     TrackedPoints& tracked() { return tracked_; }

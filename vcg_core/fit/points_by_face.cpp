@@ -35,14 +35,26 @@ std::vector<Hit> nearest_by_walk(const Surface& surface, const TrackedPoints& tr
 }
 
 // A counting sort by face.
-PointsByFace::PointsByFace(const Surface& surface, const std::vector<Vector3>& points,
-                           const std::vector<Hit>& hits)
-    : assignments_(hits.size()), first_(surface.face_count() + 1, 0) {
+PointsByFace::PointsByFace(const Surface& surface, const TrackedPoints& tracked, const std::vector<Hit>& hits)
+    : assignments_(hits.size()), weighted_(!tracked.weights.empty()), first_(surface.face_count() + 1, 0) {
     for (const Hit& hit : hits) ++first_[hit.face + 1];
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     PerFace<int> next = first_;
     for (std::size_t i = 0; i < hits.size(); ++i)
-        assignments_[static_cast<std::size_t>(next[hits[i].face]++)] = {points[i], 1, hits[i].foot};
+        assignments_[static_cast<std::size_t>(next[hits[i].face]++)] = {
+            tracked.points[i], weighted_ ? tracked.weights[i] : 1.0F, hits[i].foot};
+}
+
+float PointsByFace::weight(int face) const {
+    if (!weighted_) return static_cast<float>(of(face).size());
+    float sum = 0;
+    for (const Assignment& a : of(face)) sum += a.influence;
+    return sum;
+}
+
+float PointsByFace::mean_weight(int f, int g) const {
+    const int points = of(f).size() + of(g).size();
+    return weighted_ && points > 0 ? (weight(f) + weight(g)) / static_cast<float>(points) : 1;
 }
 
 void PointsByFace::update_feet(const Surface& surface, ThreadTeam& team) {
@@ -54,12 +66,13 @@ void PointsByFace::update_feet(const Surface& surface, ThreadTeam& team) {
 }
 
 PointsByFace group_by_face(const Surface& surface, TrackedPoints& tracked, const std::vector<Hit>& hits) {
-    PointsByFace result(surface, tracked.points, hits);
+    PointsByFace result(surface, tracked, hits);
     tracked.last_hit.resize(hits.size());
     std::size_t i = 0;
     for (int face = 0; face < surface.face_count(); ++face)
         for (const PointsByFace::Assignment& a : result.of(face)) {
             tracked.points[i] = a.point;
+            if (!tracked.weights.empty()) tracked.weights[i] = a.influence;
             tracked.last_hit[i] = walk_start_of(surface, {face, a.foot});
             ++i;
         }

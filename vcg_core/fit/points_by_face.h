@@ -16,6 +16,7 @@ namespace neuralmesh {
 /// Points, and for each the place where its nearest face was found last: the next search starts there.
 struct TrackedPoints {
     std::vector<Vector3> points;
+    std::vector<float> weights;       ///< the area that each stands for; empty: all 1
     std::vector<WalkStart> last_hit;  ///< empty before the first search
 };
 
@@ -29,12 +30,12 @@ class PointsByFace {
 public:
     struct Assignment {
         Vector3 point;
-        float influence;  ///< weight of the point: 1, less for outliers
+        float influence;  ///< weight of the point: that of TrackedPoints, less for outliers
         Foot foot;        ///< on the face
     };
 
     /// \p hits has one entry for each of the \p points. O(points + faces).
-    PointsByFace(const Surface& surface, const std::vector<Vector3>& points, const std::vector<Hit>& hits);
+    PointsByFace(const Surface& surface, const TrackedPoints& points, const std::vector<Hit>& hits);
 
     /// The points of \p face, in the order in which they were given.
     Span<const Assignment> of(int face) const {
@@ -47,11 +48,17 @@ public:
     std::vector<Assignment>& all() { return assignments_; }
     const std::vector<Assignment>& all() const { return assignments_; }
 
+    /// The sum of the influences of the points of \p face, or their number if the points have no weights.
+    float weight(int face) const;
+    /// The mean weight of the points of two faces, 1 if there are none.
+    float mean_weight(int f, int g) const;
+
     /// Computes the feet again after the vertices have moved; every point keeps its face.
     void update_feet(const Surface& surface, ThreadTeam& team);
 
 private:
     std::vector<Assignment> assignments_;
+    bool weighted_;
     PerFace<int> first_;  ///< where those of a face begin; one more entry at the end
 };
 

@@ -40,10 +40,14 @@ FaceHatSums hat_sums(const Surface& surface, const PointsByFace& points, int fac
     return sums;
 }
 
-/// The split of the inner edge a-b; its gain is negative if no point is near.
-EdgeSplit split_of(const Surface& surface, const PerFace<FaceHatSums>& sums, VertexId a, VertexId b) {
+/// The split of the inner edge a-b; its gain is negative if no point is near, or if it is less than \p
+/// least_gain for points of weight 1.
+EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const PerFace<FaceHatSums>& sums,
+                   float least_gain, VertexId a, VertexId b) {
     HatSums both;
     Vector3 normal = Vector3::Zero();
+    std::array<int, 2> faces{};
+    std::size_t found = 0;
     for (int f : surface.faces_around(a)) {
         const Triangle& face = surface.faces[f];
         for (std::size_t k = 0; k < 3; ++k) {
@@ -53,6 +57,7 @@ EdgeSplit split_of(const Surface& surface, const PerFace<FaceHatSums>& sums, Ver
             both.phi_residual += sums[f][k].phi_residual;
             both.phi_phi += sums[f][k].phi_phi;
             normal += unit_normal(surface, f);
+            faces[found++] = f;
         }
     }
     const Vector3& at_a = surface.positions[a];
@@ -61,7 +66,8 @@ EdgeSplit split_of(const Surface& surface, const PerFace<FaceHatSums>& sums, Ver
     const float bound = kMaxOffset * (at_a - at_b).norm();
     const float offset = std::min(std::max(both.phi_residual / both.phi_phi, -bound), bound);
     const float gain = both.phi_residual * both.phi_residual / both.phi_phi;
-    return {gain, a, b, 0.5F * (at_a + at_b) + offset * normal.normalized()};
+    const bool enough = gain >= least_gain * points.mean_weight(faces[0], faces[1]);
+    return {enough ? gain : -1, a, b, 0.5F * (at_a + at_b) + offset * normal.normalized()};
 }
 
 }  // namespace
@@ -76,8 +82,8 @@ std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surfac
         for (int i = 0; i < ring.valence; ++i) {
             const bool on_boundary = ring.open != 0 && (i == 0 || i + 1 == ring.valence);
             if (ring[i] < a || on_boundary) continue;
-            const EdgeSplit split = split_of(surface, sums, a, ring[i]);
-            if (split.gain >= least_gain) splits.push_back(split);
+            const EdgeSplit split = split_of(surface, points, sums, least_gain, a, ring[i]);
+            if (split.gain >= 0) splits.push_back(split);
         }
     }
     std::stable_sort(splits.begin(), splits.end(),

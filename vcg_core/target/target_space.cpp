@@ -165,7 +165,29 @@ std::optional<TargetSpace> TargetSpace::each_place_once() const {
     return once;
 }
 
+std::optional<TargetSpace> TargetSpace::evenly(int threads) const {
+    if (has_faces()) return std::nullopt;
+    std::optional<PointAreas> areas = areas_if_uneven(positions_, threads);
+    if (!areas) return std::nullopt;
+    TargetSpace even;
+    even.frame_ = frame_;
+    even.positions_ = std::move(areas->points);
+    even.weights_ = std::move(areas->of_run);
+    std::vector<double> of_runs;
+    for (std::size_t i = 0; i < even.positions_.size(); i += PointAreas::kRun) {
+        const std::size_t points = std::min(PointAreas::kRun, even.positions_.size() - i);
+        of_runs.push_back(static_cast<double>(even.weight(i)) * static_cast<double>(points));
+    }
+    even.runs_ = AliasTable(of_runs);
+    return even;
+}
+
 vcg::Point3f TargetSpace::sample(Random& random) const {
+    if (is_weighted()) {
+        const std::size_t first = runs_.draw(random) * PointAreas::kRun;
+        const std::size_t points = std::min(PointAreas::kRun, positions_.size() - first);
+        return positions_[first + random.below(static_cast<std::uint32_t>(points))];
+    }
     if (!has_faces()) return positions_[random.below(static_cast<std::uint32_t>(positions_.size()))];
     const double fraction = (random.bits() + 0.5) * 0x1p-32;
     const auto it = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end(),

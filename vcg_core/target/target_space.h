@@ -16,6 +16,8 @@
 
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/random.h"
+#include "vcg_core/target/alias_table.h"
+#include "vcg_core/target/point_areas.h"
 
 namespace neuralmesh {
 
@@ -47,8 +49,8 @@ public:
     template <class CornerAt>
     static TargetSpace triangles(std::size_t count, const CornerAt& corner_at);
 
-    /// A random point, uniform over the points or the area, in the frame of the core. O(1) for points, O(log
-    /// n) for n triangles.
+    /// A random point, in the frame of the core: uniform over the points, in proportion to their weights, or
+    /// uniform over the area of the triangles. O(1) for points, O(log n) for n triangles.
     vcg::Point3f sample(Random& random) const;
 
     /// The cloud without the points i with left_out[i] != 0, in a frame of its own; nothing if the remaining
@@ -59,6 +61,14 @@ public:
     /// duplicates; nothing otherwise, or for triangles. The share is estimated from samples of about 100,000
     /// points and exact for smaller clouds. O(points), or O(points log points) if duplicates are removed.
     std::optional<TargetSpace> each_place_once() const;
+
+    /// The cloud with weights by which signals are even over the surface, in another order and the same
+    /// frame, if its density is uneven: see point_areas.h. Nothing otherwise, or for triangles. Does not
+    /// depend on \p threads (0: all cores). O(points log points).
+    std::optional<TargetSpace> evenly(int threads) const;
+    bool is_weighted() const { return !weights_.empty(); }
+    /// The area that point \p i stands for; 1 in the mean. \pre !has_faces()
+    float weight(std::size_t i) const { return weights_.empty() ? 1.0F : weights_[i / PointAreas::kRun]; }
 
     const Frame& frame() const { return frame_; }
     bool has_faces() const { return !cumulative_area_.empty(); }
@@ -81,6 +91,8 @@ private:
     bool off_centre_ = false;  ///< the origin is the centre of most points, not of the box
     std::vector<vcg::Point3f> positions_;
     std::vector<double> cumulative_area_;
+    std::vector<float> weights_;  ///< of the runs of points; empty: all points weigh 1
+    AliasTable runs_;             ///< draws runs
 };
 
 template <class PointAt>

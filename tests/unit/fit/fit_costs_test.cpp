@@ -233,5 +233,56 @@ TEST(FindSplits, OmitsGainsBelowTheBound) {
     EXPECT_LT(some.size(), all.size());
 }
 
+/// The scene of a torus whose points weigh \p upper above the plane z = 0 and \p lower below it.
+FitScene weighted_torus_scene(float upper, float lower) {
+    FitScene scene = torus_scene();
+    for (const Vector3& p : scene.tracked.points) scene.tracked.weights.push_back(p[2] > 0 ? upper : lower);
+    ThreadTeam team(1);
+    scene.points =
+        group_by_face(scene.surface, scene.tracked, nearest_by_tree(scene.surface, scene.tracked, team));
+    return scene;
+}
+
+bool is_above(const FitScene& scene, VertexId v) {
+    const auto high = [&](VertexId u) { return scene.network.position(u)[2] > 0.05F; };
+    const Ring& ring = scene.network.ring(v);
+    return high(v) && std::all_of(ring.begin(), ring.end(), high);
+}
+
+TEST(Weights, ScaleCostsAndGainsWhereTheyAre) {
+    const FitScene even = weighted_torus_scene(1, 1);
+    const FitScene uneven = weighted_torus_scene(4, 0.5F);
+    ThreadTeam team(1);
+    const auto splits = [&](const FitScene& scene, float least) {
+        return find_splits(scene.network, scene.surface, scene.points, least, team);
+    };
+    const std::vector<EdgeSplit> unweighted = splits(even, 0.002F);
+    const std::vector<EdgeSplit> weighted = splits(uneven, 0.002F);
+    EXPECT_NEAR(static_cast<double>(weighted.size()), static_cast<double>(unweighted.size()),
+                0.05 * static_cast<double>(unweighted.size()))
+        << "the least gain is that of a point, whatever it weighs";
+    int compared = 0;
+    for (const EdgeSplit& split : weighted)
+        for (const EdgeSplit& other : unweighted) {
+            if (split.a != other.a || split.b != other.b || !is_above(even, split.a)) continue;
+            EXPECT_NEAR(split.gain, 4 * other.gain, 1e-4 * split.gain);
+            ++compared;
+        }
+    EXPECT_GT(compared, 10);
+    compared = 0;
+    const auto collapses = [&](const FitScene& scene) {
+        return find_collapses(scene.network, scene.surface, scene.points, team);
+    };
+    for (const Collapse& collapse : collapses(uneven))
+        for (const Collapse& other : collapses(even)) {
+            if (collapse.gone != other.gone || collapse.into < 0 || collapse.into != other.into ||
+                !is_above(even, other.gone) || other.cost <= 0)
+                continue;
+            EXPECT_NEAR(collapse.cost, 4 * other.cost, 1e-3 * collapse.cost);
+            ++compared;
+        }
+    EXPECT_GT(compared, 3);
+}
+
 }  // namespace
 }  // namespace neuralmesh

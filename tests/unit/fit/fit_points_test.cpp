@@ -28,18 +28,85 @@ TEST(ChoosePoints, TakesEveryPointOfACloudOnce) {
     const TargetSpace target = soundness::target_of(shapes::sphere_cloud(2000));
     Random random(1);
     const PointChoice choice = choose_points(target, 5000, random);
-    EXPECT_EQ(choice.held_out.size(), 250U);
-    EXPECT_EQ(choice.fitted.size(), 1750U);
+    EXPECT_EQ(choice.held_out.points.size(), 250U);
+    EXPECT_EQ(choice.fitted.points.size(), 1750U);
     std::set<std::array<float, 3>> places;
     for (const auto* part : {&choice.fitted, &choice.held_out})
-        for (const Vector3& p : *part) places.insert({p[0], p[1], p[2]});
+        for (const Vector3& p : part->points) places.insert({p[0], p[1], p[2]});
     EXPECT_EQ(places.size(), 2000U);
 }
 
 TEST(ChoosePoints, HoldsOutAtMostTenThousand) {
     const TargetSpace target = soundness::target_of(shapes::sphere_cloud(100000));
     Random random(1);
-    EXPECT_EQ(choose_points(target, 90000, random).held_out.size(), 10000U);
+    EXPECT_EQ(choose_points(target, 90000, random).held_out.points.size(), 10000U);
+}
+
+/// Sums over the points of a choice above and below the plane z = 0.
+struct Halves {
+    double upper = 0;
+    double lower = 0;
+    double share() const { return upper / (upper + lower); }
+};
+
+Halves weights_of(const PointChoice& choice) {
+    Halves sums;
+    for (const TrackedPoints* part : {&choice.fitted, &choice.held_out})
+        for (std::size_t i = 0; i < part->points.size(); ++i)
+            (part->points[i][2] > 0 ? sums.upper : sums.lower) += static_cast<double>(part->weights[i]);
+    return sums;
+}
+
+std::size_t count_of(const PointChoice& choice) {
+    return choice.fitted.points.size() + choice.held_out.points.size();
+}
+
+// The upper half of the sphere has a fortieth of the points.
+TEST(ChoosePoints, WeighsTheHalvesOfAnUnevenSphereByArea) {
+    const auto target = soundness::target_of(shapes::uneven_sphere_cloud(20000, 40)).evenly(1);
+    ASSERT_TRUE(target.has_value());
+    for (const std::size_t wanted : {30000, 20000, 5000, 800}) {
+        Random random(1);
+        const PointChoice choice = choose_points(*target, wanted, random);
+        const std::size_t most = std::min<std::size_t>(wanted, 20000);
+        EXPECT_NEAR(static_cast<double>(count_of(choice)), static_cast<double>(most),
+                    0.05 * static_cast<double>(most));
+        const Halves halves = weights_of(choice);
+        EXPECT_NEAR(halves.share(), 0.5, 0.05) << wanted;
+        EXPECT_NEAR(halves.upper + halves.lower, static_cast<double>(count_of(choice)),
+                    0.05 * static_cast<double>(most));
+    }
+}
+
+TEST(ChoosePoints, TakesTheSparsePointsFirst) {
+    const auto target = soundness::target_of(shapes::uneven_sphere_cloud(20000, 40)).evenly(1);
+    ASSERT_TRUE(target.has_value());
+    Random random(1);
+    const PointChoice choice = choose_points(*target, 1000, random);
+    Halves counts;
+    for (const Vector3& p : choice.fitted.points) (p[2] > 0 ? counts.upper : counts.lower) += 1;
+    EXPECT_GT(counts.share(), 0.3) << "of the cloud it is .024";
+}
+
+TEST(PointsByFace, WeighPointsByTheirInfluence) {
+    const Network network = referee::network_of(shapes::icosphere(2));
+    const Surface surface(network);
+    TrackedPoints tracked;
+    for (const vcg::Point3d& p : shapes::sphere_cloud(2000)) {
+        tracked.points.push_back(to_eigen(vcg::Point3f::Construct(p)));
+        tracked.weights.push_back(p[2] > 0 ? 2.0F : 0.5F);
+    }
+    ThreadTeam team(1);
+    const PointsByFace points = group_by_face(surface, tracked, nearest_by_tree(surface, tracked, team));
+    for (std::size_t i = 0; i < tracked.points.size(); ++i)
+        EXPECT_EQ(tracked.weights[i], tracked.points[i][2] > 0 ? 2.0F : 0.5F) << "reordered with the points";
+    for (int f = 0; f < surface.face_count(); ++f) {
+        float sum = 0;
+        for (const PointsByFace::Assignment& a : points.of(f)) sum += a.point[2] > 0 ? 2.0F : 0.5F;
+        EXPECT_FLOAT_EQ(points.weight(f), sum);
+        const int both = 2 * points.of(f).size();
+        EXPECT_FLOAT_EQ(points.mean_weight(f, f), both > 0 ? 2 * sum / static_cast<float>(both) : 1);
+    }
 }
 
 TEST(PointsByFace, HaveEveryPointWithItsNearestFace) {
@@ -135,9 +202,9 @@ TEST(HeldOut, MeasuresAlongTheNormals) {
     const Network network = referee::network_of(shapes::icosphere(4));
     const Surface sphere(network);
     ThreadTeam team(2);
-    std::vector<Vector3> points;
+    TrackedPoints points;
     for (const vcg::Point3d& p : shapes::sphere_cloud(2000))
-        points.push_back(to_eigen(vcg::Point3f::Construct(p)));
+        points.points.push_back(to_eigen(vcg::Point3f::Construct(p)));
     HeldOut held_out(points);
     held_out.locate(sphere, team);
     held_out.set_directions(network, sphere, team);
@@ -148,14 +215,29 @@ TEST(HeldOut, MeasuresAlongTheNormals) {
     EXPECT_NEAR(held_out.rms_error(larger, 0.02F, team), 0.02, 1e-6) << "counts up to the outlier distance";
 }
 
+TEST(HeldOut, WeighsTheErrorsOfItsPoints) {
+    const Network network = referee::network_of(shapes::icosphere(4));
+    const Surface sphere(network);
+    ThreadTeam team(1);
+    TrackedPoints points;
+    for (const vcg::Point3d& p : shapes::sphere_cloud(2000)) {
+        points.points.push_back(to_eigen(vcg::Point3f::Construct(p * (p[2] > 0 ? 1.1 : 1))));
+        points.weights.push_back(p[2] > 0 ? 0.2F : 1.8F);
+    }
+    HeldOut held_out(points);
+    held_out.locate(sphere, team);
+    held_out.set_directions(network, sphere, team);
+    EXPECT_NEAR(held_out.rms_error(sphere, 1, team), 0.1 * std::sqrt(0.1), 0.003);
+}
+
 // Points with noise of .03: a surface crumpled as much is nearer to them than the true one, but not along the
 // normals of the true one.
 TEST(HeldOut, DoesNotPreferACrumpledSurface) {
     const Network smooth = referee::network_of(shapes::icosphere(4));
     const Network crumpled = referee::network_of(shapes::icosphere(4), 0.06);
-    std::vector<Vector3> points;
+    TrackedPoints points;
     for (const vcg::Point3d& p : shapes::sphere_cloud(4000, 0.03))
-        points.push_back(to_eigen(vcg::Point3f::Construct(p)));
+        points.points.push_back(to_eigen(vcg::Point3f::Construct(p)));
     ThreadTeam team(2);
     HeldOut held_out(points);
     held_out.locate(Surface(smooth), team);

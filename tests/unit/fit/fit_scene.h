@@ -20,7 +20,7 @@ namespace neuralmesh {
 template <class Height>
 PointsByFace points_on(const Surface& surface, int per_face, const Height& height, std::uint64_t seed = 4) {
     Random random(seed);
-    std::vector<Vector3> points;
+    TrackedPoints points;
     std::vector<Hit> hits;
     for (int f = 0; f < surface.face_count(); ++f)
         for (int i = 0; i < per_face; ++i) {
@@ -32,8 +32,8 @@ PointsByFace points_on(const Surface& surface, int per_face, const Height& heigh
             }
             const float h = static_cast<float>(height(random));
             hits.push_back({f, {h * h, {1 - s - t, s, t}}});
-            points.push_back((1 - s - t) * surface.corner(f, 0) + s * surface.corner(f, 1) +
-                             t * surface.corner(f, 2) + h * unit_normal(surface, f));
+            points.points.push_back((1 - s - t) * surface.corner(f, 0) + s * surface.corner(f, 1) +
+                                    t * surface.corner(f, 2) + h * unit_normal(surface, f));
         }
     return PointsByFace(surface, points, hits);
 }

@@ -212,6 +212,18 @@ inline Cloud sphere_cloud(int count, double noise = 0, std::uint64_t seed = 1) {
 }
 
 /// On the torus of torus_point(u, v, 0.4), uniform in u and v.
+/// Of a unit sphere. The upper half has 1/\p ratio of the density of the lower one.
+inline Cloud uneven_sphere_cloud(int count, int ratio, double noise = 0) {
+    Cloud cloud;
+    int upper = 0;
+    for (int batch = 1; cloud.size() < static_cast<std::size_t>(count); ++batch)
+        for (const vcg::Point3d& p : sphere_cloud(count, noise, static_cast<std::uint64_t>(batch))) {
+            const bool kept = p[2] <= 0 || ++upper % ratio == 0;
+            if (kept && cloud.size() < static_cast<std::size_t>(count)) cloud.push_back(p);
+        }
+    return cloud;
+}
+
 inline Cloud torus_cloud(int count, double noise = 0, std::uint64_t seed = 1) {
     Random random(seed);
     Cloud cloud;
