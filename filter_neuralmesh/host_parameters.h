@@ -12,10 +12,28 @@
 
 namespace neuralmesh {
 
+#if __has_include(<common/parameters/rich_parameter/rich_percentage.h>)
+using RichLength = RichPercentage;
+#else
+using RichLength = RichAbsPerc;  // its name until 2022.02
+#endif
+
+/// The diagonal of the current layer, of which lengths are shown as percentages; 1 if it has
+/// none.
+inline double diagonal_of_current_layer(const MeshDocument& document) {
+    const MeshModel* const layer = document.mm();
+    if (layer == nullptr) return 1;
+    Box3m box;  // in world coordinates
+    box.Add(layer->cm.Tr, layer->cm.bbox);
+    const auto diagonal = static_cast<double>(box.Diag());
+    return diagonal > 0 ? diagonal : 1;
+}
+
 /// Adds the parameter that \p info describes to \p list. \p extra: the arguments that the host's constructors
-/// have after the tooltip (from 2022.02 on: whether the parameter is an advanced one).
+/// have after the tooltip (from 2022.02 on: whether the parameter is an advanced one). A length's default is
+/// in percent of \p diagonal.
 template <class... Extra>
-void add_parameter(RichParameterList& list, const SettingInfo& info, Extra... extra) {
+void add_parameter(RichParameterList& list, const SettingInfo& info, double diagonal, Extra... extra) {
     const double value = info.value(Settings());
     const QString id = QString::fromUtf8(info.id);
     const QString label = QString::fromUtf8(info.label);
@@ -30,6 +48,10 @@ void add_parameter(RichParameterList& list, const SettingInfo& info, Extra... ex
         case SettingInfo::Kind::real:
             // All hosts keep parameters as float; from_host() undoes the rounding.
             list.addParam(RichFloat(id, static_cast<float>(value), label, help, extra...));
+            break;
+        case SettingInfo::Kind::length:
+            list.addParam(RichLength(id, static_cast<MESHLAB_SCALAR>(value / 100 * diagonal), 0,
+                                     static_cast<MESHLAB_SCALAR>(diagonal), label, help, extra...));
             break;
         case SettingInfo::Kind::choice: {
             QStringList names;
@@ -52,6 +74,11 @@ inline Settings settings_from(const RichParameterList& list) {
             case SettingInfo::Kind::real:
                 info.store(settings, from_host(static_cast<double>(list.getFloat(id))));
                 break;
+            case SettingInfo::Kind::length: {
+                const auto length = static_cast<double>(list.getAbsPerc(id));
+                info.store(settings, length < 0 ? info.low : length);
+                break;
+            }
         }
     }
     return settings;

@@ -74,9 +74,10 @@ int FilterNeuralMeshPlugin::postCondition(QAction* /*action*/) const {
     return MeshModel::MM_VERTNUMBER | MeshModel::MM_FACENUMBER;
 }
 
-void FilterNeuralMeshPlugin::initParameterSet(QAction* /*action*/, MeshDocument& /*document*/,
+void FilterNeuralMeshPlugin::initParameterSet(QAction* /*action*/, MeshDocument& document,
                                               RichParameterList& list) {
-    for (const SettingInfo& info : setting_table()) add_parameter(list, info);
+    const double diagonal = diagonal_of_current_layer(document);
+    for (const SettingInfo& info : setting_table()) add_parameter(list, info, diagonal);
 }
 
 bool FilterNeuralMeshPlugin::applyFilter(QAction* /*action*/, MeshDocument& document,

@@ -54,9 +54,10 @@ int FilterNeuralMeshPlugin::postCondition(const QAction* /*action*/) const {
 }
 
 RichParameterList FilterNeuralMeshPlugin::initParameterList(const QAction* /*action*/,
-                                                            const MeshDocument& /*document*/) {
+                                                            const MeshDocument& document) {
     RichParameterList list;
-    for (const SettingInfo& info : setting_table()) add_parameter(list, info, info.advanced);
+    const double diagonal = diagonal_of_current_layer(document);
+    for (const SettingInfo& info : setting_table()) add_parameter(list, info, diagonal, info.advanced);
     return list;
 }
 

@@ -111,14 +111,16 @@ void remove_groups_without_component(LearningTask& task, const std::vector<std::
 OpenStart make_open_start(const TargetSpace& target, const Settings& settings, Progress& progress) {
     OpenStartOptions options;
     options.target_vertices = settings.target_vertices;
-    options.close_holes_up_to = settings.close_holes_up_to / 100;
+    options.close_holes_up_to = settings.close_holes_up_to / target.frame().diagonal;
     Random random(stream_seed(settings.random_seed, Stream::shell));
     return open_start(target, options, random, progress);
 }
 
 /// Whether the shell had to close more than settings allow for.
-bool is_open(const StartMesh& shell, const Settings& settings) {
-    const double widest = settings.close_holes_up_to >= 0 ? settings.close_holes_up_to / 100 : kWidestClosed;
+bool is_open(const StartMesh& shell, const TargetSpace& target, const Settings& settings) {
+    const double widest = settings.close_holes_up_to >= 0
+                              ? settings.close_holes_up_to / target.frame().diagonal
+                              : kWidestClosed;
     return !shell.encloses_space || 2 * shell.widest_opening > widest;
 }
 
@@ -197,7 +199,7 @@ void begin(LearningTask& task, const Settings& settings, Progress& progress) {
     PartOf closing(progress, 0, kShellMade);
     PartOf opening(progress, kShellMade, 1);
     StartMesh shell = make_shell(task.target(), settings, closing);
-    if (settings.surface == kAutomatic && is_open(shell, settings)) {
+    if (settings.surface == kAutomatic && is_open(shell, task.target(), settings)) {
         std::optional<OpenStart> start = try_open_start(task.target(), settings, opening);
         if (start) {
             begin_open(task, std::move(*start), settings);

@@ -44,6 +44,14 @@ SettingInfo row(double Settings::*member, const char* id, const char* label, dou
     return info;
 }
 
+/// A length that is negative by default: chosen by the filter.
+SettingInfo length_row(double Settings::*member, const char* id, const char* label, const char* help) {
+    constexpr double kLongest = 1e30;  // the hosts keep lengths as float
+    SettingInfo info = row(member, id, label, -1, kLongest, help);
+    info.kind = Kind::length;
+    return info;
+}
+
 SettingInfo advanced(SettingInfo info) {
     info.advanced = true;
     return info;
@@ -69,11 +77,11 @@ std::vector<SettingInfo> mesh_rows() {
             "Whether the mesh has boundaries. Closed: it has none; a single scan is closed around both of its "
             "sides. Open: it ends wherever the points end. Automatic: it is closed if the points enclose space "
             "and no opening is wider than 'Close holes up to', else open. Thin walls may be taken for open."),
-        row(&S::close_holes_up_to, "close_holes_up_to", "Close holes up to (% of diagonal)", -1, 100,
-            "Holes of an open surface are closed up to this diameter of the smallest sphere around them, in "
-            "percent of the bounding-box diagonal. -1: chosen from the spacing of the points. 0: none but gaps "
-            "of about two point spacings. With Surface set to Automatic, wider openings keep the whole surface "
-            "open (-1: from 6.6 % on)."),
+        length_row(
+            &S::close_holes_up_to, "close_holes_up_to", "Close holes up to",
+            "Holes of an open surface are closed up to this diameter of the smallest sphere around them. "
+            "Negative: chosen from the spacing of the points. 0: none but gaps of about two point spacings. With Surface set to Automatic, wider openings keep the whole surface "
+            "open (negative: from 6.6 % of the diagonal on)."),
         row(&S::utility_counter, "utility_counter", "Utility counter",
             {"Where the normal varies", "Where signals arrive"},
             "Which vertices are split. Where the normal varies: the mesh is dense where the surface bends "

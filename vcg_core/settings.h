@@ -42,7 +42,7 @@ enum SurfaceKind : int {
 struct Settings {
     int target_vertices = 10000;
     int surface = kClosedSurface;
-    double close_holes_up_to = -1;  ///< % of the bounding-box diagonal; negative: chosen by the filter
+    double close_holes_up_to = -1;  ///< a diameter in the units of the input; negative: chosen by the filter
     int utility_counter = kNormalVariation;
     int start_mesh = kShell;
     bool fit_to_points = true;
@@ -76,7 +76,8 @@ struct Settings {
 
 /// One parameter: its name, explanation, range, and the member of Settings that holds it.
 struct SettingInfo {
-    enum class Kind { boolean, integer, real, choice };
+    /// A length is a real number in the units of the input. Dialogs show it as a share of the diagonal, too.
+    enum class Kind { boolean, integer, real, length, choice };
 
     Kind kind;
     const char* id;                    ///< snake_case; API: scripts key on it
@@ -88,7 +89,7 @@ struct SettingInfo {
 
     bool Settings::*boolean_member = nullptr;
     int Settings::*integer_member = nullptr;  ///< integers and choices
-    double Settings::*real_member = nullptr;
+    double Settings::*real_member = nullptr;  ///< real numbers and lengths
 
     /// The parameter's value in \p settings, as a number.
     double value(const Settings& settings) const;

@@ -108,4 +108,6 @@ def out_of_range(build):
                 cases.append((name, int(high) + 1))
         elif kind == "RichFloat":
             cases += [(name, low - 1), (name, high * 2 + 1), (name, NAN)]
+        elif kind == "RichAbsPerc":
+            cases += [(name, high * 2), (name, NAN)]
     return cases

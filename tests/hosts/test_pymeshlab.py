@@ -90,8 +90,19 @@ def assert_refused(pymeshlab, meshes, words, **values):
 
 def test_every_parameter_out_of_range_raises(build, pymeshlab, meshes):
     meshes.add_mesh(pymeshlab.Mesh(np.array(CORNERS, dtype=float)))
+    lengths = [name for name, kind, *_ in parameters(build) if kind == "RichAbsPerc"]
     for name, value in out_of_range(build):
-        assert_refused(pymeshlab, meshes, f"The parameter {name} ", **{name: value})
+        given = pymeshlab.PureValue(value) if name in lengths else value
+        assert_refused(pymeshlab, meshes, f"The parameter {name} ", **{name: given})
+
+
+def test_a_length_is_given_in_world_units_or_percent(pymeshlab, meshes):
+    points = shapes.sphere(radius=10, subdivisions=5)[0]
+    for length, loops in ((pymeshlab.PureValue(20), 0), (pymeshlab.PureValue(3), 1), (pymeshlab.PercentageValue(60), 0),
+                          (pymeshlab.PercentageValue(10), 1)):
+        meshes.add_mesh(pymeshlab.Mesh(points[points[:, 2] < 8]))  # the opening has a diameter of 12
+        report = learn(meshes, target_vertices=300, surface="Automatic", close_holes_up_to=length)
+        assert report["boundary_loops"] == loops, length
 
 
 @pytest.mark.parametrize("draw_from_faces", [True, False])
@@ -129,9 +140,10 @@ def test_parameters_and_defaults_are_those_of_the_table(build):
     listed = dict(line.strip().split(" : ") for line in text.splitlines() if " : " in line)
     for name, kind, _, _, default, _ in parameters(build):
         python_type, python_default = listed.pop(name).split(" = ")
-        assert python_type == {"RichBool": "bool", "RichInt": "int", "RichFloat": "float", "RichEnum": "str"}[kind], name
+        assert python_type == {"RichBool": "bool", "RichInt": "int", "RichFloat": "float", "RichEnum": "str",
+                               "RichAbsPerc": "PercentageValue"}[kind], name
         if kind != "RichEnum":
-            assert python_default.lower() == default, name
+            assert python_default.lower().rstrip("%") == default, name
     assert not listed
 
 

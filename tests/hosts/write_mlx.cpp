@@ -22,6 +22,7 @@ const char* type_of(const SettingInfo& info) {
         case Kind::boolean: return "RichBool";
         case Kind::integer: return "RichInt";
         case Kind::real: return "RichFloat";
+        case Kind::length: return "RichAbsPerc";
         case Kind::choice: return "RichEnum";
     }
     return "";
@@ -44,6 +45,7 @@ void write_parameter(const SettingInfo& info, const std::string& value) {
         for (std::size_t i = 0; i < info.choices.size(); ++i)
             std::cout << " enum_val" << i << "=\"" << info.choices[i] << '"';
     }
+    if (info.kind == Kind::length) std::cout << " min=\"0\" max=\"1\"";
     std::cout << "/>\n";
 }
 

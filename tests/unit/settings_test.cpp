@@ -65,7 +65,7 @@ TEST(Settings, BothEndsOfARangePassAndNothingBeyond) {
     for (const SettingInfo& info : setting_table()) {
         SCOPED_TRACE(info.id);
         if (info.kind == Kind::boolean) continue;
-        const bool real = info.kind == Kind::real;
+        const bool real = info.real_member != nullptr;
         for (const double end : {info.low, info.high}) {
             Settings settings;
             info.store(settings, end);

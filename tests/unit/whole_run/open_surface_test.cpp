@@ -71,9 +71,9 @@ TEST(OpenSurface, ClosesWhatIsNarrowerThanAskedFor) {
     const Cloud cap =
         open_shapes::cut(shapes::sphere_cloud(20000), [](const vcg::Point3d& p) { return p[2] < 0.8; });
     Settings settings = settings_with(400, kAutomatic);
-    settings.close_holes_up_to = 60;
+    settings.close_holes_up_to = 2;  // the opening is 1.2 wide
     EXPECT_EQ(learn(cap, settings).report.boundary_loops, 0);
-    settings.close_holes_up_to = 10;
+    settings.close_holes_up_to = 0.3;
     EXPECT_EQ(learn(cap, settings).report.boundary_loops, 1);
 }
 
