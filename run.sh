@@ -5,7 +5,10 @@
 # Everything from a bare Debian 12 in one command:
 #   ./run.sh build                         the plugins for all MeshLabs, in build/plugins/
 #   ./run.sh demo [CLOUD [VERTICES [OUT]]] a neural mesh of a point cloud, with a picture; default: the Stanford bunny
+#   ./run.sh package                       the packages for others, in dist/
 #   ./run.sh test                          all tests
+#   ./run.sh installs                      installs each package in a bare Debian and uses it; needs root
+#   ./run.sh platform NAME                 the unit tests on arm64, windows, libcxx (clang's) or portable (plain C++)
 #   ./run.sh bench                         the performance tables
 #   ./run.sh figures                       the tables, figures and screenshots of the documentation
 # Missing packages are installed with apt, through sudo unless run by root. Installed packages are not changed.
@@ -22,6 +25,9 @@ venv_packages="python3-venv"
 demo_packages="glmark2-data libgl1-mesa-dri python3-numpy python3-pil xauth xdotool xvfb"
 bench_packages="libcgal-dev"  # CGAL's surface reconstruction is timed beside ours
 test_packages="binutils libbenchmark-dev libgtest-dev parallel valgrind"
+installs_packages="debootstrap lintian"
+declare -A platform_packages=([arm64]="g++-aarch64-linux-gnu googletest qemu-user" [portable]="libgtest-dev"
+    [windows]="g++-mingw-w64-x86-64-posix googletest wine64" [libcxx]="clang googletest libc++-dev libc++abi-dev")
 python=/usr/bin/python3
 stage_jobs=$((($(nproc) + 1) / 2))  # of each of the two stages that run at a time
 
@@ -131,6 +137,32 @@ build() {
     ls -1 "$build"/plugins/*/libfilter_neuralmesh.so
 }
 
+package() {
+    need $compile_packages $venv_packages
+    need_venv
+    compile plugins
+    say "Packages:"
+    "$python" packaging/package.py --plugins "$build/plugins" --out dist
+}
+
+installs() {
+    need $compile_packages $demo_packages $test_packages $installs_packages $venv_packages
+    need_venv
+    compile all
+    as_root env NEURALMESH_BUILD="$here/$build" "$venv/bin/python" -m pytest -v -rs tests/hosts/installs.py
+}
+
+platform() {
+    local name="${1:-}"
+    [ -n "$name" ] && [ -n "${platform_packages[$name]:-}" ] || fail "The platforms are ${!platform_packages[*]}."
+    need $compile_packages ${platform_packages[$name]}
+    need_sources
+    cmake --preset "$name" > "$build/configure_$name.log" 2>&1 ||
+        { cat "$build/configure_$name.log" >&2; fail "The configuration of $name failed."; }
+    cmake --build --preset "$name" -- --quiet
+    ctest --preset "$name" --parallel "$(nproc)" | without_passed
+}
+
 demo() {
     need $compile_packages $demo_packages
     compile filter_neuralmesh_meshlab-2020.09 write_mlx check_mesh
@@ -225,12 +257,15 @@ word="${1:-}"
 case "$word" in
     build) build ;;
     demo) demo "$@" ;;
+    package) package ;;
+    installs) installs ;;
+    platform) platform "$@" ;;
     test) run_tests ;;
     stage) stage "$@" ;;  # one stage of the tests, for run_tests
     bench) bench ;;
     figures) figures ;;
     *)
-        sed -n '5,11s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+        sed -n '5,14s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
         exit 2
         ;;
 esac

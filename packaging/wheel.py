@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""The wheel for pymeshlab: pure Python and the plugin, without Python's ABI, so one wheel serves all versions of it."""
+
+import base64
+import hashlib
+import time
+import zipfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+# Zip files cannot name an earlier time.
+EARLIEST = 315532800  # 1980-01-01
+
+METADATA = """Metadata-Version: 2.1
+Name: neural-mesh
+Version: {version}
+Summary: A point cloud to a triangle mesh with exactly the vertices you ask for, as a filter of pymeshlab
+License: GPL-3.0-or-later
+Requires-Python: >=3.9
+Requires-Dist: pymeshlab ==2025.7.*
+Description-Content-Type: text/markdown
+
+```python
+import neural_mesh, pymeshlab
+ms = pymeshlab.MeshSet()
+ms.load_new_mesh("cloud.ply")
+result = ms.generate_surface_reconstruction_neural_mesh(target_vertices=5000)
+ms.save_current_mesh("mesh.ply", save_vertex_quality=True)
+```
+
+Or as a command: `neural-mesh cloud.ply mesh.ply target_vertices=5000`.
+"""
+
+
+def write(out, plugin, version, date, glibc):
+    """Writes the wheel to the folder `out` and returns its path. `glibc`: the oldest version it runs with."""
+    tag = f"py3-none-manylinux_{glibc.replace('.', '_')}_x86_64"
+    info = f"neural_mesh-{version}.dist-info"
+    files = {f"neural_mesh/{path.name}": path.read_bytes() for path in sorted((HERE / "neural_mesh").glob("*.py"))}
+    files[f"neural_mesh/{plugin.name}"] = plugin.read_bytes()
+    files[f"{info}/METADATA"] = METADATA.format(version=version).encode()
+    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: neural-mesh\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
+    files[f"{info}/entry_points.txt"] = b"[console_scripts]\nneural-mesh = neural_mesh.__main__:main\n"
+    files[f"{info}/licenses/LICENSE"] = (HERE.parent / "LICENSE").read_bytes()
+    files[f"{info}/RECORD"] = record(files, f"{info}/RECORD").encode()
+    path = out / f"neural_mesh-{version}-{tag}.whl"
+    moment = time.gmtime(max(date, EARLIEST))[:6]
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            entry = zipfile.ZipInfo(name, moment)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = 0o100644 << 16
+            archive.writestr(entry, content)
+    return path
+
+
+def record(files, own_name):
+    """The wheel's list of its files: name, checksum, size; none of the last two for the list itself."""
+    lines = []
+    for name, content in files.items():
+        digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+        lines.append(f"{name},sha256={digest},{len(content)}\n")
+    return "".join(lines) + f"{own_name},,\n"

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""The packages of `./run.sh package`: what they contain, the symbol versions they need, the same bytes whenever they are
+made, and the wheel in use. installs.py installs them in bare systems."""
+
+import hashlib
+import io
+import os
+import re
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+import meshlabserver
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "packaging"))
+
+import package as packaging  # noqa: E402
+
+PLUGIN = "libfilter_neuralmesh.so"
+NAME = "meshlab-plugin-neuralmesh"
+
+
+def make(build, out, **environment):
+    """`package.py`, as run.sh calls it. Returns what it printed."""
+    return subprocess.run(["/usr/bin/python3", str(ROOT / "packaging/package.py"), "--plugins", str(build / "plugins"),
+                           "--out", str(out)], check=True, stdout=subprocess.PIPE, text=True,
+                          env=dict(os.environ, **environment)).stdout
+
+
+@pytest.fixture(scope="session")
+def dist(build, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("packages") / "dist"
+    print(make(build, folder, SOURCE_DATE_EPOCH="1700000000"))
+    return folder
+
+
+def the_file(dist, pattern):
+    found = list(dist.glob(pattern))
+    assert len(found) == 1, f"{pattern}: {found}"
+    return found[0]
+
+
+def test_all_packages_are_made_and_named_by_one_version(dist):
+    version = packaging.project_version()
+    assert sorted(path.name for path in dist.iterdir()) == sorted([
+        "SHA256SUMS", f"{NAME}_{version}-1~deb12u1_amd64.deb", f"{NAME}_{version}-1~deb13u1_amd64.deb",
+        f"neural-mesh-{version}-meshlab-2022.02-float-linux-x86_64.tar.gz",
+        f"neural-mesh-{version}-meshlab-2025.07-float-linux-x86_64.tar.gz",
+        the_file(dist, f"neural_mesh-{version}-py3-none-manylinux_*_x86_64.whl").name])
+
+
+def test_checksums_are_of_the_files(dist):
+    lines = (dist / "SHA256SUMS").read_text().splitlines()
+    assert len(lines) == 5
+    for line in lines:
+        digest, name = line.split("  ")
+        assert digest == hashlib.sha256((dist / name).read_bytes()).hexdigest()
+
+
+def test_the_same_plugins_give_the_same_packages(build, dist, tmp_path):
+    for date, same in (("1700000000", True), ("1700000002", False)):
+        make(build, tmp_path / date, SOURCE_DATE_EPOCH=date, TZ="Asia/Tokyo", LC_ALL="C")
+        assert ((tmp_path / date / "SHA256SUMS").read_text() == (dist / "SHA256SUMS").read_text()) is same
+
+
+def test_plugins_need_nothing_newer_than_their_host(build, tmp_path):
+    for host, limits in packaging.HOST_VERSIONS.items():
+        needed = packaging.needed_versions(packaging.stripped(build / "plugins", host, tmp_path))
+        assert set(needed) == {"GLIBC", "GLIBCXX", "CXXABI"} and not packaging.too_new(host, needed), (host, limits)
+
+
+def test_a_newer_version_than_the_hosts_is_found():
+    assert packaging.too_new("meshlab-2022.02", {"GLIBC": "2.31", "GLIBCXX": "3.4.28"}) == []
+    assert packaging.too_new("meshlab-2022.02", {"GLIBC": "2.4", "GLIBCXX": "3.4.29"}) == ["GLIBCXX_3.4.29"]
+    # The interpreter is a large program of GCC, or at least of the C library.
+    assert packaging.number(packaging.needed_versions(os.path.realpath("/usr/bin/python3"))["GLIBC"]) > (2, 3)
+
+
+def test_what_the_archives_contain(build, dist):
+    for release in ("2022.02", "2025.07"):
+        path = the_file(dist, f"*meshlab-{release}*.tar.gz")
+        folder = path.name.removesuffix(".tar.gz")
+        with tarfile.open(path) as archive:
+            assert archive.getnames() == [f"{folder}/LICENSE", f"{folder}/README.txt", f"{folder}/{PLUGIN}"]
+            readme = archive.extractfile(f"{folder}/README.txt").read().decode()
+            plugin = archive.extractfile(f"{folder}/{PLUGIN}").read()
+        assert len(readme.splitlines()) == 3 and release in readme and "Load Plugins" in readme
+        assert same_code(plugin, meshlabserver.plugin_path(build, f"meshlab-{release}").read_bytes())
+
+
+def same_code(stripped, built):
+    """Whether the two have the same build id, which is a checksum of all that is loaded."""
+    build_id = re.compile(rb"\x04\x00\x00\x00\x14\x00\x00\x00\x03\x00\x00\x00GNU\x00(.{20})", re.DOTALL)
+    return build_id.search(stripped)[1] == build_id.search(built)[1]
+
+
+def test_what_the_debian_packages_contain(dist):
+    common = {f"usr/lib/x86_64-linux-gnu/meshlab/plugins/{PLUGIN}",
+              *(f"usr/share/doc/{NAME}/{file}" for file in ("changelog.Debian.gz", "changelog.gz", "copyright"))}
+    scripts = {f"usr/share/doc/{NAME}/examples/{path.name}" for path in (ROOT / "filter_neuralmesh/scripts").iterdir()}
+    for suffix, meshlab, files in (("deb12u1", "2020.09", common | scripts), ("deb13u1", "2022.02", common)):
+        path = the_file(dist, f"*{suffix}_amd64.deb")
+        content = subprocess.run(["dpkg-deb", "--fsys-tarfile", str(path)], check=True, stdout=subprocess.PIPE).stdout
+        with tarfile.open(fileobj=io.BytesIO(content)) as archive:
+            found = [entry for entry in archive if entry.isfile()]
+        assert {entry.name.removeprefix("./") for entry in found} == files
+        assert all((entry.uid, entry.gid, entry.mode) == (0, 0, 0o644) for entry in found)
+        control = subprocess.run(["dpkg-deb", "--info", str(path), "control"], check=True, stdout=subprocess.PIPE,
+                                 text=True).stdout
+        assert f"meshlab (>= {meshlab})" in control and f"Version: {packaging.project_version()}-1~{suffix}" in control
+
+
+def test_what_the_wheel_contains(dist):
+    version = packaging.project_version()
+    with zipfile.ZipFile(the_file(dist, "*.whl")) as archive:
+        assert archive.testzip() is None
+        info = f"neural_mesh-{version}.dist-info"
+        assert set(archive.namelist()) == {
+            "neural_mesh/__init__.py", "neural_mesh/__main__.py", f"neural_mesh/{PLUGIN}",
+            *(f"{info}/{file}" for file in ("METADATA", "WHEEL", "RECORD", "entry_points.txt", "licenses/LICENSE"))}
+        metadata = archive.read(f"{info}/METADATA").decode()
+    assert f"Version: {version}" in metadata and "Requires-Dist: pymeshlab ==2025.7.*" in metadata
+
+
+@pytest.fixture(scope="session")
+def installed(dist, tmp_path_factory):
+    """The folder into which pip has installed the wheel, to be searched beside this environment's pymeshlab."""
+    folder = tmp_path_factory.mktemp("site")
+    subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target", str(folder),
+                    str(the_file(dist, "*.whl"))], check=True)
+    return folder
+
+
+def python(installed, *arguments):
+    return subprocess.run([sys.executable, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True, check=False, env=dict(os.environ, PYTHONPATH=str(installed)))
+
+
+USE = """
+import neural_mesh, pymeshlab, sys
+method = pymeshlab.MeshSet.generate_surface_reconstruction_neural_mesh
+assert "exactly `target_vertices` vertices" in method.__doc__
+assert method.__name__ == "generate_surface_reconstruction_neural_mesh"
+ms = pymeshlab.MeshSet()
+ms.load_new_mesh(sys.argv[1])
+result = ms.generate_surface_reconstruction_neural_mesh(target_vertices=300)
+assert result["vertices"] == ms.current_mesh().vertex_number() == 300
+ms.save_current_mesh(sys.argv[2], save_vertex_quality=True)
+"""
+PLAIN = """
+import pymeshlab, sys
+pymeshlab.load_plugin(sys.argv[3])
+ms = pymeshlab.MeshSet()
+ms.load_new_mesh(sys.argv[1])
+ms.apply_filter("generate_surface_reconstruction_neural_mesh", target_vertices=300)
+ms.save_current_mesh(sys.argv[2], save_vertex_quality=True)
+"""
+
+
+def test_importing_the_wheel_adds_a_method_that_gives_the_same_bytes(build, installed, model, tmp_path):
+    cloud, _ = model("sphere")
+    done = python(installed, "-c", USE, cloud, tmp_path / "mesh.ply")
+    assert done.returncode == 0, done.stderr
+    plugin = meshlabserver.plugin_path(build, "pymeshlab-2025.7")
+    done = python(installed, "-c", PLAIN, cloud, tmp_path / "plain.ply", plugin)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "mesh.ply").read_bytes() == (tmp_path / "plain.ply").read_bytes()
+
+
+def test_the_command_makes_a_mesh(build, installed, model, tmp_path):
+    done = python(installed, installed / "bin/neural-mesh", model("sphere")[0], tmp_path / "mesh.ply",
+                  "target_vertices=200", "select_features=true")
+    assert done.returncode == 0 and "vertices=200 " in done.stdout, done.stderr
+    found = meshlabserver.check_mesh(build, tmp_path / "mesh.ply")
+    assert found["vertices"] == 200 and found["watertight"] and found["oriented"]
+
+
+@pytest.mark.parametrize("words, sentence", [
+    (["nowhere.ply", "mesh.ply"], "nowhere.ply"),
+    (["{cloud}", "mesh.ply", "5000"], "neural-mesh: '5000' is not of the form name=value"),
+    (["{cloud}", "mesh.ply", "target_vertices=1"], "Target vertices"),
+])
+def test_the_command_says_what_is_wrong(installed, model, words, sentence):
+    words = [word.format(cloud=model("sphere")[0]) for word in words]
+    done = python(installed, "-m", "neural_mesh", *words)
+    assert done.returncode == 1 and sentence in done.stderr and "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("other, words", [("2023.12", "pymeshlab 2023.12 is installed"),
+                                          (None, "no pymeshlab is installed")])
+def test_beside_another_pymeshlab_the_import_names_both_versions(installed, tmp_path, other, words):
+    """A stand-in for an installed pymeshlab: the folder that names its release."""
+    if other:
+        (tmp_path / f"pymeshlab-{other}.dist-info").mkdir()
+        (tmp_path / f"pymeshlab-{other}.dist-info/METADATA").write_text(f"Name: pymeshlab\nVersion: {other}\n")
+    done = subprocess.run(["/usr/bin/python3", "-c", "import neural_mesh"], stderr=subprocess.PIPE, text=True,
+                          check=False, env=dict(os.environ, PYTHONPATH=f"{tmp_path}:{installed}"))
+    assert done.returncode == 1
+    sentence = done.stderr.splitlines()[-1]
+    assert sentence.startswith(f"ImportError: neural-mesh {packaging.project_version()} ")
+    assert "pymeshlab 2025.7" in sentence and words in sentence
