@@ -100,10 +100,14 @@ def case_of(name, kind, noise, data, samples=200_000):
     return Case(models.make_cloud(*truth, samples, noise=noise), points, truth, area_of(*truth), truth)
 
 
-def half_of_scan(path, noise):
+def points_of(path):
     meshes = pymeshlab.MeshSet(verbose=False)
     meshes.load_new_mesh(str(path))
-    points = meshes.current_mesh().vertex_matrix()
+    return meshes.current_mesh().vertex_matrix()
+
+
+def half_of_scan(path, noise):
+    points = points_of(path)
     rng = np.random.default_rng(3)
     points = points + rng.normal(size=points.shape) * noise / 100 * models.diagonal(points)
     learned = np.zeros(len(points), bool)

@@ -31,6 +31,11 @@ screenshots() {
 cmake --build "$build" --target learn counter_trace check_mesh -- --quiet
 say "Figures of the paper"
 "$python" "$here/../paper/paper_figures.py" --learn "$build/tests/learn" --out "$out" --pictures "$pictures"
+if [ -n "${NEURAL_MESH_DATA:-}" ]; then
+    say "Real scans, open"
+    "$python" "$here/open_scans.py" "$build/tests/learn" "$pictures/open_scans.png" --data "$NEURAL_MESH_DATA" --out "$out"
+    "$python" "$here/small_png.py" --width 1080 "$pictures/open_scans.png"
+fi
 say "Screenshots"
 screenshots gui_2020_09.sh 2020.09
 if [ -e "$roots/trixie.complete" ]; then screenshots gui_2022_02.sh 2022.02; fi
