@@ -7,7 +7,7 @@
 #   ./run.sh demo [CLOUD [VERTICES [OUT]]] a neural mesh of a point cloud, with a picture; default: the Stanford bunny
 #   ./run.sh package                       the packages for others, in dist/
 #   ./run.sh test                          all tests
-#   ./run.sh installs                      installs each package in a bare Debian and uses it; needs root
+#   ./run.sh release                       installs each package in a bare Debian and uses it; needs root
 #   ./run.sh platform NAME                 the unit tests on arm64, windows, libcxx (clang's) or portable (plain C++)
 #   ./run.sh bench                         the performance tables
 #   ./run.sh figures                       the tables, figures and screenshots of the documentation
@@ -25,7 +25,7 @@ venv_packages="python3-venv"
 demo_packages="glmark2-data libgl1-mesa-dri python3-numpy python3-pil xauth xdotool xvfb"
 bench_packages="libcgal-dev"  # CGAL's surface reconstruction is timed beside ours
 test_packages="binutils libbenchmark-dev libgtest-dev parallel valgrind"
-installs_packages="debootstrap lintian"
+release_packages="debootstrap lintian"
 declare -A platform_packages=([arm64]="g++-aarch64-linux-gnu googletest qemu-user" [portable]="libgtest-dev"
     [windows]="g++-mingw-w64-x86-64-posix googletest wine64" [libcxx]="clang googletest libc++-dev libc++abi-dev")
 python=/usr/bin/python3
@@ -145,11 +145,14 @@ package() {
     "$python" packaging/package.py --plugins "$build/plugins" --out dist
 }
 
-installs() {
-    need $compile_packages $demo_packages $test_packages $installs_packages $venv_packages
+# What a release must pass besides the tests. Not part of them: it takes half an hour.
+release() {
+    need $compile_packages $demo_packages $test_packages $release_packages $venv_packages
     need_venv
     compile all
-    as_root env NEURALMESH_BUILD="$here/$build" "$venv/bin/python" -m pytest -v -rs tests/hosts/installs.py
+    export NEURALMESH_BUILD="$here/$build"
+    "$venv/bin/python" -m pytest -v -rs tests/hosts/upstream.py
+    as_root env NEURALMESH_BUILD="$NEURALMESH_BUILD" "$venv/bin/python" -m pytest -v -rs tests/hosts/installs.py
 }
 
 platform() {
@@ -258,7 +261,7 @@ case "$word" in
     build) build ;;
     demo) demo "$@" ;;
     package) package ;;
-    installs) installs ;;
+    release) release ;;
     platform) platform "$@" ;;
     test) run_tests ;;
     stage) stage "$@" ;;  # one stage of the tests, for run_tests
