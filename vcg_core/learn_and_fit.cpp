@@ -44,6 +44,7 @@ LearnerOptions learner_options(const LearningTask& task, const Settings& setting
 FitReport fit(Network& network, const LearningTask& task, const Settings& settings, Progress& progress) {
     FitOptions options;
     options.reduce_to = settings.target_vertices;
+    options.expect_strays = task.outliers > 0;
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
     // error is largest at the rim, and vertices inserted there stick out.
     options.redistribute = settings.utility_counter == kNormalVariation && task.encloses_space;

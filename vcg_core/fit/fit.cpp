@@ -166,6 +166,7 @@ FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOp
                                                           static_cast<double>(target.positions().size());
     ThreadTeam team(thread_count(threads));
     Fitter fitter(network, std::move(points), team);
+    if (options.expect_strays) fitter.expect_strays();
     // By time: the reduction takes about as long as the rounds.
     PartOf untangling(progress, 0, 0.1);
     PartOf reducing(progress, 0.1, 0.5);

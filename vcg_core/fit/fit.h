@@ -24,6 +24,9 @@ struct FitOptions {
     /// Reduce the network to this number of vertices first, removing those whose removal costs least. 0, or
     /// at least the present number: keep it.
     int reduce_to = 0;
+    /// Leave out stray points (stray_points.h). For clouds that had outliers: those close to the surface are
+    /// still there.
+    bool expect_strays = false;
     /// Number of points used: this many per vertex, at least min_points, at most all of a cloud.
     int points_per_vertex = 100;
     int min_points = 100000;
@@ -56,7 +59,9 @@ struct FitReport {
 /// - What stays: components, handles, boundary loops, and the number of vertices unless options.reduce_to is
 ///   less. No face turns over, folds onto a neighbour or becomes a sliver.
 /// - Self-crossings are smoothed out first where possible; the fit adds none.
-/// - Outliers: the influence of a far point falls with its squared distance.
+/// - Outliers: the influence of a far point falls with its squared distance; with options.expect_strays,
+/// points
+///   that are far for their surroundings have none.
 /// - The result of the rounds is kept only if its error at the held-out points is smaller, allowing for the
 ///   noise that learning has followed (see rms_unfitted). Else the mesh stays as it was before them.
 /// - The reduction falls short of options.reduce_to if it was stopped, if no more vertices can go without

@@ -16,6 +16,7 @@
 #include "vcg_core/fit/least_squares.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/noise.h"
+#include "vcg_core/fit/stray_points.h"
 #include "vcg_core/fit/untangle.h"
 
 namespace neuralmesh {
@@ -26,6 +27,11 @@ namespace {
 constexpr float kOutlierDeviations = 6;
 /// ... but not within this share of the mean edge length.
 constexpr float kOutlierEdges = 0.5F;
+/// Points are astray from this many times the spread around them; see StrayPoints. Chosen by
+/// tests/experiments/accuracy/scan_table.py --groups outliers.
+constexpr float kStrayDeviations = 4;
+constexpr float kFirstStrayDeviations = 2.5F;
+constexpr int kFacesAtATime = 128;
 /// Bending weights of the first round, and factors from the last choice to those on either side of it.
 constexpr float kFirstWeights[] = {0.01F, 0.1F, 1.0F, 8.0F, 50.0F};
 constexpr float kWeightDown = 8;
@@ -108,7 +114,19 @@ PointsByFace Fitter::assign(const Surface& surface, const std::vector<Hit>& hits
     const float squared = outlier_distance_ * outlier_distance_;
     for (PointsByFace::Assignment& a : points.all())
         a.influence *= std::min(1.0F, squared / std::max(a.foot.squared_distance, 1e-20F));
+    if (expects_strays_) silence_strays(surface, points);
     return points;
+}
+
+/// A vertex that a stray point has drawn to itself would find it close by. So before vertices move for the
+/// first time points are left out sooner; those that turn out to be near the surface come back.
+void Fitter::silence_strays(const Surface& surface, PointsByFace& points) {
+    const StrayPoints strays(network_, surface, points, solved_ ? kStrayDeviations : kFirstStrayDeviations,
+                             team_);
+    parallel_for(surface.face_count(), kFacesAtATime, team_, [&](int face) {
+        for (PointsByFace::Assignment& a : points.of(face))
+            if (strays.contain(a, face)) a.influence = 0;
+    });
 }
 
 std::vector<float> Fitter::choose_weights(const Surface& surface, const PointsByFace& points) {
@@ -136,6 +154,7 @@ double Fitter::solve(const PointsByFace& points, Surface& surface) {
         best = i;
         best_error = error;
     }
+    solved_ = true;
     bending_.choose(weights[best]);
     surface.positions = solutions[best];
     if (!guard_.objections(self_crossings(surface, team_)).empty()) {

@@ -37,6 +37,9 @@ public:
     /// Keeps references to \p network and \p team. \pre neither part of \p points is empty
     Fitter(Network& network, PointChoice points, ThreadTeam& team);
 
+    /// From now on leaves out points that StrayPoints tells, anew with each assignment.
+    void expect_strays() { expects_strays_ = true; }
+
     /// Removes self-crossings where smoothing can, and from then on lets no step add any. \return false if
     /// \p progress asks to stop; then the network is unchanged.
     bool untangle_surface(Progress& progress);
@@ -76,6 +79,7 @@ public:
 
 private:
     PointsByFace assign(const Surface& surface, const std::vector<Hit>& hits);
+    void silence_strays(const Surface& surface, PointsByFace& points);
     std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
     float least_split_gain(const Surface& surface) const;
     template <class Change>
@@ -91,6 +95,8 @@ private:
     HeldOut held_out_;
     float outlier_distance_ = 0;  ///< from the first assignment; fixed, so that errors stay comparable
     float noise_variance_ = 0;    ///< from the last assignment
+    bool expects_strays_ = false;
+    bool solved_ = false;  ///< vertices have moved
     BendingSearch bending_;
     PerVertex<VertexId> sources_;
     CrossingGuard guard_;  ///< has accepted the present surface

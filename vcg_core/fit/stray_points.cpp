@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/fit/stray_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "vcg_core/base/median.h"
+#include "vcg_core/base/parallel_for.h"
+
+namespace neuralmesh {
+
+namespace {
+
+// The values are those with which tests/experiments/accuracy/scan_table.py --groups outliers gave the lowest
+// backward maximum.
+
+/// The spread is this quantile of the distances, divided by that of the absolute values of a standard normal
+/// deviate. The median would not see a crease that takes part of the points.
+constexpr float kQuantile = 0.75F, kNormalQuantile = 1.15F;
+/// Points closer than this share of the mean edge are not astray: they do not harm, and many of those at
+/// creases are farther away than the points around.
+constexpr float kLeastEdges = 0.06F;
+/// Of so many nearest points, so many must have this share of the height.
+constexpr std::size_t kNearest = 8;
+constexpr int kCompany = 3;
+constexpr float kComparable = 0.3F;
+constexpr int kChunk = 128;
+
+float spread_at(const Surface& surface, const PointsByFace& points, VertexId v) {
+    std::vector<float> squared;
+    for (const int f : surface.faces_around(v))
+        for (const PointsByFace::Assignment& a : points.of(f)) squared.push_back(a.foot.squared_distance);
+    if (squared.empty()) return 0;
+    const auto at =
+        squared.begin() + static_cast<std::ptrdiff_t>(kQuantile * static_cast<float>(squared.size()));
+    std::nth_element(squared.begin(), at, squared.end());
+    return std::sqrt(*at) / kNormalQuantile;
+}
+
+/// The faces at the corners of \p face, in rising order.
+std::vector<int> faces_around(const Surface& surface, int face) {
+    std::vector<int> faces;
+    for (const VertexId v : surface.faces[face])
+        faces.insert(faces.end(), surface.faces_around(v).begin(), surface.faces_around(v).end());
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
+}
+
+}  // namespace
+
+StrayPoints::StrayPoints(const Network& network, const Surface& surface, const PointsByFace& points,
+                         float deviations, ThreadTeam& team)
+    : network_(network), surface_(surface), points_(points), limit_(surface.positions.size(), 0) {
+    PerVertex<float> spread(surface.positions.size(), 0);
+    parallel_for(spread.size(), kChunk, team, [&](VertexId v) { spread[v] = spread_at(surface, points, v); });
+    const float least = kLeastEdges * mean_edge_length(surface);
+    parallel_for(spread.size(), kChunk, team, [&](VertexId v) {
+        if (!network.alive(v)) return;
+        // A vertex with few points would take the height of a stray one for the spread; its neighbours do
+        // not.
+        std::vector<float> around{spread[v]};
+        for (const VertexId u : network.ring(v)) around.push_back(spread[u]);
+        limit_[v] = std::max(deviations * median(std::move(around)), least);
+    });
+}
+
+bool StrayPoints::contain(const PointsByFace::Assignment& point, int face) const {
+    const Triangle& f = surface_.faces[face];
+    const float limit = std::max({limit_[f[0]], limit_[f[1]], limit_[f[2]]});
+    return point.foot.squared_distance > limit * limit && !is_beyond_boundary(point, face) &&
+           !has_company(point, face);
+}
+
+bool StrayPoints::is_beyond_boundary(const PointsByFace::Assignment& point, int face) const {
+    bool beyond = true;
+    for (std::size_t k = 0; k < 3; ++k)
+        beyond = beyond && (!(point.foot.weights[k] > 0) || network_.ring(surface_.faces[face][k]).open != 0);
+    return beyond;
+}
+
+/// The distance from the surface, negative below \p face.
+float StrayPoints::height(const PointsByFace::Assignment& point, int face) const {
+    const float distance = std::sqrt(point.foot.squared_distance);
+    return area_vector(surface_, face).dot(point.point - surface_.corner(face, 0)) < 0 ? -distance : distance;
+}
+
+bool StrayPoints::has_company(const PointsByFace::Assignment& point, int face) const {
+    struct Near {
+        float squared_distance, height;
+        bool operator<(const Near& other) const {
+            return squared_distance != other.squared_distance ? squared_distance < other.squared_distance
+                                                              : height < other.height;
+        }
+    };
+    std::vector<Near> near;
+    for (const int f : faces_around(surface_, face))
+        for (const PointsByFace::Assignment& a : points_.of(f))
+            if (&a != &point) near.push_back({(a.point - point.point).squaredNorm(), height(a, f)});
+    const auto end = near.begin() + static_cast<std::ptrdiff_t>(std::min(near.size(), kNearest));
+    std::partial_sort(near.begin(), end, near.end());
+    const float own = height(point, face);
+    const auto is_comparable = [own](const Near& other) { return other.height / own >= kComparable; };
+    return std::count_if(near.begin(), end, is_comparable) >= kCompany;
+}
+
+}  // namespace neuralmesh
