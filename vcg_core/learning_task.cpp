@@ -4,11 +4,11 @@
 #include "vcg_core/learning_task.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <utility>
 
+#include "vcg_core/base/text.h"
 #include "vcg_core/shell/open_start.h"
 #include "vcg_core/shell/shell.h"
 #include "vcg_core/target/outlier_removal.h"
@@ -23,6 +23,12 @@ constexpr double kShellMade = 0.6;  // of the progress
 /// Openings of closed models (places without points on large faces, cavities) are narrower than this share of
 /// the diagonal, those of scans and cut models wider. Chosen by open_table.py.
 constexpr double kWidestClosed = 0.066;
+/// Of closed models less than this share of the surface has no enclosed space beside it. Chosen by
+/// open_table.py: up to .027 on closed models, from .048 on where a part is open.
+constexpr double kMostSheet = 0.04;
+/// A start mesh of fewer vertices cuts across the two walls of a thin object: a cup of which 125 are left has
+/// a lid.
+constexpr int kTwoWalls = 200;
 /// Planes that are thicker than this say nothing about where the cloud is open.
 constexpr double kTooThick = 0.45;
 /// An open start mesh with more handles than this share of its vertices follows gaps between the points.
@@ -56,10 +62,8 @@ StartMesh make_shell(const TargetSpace& target, const Settings& settings, Progre
 }
 
 std::string share_of(std::size_t part, std::size_t all) {
-    const double percent = 100 * static_cast<double>(part) / static_cast<double>(all);
-    const long long tenths = std::max(1LL, std::llround(10 * percent));
-    return std::to_string(part) + " of " + std::to_string(all) + " points (" + std::to_string(tenths / 10) +
-           "." + std::to_string(tenths % 10) + " %)";
+    const double share = std::max(0.001, static_cast<double>(part) / static_cast<double>(all));
+    return std::to_string(part) + " of " + std::to_string(all) + " points (" + percent(share) + ")";
 }
 
 /// A cloud with a larger share of outliers is more noise than surface.
@@ -112,26 +116,32 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, P
     OpenStartOptions options;
     options.target_vertices = settings.target_vertices;
     options.close_holes_up_to = settings.close_holes_up_to / target.frame().diagonal;
+    options.learn_outliers = !settings.remove_outliers;
+    if (settings.surface == kAutomatic && settings.close_holes_up_to < 0)
+        options.closed_up_to = kWidestClosed;
     Random random(stream_seed(settings.random_seed, Stream::shell));
     return open_start(target, options, random, progress);
 }
 
-/// Whether the shell had to close more than settings allow for.
-bool is_open(const StartMesh& shell, const TargetSpace& target, const Settings& settings) {
+/// Whether the cloud may be open: the shell closed wide openings, or a part of it has no space inside.
+bool may_be_open(const StartMesh& shell, const TargetSpace& target, const Settings& settings) {
     const double widest = settings.close_holes_up_to >= 0
                               ? settings.close_holes_up_to / target.frame().diagonal
                               : kWidestClosed;
-    return !shell.encloses_space || 2 * shell.widest_opening > widest;
+    return !shell.encloses_space || 2 * shell.widest_opening > widest || shell.sheet_share > kMostSheet;
 }
 
-/// The open start mesh of a cloud whose shell is open; nothing if the cloud has none that learning can begin
-/// with, or one without boundary.
-std::optional<OpenStart> try_open_start(const TargetSpace& target, const Settings& settings,
-                                        Progress& progress) {
+/// The start mesh of one layer of a cloud that may be open; nothing if the cloud has none that learning can
+/// begin with, or if it is closed and its shell is the better start.
+std::optional<OpenStart> try_open_start(const TargetSpace& target, const StartMesh& shell,
+                                        const Settings& settings, Progress& progress) {
     try {
         OpenStart start = make_open_start(target, settings, progress);
         const auto vertices = static_cast<int>(start.positions.size());
-        if (start.loops > 0 && start.thickness < kTooThick && vertices <= settings.target_vertices &&
+        const bool open =
+            start.loops > 0 && (settings.close_holes_up_to >= 0 || start.widest_loop > kWidestClosed);
+        const bool two_walls = start.loops == 0 && !shell.encloses_space && vertices >= kTwoWalls;
+        if ((open || two_walls) && start.thickness < kTooThick && vertices <= settings.target_vertices &&
             start.genus <= kMostHandles * vertices)
             return start;
     } catch (const InputError&) {
@@ -147,11 +157,11 @@ void begin_open(LearningTask& task, OpenStart start, const Settings& settings) {
                            " vertices to begin with: raise " + "target_vertices from " +
                            std::to_string(settings.target_vertices) + ", or choose surface 1 (closed).");
     task.warnings.insert(task.warnings.end(), start.warnings.begin(), start.warnings.end());
-    if (settings.surface == kAutomatic)
+    if (settings.surface == kAutomatic && start.loops > 0)
         task.warnings.push_back(
             "The points enclose no space, or openings too wide to close: the surface ends "
             "where they end. Choose surface 1 to close it.");
-    if (settings.remove_outliers) remove_groups_without_component(task, start.outliers, start.positions);
+    remove_groups_without_component(task, start.outliers, start.positions);
     task.network = Network(start.positions, start.faces);
     task.landing_signals = kLandingSignals;
 }
@@ -199,8 +209,8 @@ void begin(LearningTask& task, const Settings& settings, Progress& progress) {
     PartOf closing(progress, 0, kShellMade);
     PartOf opening(progress, kShellMade, 1);
     StartMesh shell = make_shell(task.target(), settings, closing);
-    if (settings.surface == kAutomatic && is_open(shell, task.target(), settings)) {
-        std::optional<OpenStart> start = try_open_start(task.target(), settings, opening);
+    if (settings.surface == kAutomatic && may_be_open(shell, task.target(), settings)) {
+        std::optional<OpenStart> start = try_open_start(task.target(), shell, settings, opening);
         if (start) {
             begin_open(task, std::move(*start), settings);
             return;

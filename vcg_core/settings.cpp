@@ -75,8 +75,8 @@ std::vector<SettingInfo> mesh_rows() {
             "least."),
         row(&S::surface, "surface", "Surface", {"Automatic", "Closed", "Open"},
             "Whether the mesh has boundaries. Closed: it has none; a single scan is closed around both of its "
-            "sides. Open: it ends wherever the points end. Automatic: it is closed if the points enclose space "
-            "and no opening is wider than 'Close holes up to', else open. Thin walls may be taken for open."),
+            "sides. Open: it ends wherever the points end. Automatic: it is closed where the points enclose "
+            "space and no opening is wider than 'Close holes up to', else open."),
         length_row(
             &S::close_holes_up_to, "close_holes_up_to", "Close holes up to",
             "Holes of an open surface are closed up to this diameter of the smallest sphere around them. "

@@ -41,7 +41,7 @@ enum SurfaceKind : int {
 /// All parameters of a run. setting_table() has their ranges and meanings.
 struct Settings {
     int target_vertices = 10000;
-    int surface = kClosedSurface;
+    int surface = kAutomatic;
     double close_holes_up_to = -1;  ///< a diameter in the units of the input; negative: chosen by the filter
     int utility_counter = kNormalVariation;
     int start_mesh = kShell;

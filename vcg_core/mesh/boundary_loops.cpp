@@ -5,16 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <cstdint>
 #include <utility>
+
+#include "vcg_core/mesh/triangle.h"
 
 namespace neuralmesh {
 namespace {
 
 using vcg::Point3f;
-using Edge = std::pair<VertexId, VertexId>;
-
-Edge edge(VertexId a, VertexId b) { return {std::min(a, b), std::max(a, b)}; }
 
 /// Cosine of the angle at \p b.
 float cosine_at(const Point3f& a, const Point3f& b, const Point3f& c) {
@@ -23,30 +22,27 @@ float cosine_at(const Point3f& a, const Point3f& b, const Point3f& c) {
     return lengths > 0 ? p * q / lengths : -1.0F;
 }
 
-/// The edges of \p faces between two vertices of \p loop.
-std::set<Edge> edges_within(std::vector<VertexId> loop, const std::vector<Triangle>& faces) {
-    std::set<Edge> edges;
-    std::sort(loop.begin(), loop.end());
-    const auto holds = [&loop](VertexId v) { return std::binary_search(loop.begin(), loop.end(), v); };
-    for (const Triangle& f : faces)
-        for (std::size_t k = 0; k < 3; ++k)
-            if (holds(f[k]) && holds(f[(k + 1) % 3])) edges.insert(edge(f[k], f[(k + 1) % 3]));
-    return edges;
-}
-
 }  // namespace
 
 std::vector<std::vector<VertexId>> boundary_loops(int vertices, const std::vector<Triangle>& faces) {
+    // The vertices that edges of faces lead to, by the vertex where they begin.
+    PerVertex<std::int32_t> first(vertices + 1, 0);
+    for (const Triangle& f : faces)
+        for (const VertexId v : f) ++first[v + 1];
+    for (VertexId v = 0; v < vertices; ++v) first[v + 1] += first[v];
+    Indexed<VertexId> to(first[vertices], -1);
+    PerVertex<std::int32_t> end = first;
+    for (const Triangle& f : faces)
+        for (std::size_t k = 0; k < 3; ++k) to[end[f[k]]++] = f[(k + 1) % 3];
     // An edge in two faces is there in both directions. On a boundary each vertex has one edge that leaves
     // it.
-    std::vector<Edge> edges;
-    edges.reserve(3 * faces.size());
-    for (const Triangle& f : faces)
-        for (std::size_t k = 0; k < 3; ++k) edges.emplace_back(f[k], f[(k + 1) % 3]);
-    std::sort(edges.begin(), edges.end());
     PerVertex<VertexId> next(vertices, -1);
-    for (const auto& [a, b] : edges)
-        if (!std::binary_search(edges.begin(), edges.end(), Edge(b, a))) next[a] = b;
+    for (VertexId v = 0; v < vertices; ++v)
+        for (std::int32_t i = first[v]; i < first[v + 1]; ++i) {
+            const VertexId w = to[i];
+            if (std::find(to.data() + first[w], to.data() + first[w + 1], v) == to.data() + first[w + 1])
+                next[v] = w;
+        }
     std::vector<std::vector<VertexId>> loops;
     for (VertexId start = 0; start < vertices; ++start) {
         if (next[start] < 0) continue;
@@ -73,42 +69,122 @@ float smallest_sphere_diameter(const std::vector<Point3f>& points) {
     return 2 * (*farthest() - centre).Norm();
 }
 
-bool fill_hole(const std::vector<VertexId>& loop, const std::vector<Point3f>& positions, int most_neighbours,
-               std::vector<int>& neighbours, std::vector<Triangle>& faces) {
-    const auto at = [](auto& values, VertexId v) -> auto& { return values[static_cast<std::size_t>(v)]; };
-    std::set<Edge> present = edges_within(loop, faces);
-    std::vector<VertexId> rest = loop;
-    std::vector<int> counts = neighbours;
-    std::vector<Triangle> added;
-    while (rest.size() > 3) {
-        std::size_t best = rest.size();
-        float sharpest = -2;
-        for (std::size_t i = 0; i < rest.size(); ++i) {
-            const VertexId a = rest[(i + rest.size() - 1) % rest.size()], b = rest[i],
-                           c = rest[(i + 1) % rest.size()];
-            // b comes to lie inside, where three neighbours are the least.
-            if (at(counts, b) < 3 || at(counts, a) >= most_neighbours || at(counts, c) >= most_neighbours)
-                continue;
-            if (present.count(edge(a, c)) != 0) continue;
-            const float cosine = cosine_at(at(positions, a), at(positions, b), at(positions, c));
-            if (cosine <= sharpest) continue;
-            sharpest = cosine;
-            best = i;
+HoleFiller::HoleFiller(IndexedMesh<float>& mesh, const std::vector<std::vector<VertexId>>& loops,
+                       int most_neighbours)
+    : mesh_(mesh), most_neighbours_(most_neighbours), neighbours_(mesh.positions.size()) {
+    std::vector<char> on_loop(mesh.positions.size(), 0);
+    for (const auto& loop : loops)
+        for (const VertexId v : loop) on_loop[static_cast<std::size_t>(v)] = 1;
+    const auto add = [&](VertexId a, VertexId b) {
+        if (on_loop[static_cast<std::size_t>(a)] == 0) return;
+        std::vector<VertexId>& around = neighbours(a);
+        if (std::find(around.begin(), around.end(), b) == around.end()) around.push_back(b);
+    };
+    for (const Triangle& f : mesh.faces)
+        for (std::size_t k = 0; k < 3; ++k) {
+            add(f[k], f[(k + 1) % 3]);
+            add(f[(k + 1) % 3], f[k]);
         }
-        if (best == rest.size()) return false;
-        const VertexId a = rest[(best + rest.size() - 1) % rest.size()], b = rest[best],
-                       c = rest[(best + 1) % rest.size()];
-        added.push_back({a, c, b});
-        present.insert(edge(a, c));
-        ++at(counts, a);
-        ++at(counts, c);
-        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(best));
+}
+
+/// Cosine of the ear's angle at vertex i of the rest; less than any cosine if the ear cannot be cut.
+float HoleFiller::sharpness(const Filling& filling, std::size_t i) const {
+    constexpr float kNever = -2;
+    const std::vector<VertexId>& rest = filling.rest;
+    const VertexId a = rest[(i + rest.size() - 1) % rest.size()], b = rest[i],
+                   c = rest[(i + 1) % rest.size()];
+    // b comes to lie inside, where three neighbours are the least.
+    if (neighbours(b).size() < 3 || full(a) || full(c)) return kNever;
+    if (std::find(neighbours(a).begin(), neighbours(a).end(), c) != neighbours(a).end()) return kNever;
+    const auto at = [this](VertexId v) { return mesh_.positions[static_cast<std::size_t>(v)]; };
+    return cosine_at(at(a), at(b), at(c));
+}
+
+void HoleFiller::join(Filling& filling, VertexId a, VertexId b) {
+    neighbours(a).push_back(b);
+    neighbours(b).push_back(a);
+    filling.edges.push_back({a, b});
+}
+
+bool HoleFiller::cut_ear(Filling& filling) {
+    std::vector<VertexId>& rest = filling.rest;
+    std::size_t best = rest.size();
+    float sharpest = -2;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+        const float cosine = sharpness(filling, i);
+        if (cosine <= sharpest) continue;
+        sharpest = cosine;
+        best = i;
     }
-    if (std::any_of(rest.begin(), rest.end(), [&](VertexId v) { return at(counts, v) < 3; })) return false;
-    added.push_back({rest[0], rest[2], rest[1]});
-    neighbours = std::move(counts);
-    faces.insert(faces.end(), added.begin(), added.end());
+    if (best == rest.size()) return false;
+    const VertexId a = rest[(best + rest.size() - 1) % rest.size()], c = rest[(best + 1) % rest.size()];
+    filling.faces.push_back({a, c, rest[best]});
+    join(filling, a, c);
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(best));
     return true;
+}
+
+/// Closes the rest by a face, or by a fan around a new vertex.
+bool HoleFiller::finish(Filling& filling) {
+    const std::vector<VertexId>& rest = filling.rest;
+    if (rest.size() == 3 &&
+        std::all_of(rest.begin(), rest.end(), [&](VertexId v) { return neighbours(v).size() >= 3; })) {
+        filling.faces.push_back({rest[0], rest[2], rest[1]});
+        return true;
+    }
+    if (static_cast<int>(rest.size()) > most_neighbours_ ||
+        std::any_of(rest.begin(), rest.end(), [&](VertexId v) { return full(v); }))
+        return false;
+    const auto centre = static_cast<VertexId>(mesh_.positions.size());
+    Point3f position(0, 0, 0);
+    for (const VertexId v : rest)
+        position += mesh_.positions[static_cast<std::size_t>(v)] / static_cast<float>(rest.size());
+    mesh_.positions.push_back(position);
+    neighbours_.emplace_back();
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+        join(filling, centre, rest[i]);
+        filling.faces.push_back({rest[(i + 1) % rest.size()], rest[i], centre});
+    }
+    return true;
+}
+
+/// Takes back what \p filling has done to the neighbours and to the positions.
+void HoleFiller::undo(const Filling& filling) {
+    for (auto edge = filling.edges.rbegin(); edge != filling.edges.rend(); ++edge)
+        for (const VertexId v : *edge) neighbours(v).pop_back();
+    mesh_.positions.resize(filling.vertices_before);
+    neighbours_.resize(filling.vertices_before);
+}
+
+bool HoleFiller::fill(const std::vector<VertexId>& loop, float most_width) {
+    const auto at = [this](VertexId v) { return mesh_.positions[static_cast<std::size_t>(v)]; };
+    float length = 0;
+    Point3f area(0, 0, 0);  // no surface that the loop bounds has a smaller one
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Point3f a = at(loop[i]), b = at(loop[(i + 1) % loop.size()]);
+        length += (b - a).Norm();
+        area += (a - at(loop[0])) ^ (b - at(loop[0])) / 2;
+    }
+    const float most_area = most_width * length / 4;
+    if (area.Norm() > most_area) return false;
+    for (const bool ears : {true, false}) {
+        Filling filling;
+        filling.rest = loop;
+        filling.vertices_before = mesh_.positions.size();
+        while (ears && filling.rest.size() > 3 && cut_ear(filling)) {
+        }
+        if (finish(filling)) {
+            float sum = 0;
+            for (const Triangle& f : filling.faces)
+                sum += area_vector(at(f[0]), at(f[1]), at(f[2])).Norm() / 2;
+            if (sum <= most_area) {
+                mesh_.faces.insert(mesh_.faces.end(), filling.faces.begin(), filling.faces.end());
+                return true;
+            }
+        }
+        undo(filling);
+    }
+    return false;
 }
 
 }  // namespace neuralmesh

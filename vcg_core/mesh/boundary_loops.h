@@ -6,8 +6,12 @@
 
 #include <vcg/space/point3.h>
 
+#include <array>
+#include <cstddef>
+#include <limits>
 #include <vector>
 
+#include "vcg_core/mesh/indexed_mesh.h"
 #include "vcg_core/mesh/ring.h"
 
 namespace neuralmesh {
@@ -20,11 +24,42 @@ std::vector<std::vector<VertexId>> boundary_loops(int vertices, const std::vecto
 /// for Balls", 2003). O(points).
 float smallest_sphere_diameter(const std::vector<vcg::Point3f>& points);
 
-/// Fills the hole that \p loop bounds by cutting ears, those of the smallest angle first, and adds the faces
-/// to \p faces; no vertex gets more than \p most_neighbours of them, \p neighbours[v] being how many v has.
-/// No edge comes to be there twice. \return false, with \p faces and \p neighbours unchanged, if that cannot
-/// be. O(n^2).
-bool fill_hole(const std::vector<VertexId>& loop, const std::vector<vcg::Point3f>& positions,
-               int most_neighbours, std::vector<int>& neighbours, std::vector<Triangle>& faces);
+/// Fills holes of a mesh, which has to outlive it. O(faces) to set up.
+class HoleFiller {
+public:
+    /// No vertex gets more than \p most_neighbours of them.
+    HoleFiller(IndexedMesh<float>& mesh, const std::vector<std::vector<VertexId>>& loops,
+               int most_neighbours);
+
+    /// Fills the hole that \p loop, one of the loops, bounds by cutting ears, those of the smallest angle
+    /// first. Where no ear can be cut any more, the rest gets a fan around a new vertex, or else the whole
+    /// hole. The mesh stays a simplicial manifold. \return false, with the mesh unchanged, if that cannot be.
+    /// Nor is a hole filled that is wider than \p most_width across: four areas over the length of the loop,
+    /// the diameter of a round hole and twice the width of a long crack. O(n^2), O(n) for most wide holes.
+    bool fill(const std::vector<VertexId>& loop, float most_width = std::numeric_limits<float>::infinity());
+
+private:
+    /// A hole being filled: what is left of it, and what was added.
+    struct Filling {
+        std::vector<VertexId> rest;
+        std::vector<Triangle> faces;
+        std::vector<std::array<VertexId, 2>> edges;
+        std::size_t vertices_before = 0;  ///< of the mesh
+    };
+    std::vector<VertexId>& neighbours(VertexId v) { return neighbours_[static_cast<std::size_t>(v)]; }
+    const std::vector<VertexId>& neighbours(VertexId v) const {
+        return neighbours_[static_cast<std::size_t>(v)];
+    }
+    bool full(VertexId v) const { return static_cast<int>(neighbours(v).size()) >= most_neighbours_; }
+    float sharpness(const Filling& filling, std::size_t i) const;
+    bool cut_ear(Filling& filling);
+    bool finish(Filling& filling);
+    void undo(const Filling& filling);
+    void join(Filling& filling, VertexId a, VertexId b);
+
+    IndexedMesh<float>& mesh_;
+    int most_neighbours_;
+    std::vector<std::vector<VertexId>> neighbours_;  ///< of the vertices of loops; the others have none
+};
 
 }  // namespace neuralmesh

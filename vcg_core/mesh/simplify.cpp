@@ -8,6 +8,7 @@
 #include <queue>
 #include <utility>
 
+#include "vcg_core/mesh/triangle.h"
 #include "vcg_core/mesh/valence_flips.h"
 
 namespace neuralmesh {
@@ -18,8 +19,6 @@ using vcg::Point3f;
 constexpr int kMaxValence = 12;
 /// Collapses leave this much below kMaxValence for flips and further collapses.
 constexpr int kSpareValence = 2;
-
-Point3f normal_of(const Point3f& a, const Point3f& b, const Point3f& c) { return (b - a) ^ (c - a); }
 
 float squared_length(const Network& net, VertexId a, VertexId b) {
     return (net.position(a) - net.position(b)).SquaredNorm();
@@ -34,8 +33,8 @@ bool folds(const Network& net, VertexId v, const Point3f& where, VertexId except
         const VertexId a = ring[i];
         const VertexId b = ring.next(i);
         if (a == except || b == except) continue;
-        const Point3f before = normal_of(net.position(v), net.position(a), net.position(b));
-        const Point3f after = normal_of(where, net.position(a), net.position(b));
+        const Point3f before = area_vector(net.position(v), net.position(a), net.position(b));
+        const Point3f after = area_vector(where, net.position(a), net.position(b));
         const float product = before * after;
         if (product <= 0 || product * product < kSquaredCosine * before.SquaredNorm() * after.SquaredNorm())
             return true;
@@ -141,7 +140,7 @@ void smooth_tangentially(Network& net) {
         Point3f normal(0, 0, 0);
         for (int i = 0; i < ring.valence; ++i) {
             mean += net.position(ring[i]);
-            normal += normal_of(p, net.position(ring[i]), net.position(ring.next(i)));
+            normal += area_vector(p, net.position(ring[i]), net.position(ring.next(i)));
         }
         const float squared = normal.SquaredNorm();
         if (!(squared > 0)) continue;

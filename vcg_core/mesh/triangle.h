@@ -27,6 +27,11 @@ inline Vector3 area_vector(const Vector3& a, const Vector3& b, const Vector3& c)
     return (b - a).cross(c - a);
 }
 
+/// The same for the types of the network.
+inline vcg::Point3f area_vector(const vcg::Point3f& a, const vcg::Point3f& b, const vcg::Point3f& c) {
+    return (b - a) ^ (c - a);
+}
+
 /// area_vector() of length 1; 0 for a triangle without area.
 inline Vector3 unit_normal(const Vector3& a, const Vector3& b, const Vector3& c) {
     return area_vector(a, b, c).normalized();

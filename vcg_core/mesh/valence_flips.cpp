@@ -3,13 +3,11 @@
 
 #include "vcg_core/mesh/valence_flips.h"
 
+#include "vcg_core/mesh/triangle.h"
+
 namespace neuralmesh {
 
 namespace {
-
-vcg::Point3f normal_of(const vcg::Point3f& p, const vcg::Point3f& q, const vcg::Point3f& r) {
-    return (q - p) ^ (r - p);
-}
 
 /// \pre network.can_flip(a, b)
 bool should_flip(const Network& network, VertexId a, VertexId b, const FlipRule& rule) {
@@ -29,8 +27,8 @@ bool should_flip(const Network& network, VertexId a, VertexId b, const FlipRule&
     const vcg::Point3f pb = network.position(b);
     const vcg::Point3f pc = network.position(c);
     const vcg::Point3f pd = network.position(d);
-    return rule.is_flat(
-        {{normal_of(pa, pb, pc), normal_of(pb, pa, pd)}, {normal_of(pa, pd, pc), normal_of(pb, pc, pd)}});
+    return rule.is_flat({{area_vector(pa, pb, pc), area_vector(pb, pa, pd)},
+                         {area_vector(pa, pd, pc), area_vector(pb, pc, pd)}});
 }
 
 /// Flips edges of \p v to neighbours from \p least on.

@@ -15,6 +15,7 @@
 #include "vcg_core/mesh/simplify.h"
 #include "vcg_core/shell/one_layer_contour.h"
 #include "vcg_core/shell/outliers.h"
+#include "vcg_core/shell/start_points.h"
 #include "vcg_core/shell/tangent_planes.h"
 
 namespace neuralmesh {
@@ -27,6 +28,9 @@ constexpr int kHighestValence = 12;  // leaves room for what the reduction and t
 /// The automatic bound for holes that are filled, in spacings of the planes; and what is filled in any case,
 /// because it is a gap between points.
 constexpr float kGapSpacings = 6, kLeastGapSpacings = 3;
+/// Twice the width of a crack that is filled however long it is: the planes on its sides contradict each
+/// other, but there are points on both.
+constexpr float kCrackSpacings = 1.5F;
 /// Planes as thick as this lie on no surface.
 constexpr float kVolume = 0.6F;
 constexpr double kMostWithoutSurface = 0.5;
@@ -41,13 +45,6 @@ void check(const OpenStartOptions& o) {
         throw SettingError(
             "The options of the open start mesh are out of range: at least 4 vertices and 4 samples are "
             "needed, and a component share in [0, 1).");
-}
-
-std::vector<Point3f> drawn_points(const TargetSpace& target, int count, Random& random) {
-    std::vector<Point3f> points;
-    points.reserve(at(count));
-    for (int i = 0; i < count; ++i) points.push_back(target.sample(random));
-    return points;
 }
 
 /// \throws InputError if most planes are none
@@ -107,7 +104,7 @@ void spread_parts(const TangentPlanes& planes, std::vector<int>& part_of_plane) 
             for (const int j : planes.around[i]) {
                 if (j < 0 || (part_of_plane[i] < 0) == (part_of_plane[at(j)] < 0)) continue;
                 const TangentPlane &a = planes.planes[i], &b = planes.planes[at(j)];
-                if ((a.centre - b.centre).Norm() > kBeside * std::max(a.spacing, b.spacing)) continue;
+                if ((a.centre - b.centre).Norm() > kBeside * std::min(a.spacing, b.spacing)) continue;
                 part_of_plane[i] = part_of_plane[at(j)] = std::max(part_of_plane[i], part_of_plane[at(j)]);
                 changed = true;
             }
@@ -157,37 +154,54 @@ void drop_unused_vertices(Contour& contour) {
         for (VertexId& v : f) v = moved[at(v)];
 }
 
-std::vector<int> valences(const IndexedMesh<float>& mesh, const std::vector<std::vector<VertexId>>& loops) {
-    std::vector<int> result(mesh.positions.size(), 0);
-    for (const Triangle& f : mesh.faces)
-        for (const VertexId v : f) ++result[at(v)];
-    for (const auto& loop : loops)
-        for (const VertexId v : loop) ++result[at(v)];
-    return result;
+double diameter_of(const std::vector<VertexId>& loop, const std::vector<Point3f>& positions) {
+    std::vector<Point3f> points;
+    for (const VertexId v : loop) points.push_back(positions[at(v)]);
+    return static_cast<double>(smallest_sphere_diameter(points));
 }
 
-/// Fills holes up to \p close_up_to, or where it is negative, up to kGapSpacings spacings of the planes
-/// around.
-void fill_small_holes(Contour& contour, const TangentPlanes& planes, double close_up_to, OpenStart& result) {
+double diagonal_of(const std::vector<Point3f>& positions) {
+    Box3f box;
+    for (const Point3f& p : positions) box.Add(p);
+    return static_cast<double>(box.Diag());
+}
+
+/// Fills holes up to options.close_holes_up_to, or where that is negative, up to kGapSpacings spacings of the
+/// planes around; cracks, which are long but narrow; and all, if none that is left is wider than
+/// options.closed_up_to.
+void fill_small_holes(Contour& contour, const TangentPlanes& planes, const OpenStartOptions& options,
+                      OpenStart& result) {
     IndexedMesh<float>& mesh = contour.mesh;
     const auto loops = boundary_loops(static_cast<int>(mesh.positions.size()), mesh.faces);
-    std::vector<int> neighbours = valences(mesh, loops);
-    std::vector<Point3f> points;
+    HoleFiller filler(mesh, loops, kHighestValence);
+    std::vector<const std::vector<VertexId>*> left;
+    double widest = 0;
     for (const std::vector<VertexId>& loop : loops) {
-        points.clear();
         float spacing = 0;
-        for (const VertexId v : loop) {
-            points.push_back(mesh.positions[at(v)]);
+        for (const VertexId v : loop)
             spacing += planes.planes[at(contour.plane[at(v)])].spacing / static_cast<float>(loop.size());
-        }
-        const double diameter = static_cast<double>(smallest_sphere_diameter(points));
-        const double most = close_up_to >= 0
-                                ? std::max(close_up_to, static_cast<double>(kLeastGapSpacings * spacing))
-                                : static_cast<double>(kGapSpacings * spacing);
-        if (diameter > most) continue;
-        if (fill_hole(loop, mesh.positions, kHighestValence, neighbours, mesh.faces))
+        const double gap = static_cast<double>(kLeastGapSpacings * spacing);
+        const double most = options.close_holes_up_to >= 0 ? std::max(options.close_holes_up_to, gap)
+                                                           : static_cast<double>(kGapSpacings * spacing);
+        const double diameter = diameter_of(loop, mesh.positions);
+        if (diameter <= most && filler.fill(loop)) {
             result.widest_filled = std::max(result.widest_filled, diameter);
+        } else if (!filler.fill(loop, kCrackSpacings * spacing)) {
+            left.push_back(&loop);
+            widest = std::max(widest, diameter);
+        }
     }
+    result.widest_loop = widest / diagonal_of(mesh.positions);
+    if (result.widest_loop > options.closed_up_to) return;
+    for (const auto* loop : left)
+        if (filler.fill(*loop)) result.widest_filled = std::max(result.widest_filled, widest);
+}
+
+IndexedMesh<float> indexed(const Network& network) {
+    IndexedMesh<float> mesh;
+    for (VertexId v = 0; v < network.slot_count(); ++v) mesh.positions.push_back(network.position(v));
+    mesh.faces = network.faces();
+    return mesh;
 }
 
 /// The signed volume of every component, its boundary loops closed by fans around their centres: whether it
@@ -212,9 +226,7 @@ void orient_convex_side_outward(Network& network) {
     std::vector<Triangle> turned = faces;
     for (Triangle& f : turned)
         if (volume[component[f[0]]] < 0) std::swap(f[1], f[2]);
-    std::vector<Point3f> positions;
-    for (VertexId v = 0; v < network.slot_count(); ++v) positions.push_back(network.position(v));
-    network = Network(positions, turned);
+    network = Network(indexed(network).positions, turned);
 }
 
 /// The points outside of the lattice, or of planes that were dropped.
@@ -237,18 +249,17 @@ std::vector<std::uint8_t> outliers_of(const std::vector<Point3f>& points, const 
 }
 
 /// Decides about the outliers, too: too many of them are none.
-void add_warnings(const TargetSpace& target, const TangentPlanes& planes, long long total,
+void set_outliers(std::vector<std::uint8_t> outliers, long long points, long long least, bool learn,
                   OpenStart& result) {
-    const auto ignored = std::count(result.outliers.begin(), result.outliers.end(), 1);
+    const long long ignored = std::count(outliers.begin(), outliers.end(), 1);
     const bool too_many =
-        static_cast<double>(ignored) > OpenStartOptions::kMostOutliers * static_cast<double>(total);
-    if (too_many) result.outliers.clear();
-    if (ignored > 0)
-        result.warnings.push_back(
-            std::to_string(ignored) + " of " + std::to_string(total) +
-            " points have no part in the start mesh, because they lie in isolated groups that hold less than "
-            "1 % of the points or fewer than " +
-            std::to_string(OpenStartOptions::kLeastPoints) + ".");
+        static_cast<double>(ignored) > OpenStartOptions::kMostOutliers * static_cast<double>(points);
+    if (!learn && !too_many) result.outliers = std::move(outliers);
+    const std::string sentence = warning_of_outliers(ignored, points, least, result.outliers.empty());
+    if (!sentence.empty()) result.warnings.push_back(sentence);
+}
+
+void warn_of_cuts(const TargetSpace& target, const TangentPlanes& planes, OpenStart& result) {
     if (planes.contradictions.size() < kManyContradictions) return;
     Point3f middle(0, 0, 0);
     for (const Point3f& p : planes.contradictions)
@@ -277,11 +288,12 @@ void check_enough_points(std::size_t points) {
 
 /// Copies the mesh and its topology to \p result.
 void write_mesh(const Network& network, OpenStart& result) {
-    for (VertexId v = 0; v < network.vertex_count(); ++v) result.positions.push_back(network.position(v));
-    result.faces = network.faces();
+    IndexedMesh<float> mesh = indexed(network);
     result.components = network.component_count();
     result.genus = network.genus();
     result.loops = network.boundary_loop_count();
+    result.positions = std::move(mesh.positions);
+    result.faces = std::move(mesh.faces);
 }
 
 }  // namespace
@@ -290,9 +302,8 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
                      Progress& progress) {
     check(options);
     progress(0.0, "Start mesh: fitting planes to the cloud");
-    std::vector<Point3f> drawn;
-    if (target.has_faces()) drawn = drawn_points(target, options.samples, random);
-    const std::vector<Point3f>& points = target.has_faces() ? drawn : target.positions();
+    const StartPoints start_points(target, options.samples, random);
+    const std::vector<Point3f>& points = start_points.all();
     check_enough_points(points.size());
     const Box3f box = main_box(points);
     const TangentPlanes planes = tangent_planes(points, box, TangentPlaneOptions());
@@ -301,15 +312,15 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     progress(0.5, "Start mesh: building an open mesh");
     Contour contour = one_layer_contour(box, planes);
     const auto share = static_cast<long long>(options.component_share * static_cast<double>(points.size()));
-    const std::vector<char> kept =
-        drop_small_parts(contour, planes, std::max<long long>(OpenStartOptions::kLeastPoints, share));
+    const long long enough = std::max<long long>(OpenStartOptions::kLeastPoints, share);
+    const std::vector<char> kept = drop_small_parts(contour, planes, enough);
     drop_unused_vertices(contour);
     if (contour.mesh.faces.empty())
         throw InputError(
             "No part of the cloud holds enough points for an open surface: choose surface 1 (closed), or add "
             "points.");
     OpenStart result;
-    fill_small_holes(contour, planes, options.close_holes_up_to, result);
+    fill_small_holes(contour, planes, options, result);
 
     progress(0.8, "Start mesh: reducing it");
     Network network(contour.mesh.positions, contour.mesh.faces);
@@ -318,8 +329,9 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     orient_convex_side_outward(network);
     write_mesh(network, result);
     result.thickness = static_cast<double>(planes.thickness);
-    if (!target.has_faces()) result.outliers = outliers_of(points, box, planes, kept);
-    add_warnings(target, planes, static_cast<long long>(points.size()), result);
+    set_outliers(outliers_of(points, box, planes, kept), static_cast<long long>(points.size()), enough,
+                 options.learn_outliers || target.has_faces(), result);
+    warn_of_cuts(target, planes, result);
     progress(1.0, "Start mesh: done");
     return result;
 }

@@ -31,6 +31,10 @@ struct OpenStartOptions {
     /// Holes are filled up to this diameter of the smallest sphere around them, in the core's frame (shares
     /// of the bounding-box diagonal); negative: chosen from the spacing of the points.
     double close_holes_up_to = -1;
+    /// If no hole is wider than this share of the mesh's diagonal, all are filled: the surface is closed.
+    double closed_up_to = 0;
+    /// Outliers get no component, but are to be learned.
+    bool learn_outliers = false;
     /// A component counts with this share of the points and at least kLeastPoints of them.
     double component_share = 0.01;
     /// Points drawn from a target that is a mesh.
@@ -48,8 +52,10 @@ struct OpenStart {
     std::vector<vcg::Point3f> positions;
     std::vector<Triangle> faces;
     int components = 0;
-    int genus = 0;             ///< of all components together
-    int loops = 0;             ///< boundary loops
+    int genus = 0;  ///< of all components together
+    int loops = 0;  ///< boundary loops
+    double widest_loop =
+        0;  ///< of the smallest sphere around the widest hole, as share of the mesh's diagonal
     double widest_filled = 0;  ///< diameter of the widest hole that was filled
     double thickness = 0;      ///< median of that of the tangent planes (tangent_planes.h)
     /// 1 for each point of the cloud that is not to be learned; empty if there are none, too many, or if the

@@ -9,6 +9,7 @@
 #include <vcg/space/point3.h>
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "vcg_core/shell/lattice.h"
@@ -20,6 +21,10 @@ namespace neuralmesh {
 /// points as long as that is at most half as long: groups of at least 1 % of the points each that hold 90 %
 /// together. O(points).
 vcg::Box3f main_box(const std::vector<vcg::Point3f>& points);
+
+/// The sentence on \p ignored points of \p all that the start mesh leaves out, as they lie in groups of fewer
+/// than \p least points; empty if there are none. \p learned: learning does not leave them out.
+std::string warning_of_outliers(long long ignored, long long all, long long least, bool learned);
 
 /// 1 for each outlier; empty if there are none. A point is an outlier if it lies outside region.lattice, or
 /// if all of these hold:

@@ -136,6 +136,21 @@ bool is_fragmented(const Region& region, int level) {
     return here.components == 0 || joining > kFragmentShare * static_cast<double>(region.total_points);
 }
 
+double sheet_share(const Region& region) {
+    PerNode<std::uint32_t> enclosed(region.lattice.size(), 0);
+    if (region.encloses_space)
+        for (NodeId i = 0; i < enclosed.size(); ++i)
+            enclosed[i] = region.clearance[i] == 0 && region.distances[i] > 0 ? 1 : 0;
+    const PerNode<std::uint32_t> beside = box_maxima(region.lattice, enclosed);
+    long long nodes = 0, sheet = 0;
+    for (NodeId i = 0; i < beside.size(); ++i) {
+        if (region.counts[i] == 0) continue;
+        ++nodes;
+        sheet += beside[i] == 0 ? 1 : 0;
+    }
+    return nodes == 0 ? 0 : static_cast<double>(sheet) / static_cast<double>(nodes);
+}
+
 PerNode<std::uint32_t> count_points(const Lattice& lattice, const std::vector<vcg::Point3f>& points) {
     PerNode<std::uint32_t> counts(lattice.size(), 0);
     for (const vcg::Point3f& p : points) {

@@ -57,6 +57,10 @@ Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, f
 /// lattice steps. O(1).
 bool is_fragmented(const Region& region, int level);
 
+/// The share of the nodes with points that have no enclosed space within two nodes, on any side: parts of the
+/// surface that are thin or open. O(nodes).
+double sheet_share(const Region& region);
+
 /// Points per node of \p lattice; points outside it are not counted. O(nodes + points).
 PerNode<std::uint32_t> count_points(const Lattice& lattice, const std::vector<vcg::Point3f>& points);
 

@@ -11,12 +11,14 @@
 #include <string>
 
 #include "vcg_core/base/error.h"
+#include "vcg_core/base/text.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/simplify.h"
 #include "vcg_core/shell/closed_mesh.h"
 #include "vcg_core/shell/lattice_survey.h"
 #include "vcg_core/shell/outliers.h"
 #include "vcg_core/shell/region.h"
+#include "vcg_core/shell/start_points.h"
 
 namespace neuralmesh {
 namespace {
@@ -41,13 +43,6 @@ void check(const ShellOptions& o) {
             "An option of the start mesh is out of range. It needs at least 4 vertices, 1000 lattice nodes, 16 to 1024 nodes per side, 1 point per node and 4 samples, and a component share in [0, 1).");
 }
 
-std::vector<Point3f> drawn_points(const TargetSpace& target, int count, Random& random) {
-    std::vector<Point3f> points;
-    points.reserve(static_cast<std::size_t>(count));
-    for (int i = 0; i < count; ++i) points.push_back(target.sample(random));
-    return points;
-}
-
 /// Reduces \p network and puts it into \p result, with its topology.
 void set_mesh(Network& network, const ShellOptions& options, StartMesh& result) {
     result.components = network.component_count();
@@ -67,6 +62,7 @@ void set_figures(const LatticeSurvey& survey, int level, StartMesh& result) {
     result.radius = result.resolution * std::sqrt(static_cast<double>(level));
     result.widest_opening = region.widest_opening;
     result.encloses_space = region.encloses_space;
+    result.sheet_share = sheet_share(survey.regions.front());
 }
 
 void set_outliers(const TargetSpace& target, const std::vector<Point3f>& points, const Region& region,
@@ -76,11 +72,6 @@ void set_outliers(const TargetSpace& target, const std::vector<Point3f>& points,
     const double most = ShellOptions::kMaxOutlierShare * static_cast<double>(points.size());
     if (learn_outliers || target.has_faces() || static_cast<double>(result.ignored_points) > most)
         result.outliers.clear();
-}
-
-std::string percent(double value) {
-    const long long tenths = std::llround(value * 1000);
-    return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " %";
 }
 
 void warn_of_uncertain_topology(const LatticeSurvey& survey, StartMesh& result) {
@@ -106,24 +97,14 @@ void warn_of_open_surface(StartMesh& result) {
             " of the bounding-box diagonal wide were closed. Choose surface 0 (automatic) or 2 (open) to keep them.");
 }
 
-void warn_of_outliers(long long points, const Region& region, StartMesh& result) {
-    if (result.ignored_points == 0) return;
-    const bool learned = result.outliers.empty();
-    result.warnings.push_back(
-        std::to_string(result.ignored_points) + " of " + std::to_string(points) +
-        " points were ignored as outliers" + (learned ? " by the start mesh, but are learned" : "") +
-        ": they lie in isolated groups of fewer than " + std::to_string(region.min_points) + " points.");
-}
-
 }  // namespace
 
 StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Random& random,
                    Progress& progress) {
     check(options);
     progress(0.0, "Start mesh: measuring the density of the cloud");
-    std::vector<Point3f> drawn;
-    if (target.has_faces()) drawn = drawn_points(target, options.samples, random);
-    const std::vector<Point3f>& points = target.has_faces() ? drawn : target.positions();
+    const StartPoints start_points(target, options.samples, random);
+    const std::vector<Point3f>& points = start_points.all();
     const Box3f box = main_box(points);
 
     progress(0.2, "Start mesh: counting components and handles");
@@ -141,7 +122,10 @@ StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Rando
     set_outliers(target, points, region, closed, options.learn_outliers, result);
     warn_of_uncertain_topology(survey, result);
     warn_of_open_surface(result);
-    warn_of_outliers(static_cast<long long>(points.size()), region, result);
+    const std::string outliers =
+        warning_of_outliers(result.ignored_points, static_cast<long long>(points.size()), region.min_points,
+                            result.outliers.empty());
+    if (!outliers.empty()) result.warnings.push_back(outliers);
     progress(1.0, "Start mesh: done");
     return result;
 }

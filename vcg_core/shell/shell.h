@@ -69,6 +69,7 @@ struct StartMesh : IndexedMesh<float> {
     double resolution = 0;         ///< distance of the lattice nodes
     double widest_opening = 0;     ///< radius of the widest sealed opening; 0: none
     bool encloses_space = true;    ///< false for a sheet or a single scan: the mesh has a layer on both sides
+    double sheet_share = 0;        ///< share of the surface with no enclosed space beside it
     long long ignored_points = 0;  ///< outliers: the mesh leaves them out
     /// 1 for each outlier of the cloud. Empty if all points are to be learned: there are no outliers, they
     /// exceed kMaxOutlierShare, or the target has faces.

@@ -21,11 +21,7 @@ std::vector<vcg::Point3f> positions_of(const Network& network) {
     return positions;
 }
 
-std::vector<int> valences_of(const Network& network) {
-    std::vector<int> valences;
-    for (const VertexId v : network.vertices()) valences.push_back(network.ring(v).valence);
-    return valences;
-}
+IndexedMesh<float> mesh_of(const Network& network) { return {positions_of(network), network.faces()}; }
 
 TEST(BoundaryLoops, AreFound) {
     const Network tube = network_of(shapes::tube(7, 3));
@@ -50,39 +46,66 @@ TEST(BoundaryLoops, AreMeasuredByTheSmallestSphere) {
 }
 
 TEST(BoundaryLoops, AreFilledToClosedManifolds) {
-    for (const int around : {3, 4, 5, 12}) {
+    for (const int around : {3, 4, 5, 12, 40}) {
         SCOPED_TRACE(around);
         const Network tube = network_of(shapes::tube(around, 4));
-        std::vector<Triangle> faces = tube.faces();
-        std::vector<int> neighbours = valences_of(tube);
-        for (const auto& loop : boundary_loops(tube.slot_count(), tube.faces()))
-            ASSERT_TRUE(fill_hole(loop, positions_of(tube), 12, neighbours, faces));
-        const Network closed(positions_of(tube), faces);
+        IndexedMesh<float> mesh = mesh_of(tube);
+        const auto loops = boundary_loops(tube.slot_count(), mesh.faces);
+        HoleFiller filler(mesh, loops, 12);
+        for (const auto& loop : loops) ASSERT_TRUE(filler.fill(loop));
+        const Network closed(mesh.positions, mesh.faces);
         EXPECT_EQ(closed.validate(), "");
         EXPECT_EQ(closed.boundary_loop_count(), 0);
         EXPECT_EQ(closed.genus(), 0);
-        EXPECT_EQ(valences_of(closed), neighbours);
-        EXPECT_LE(*std::max_element(neighbours.begin(), neighbours.end()), 12);
+        EXPECT_EQ(closed.vertex_count(), tube.vertex_count());
+        for (const VertexId v : closed.vertices()) EXPECT_LE(closed.ring(v).valence, 12);
     }
 }
 
-TEST(BoundaryLoops, StayOpenWhereFillingWouldBreakTheManifold) {
-    // The loop around a single triangle could only be filled by its other side.
-    const std::vector<vcg::Point3f> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    std::vector<Triangle> faces = {{0, 1, 2}};
-    std::vector<int> neighbours = {2, 2, 2};
-    const auto loops = boundary_loops(3, faces);
+TEST(BoundaryLoops, AreFilledAroundANewVertexWhereNoEarCanBeCut) {
+    // The loop around a single triangle, and that of a tube whose vertices may get one neighbour more each.
+    IndexedMesh<float> triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    auto loops = boundary_loops(3, triangle.faces);
     ASSERT_EQ(loops.size(), 1U);
-    EXPECT_FALSE(fill_hole(loops[0], positions, 12, neighbours, faces));
-    EXPECT_EQ(faces.size(), 1U);
-    EXPECT_EQ(neighbours, std::vector<int>({2, 2, 2}));
+    EXPECT_TRUE(HoleFiller(triangle, loops, 12).fill(loops[0]));
+    ASSERT_EQ(triangle.positions.size(), 4U);
+    EXPECT_EQ(Network(triangle.positions, triangle.faces).validate(), "");
+    EXPECT_EQ(Network(triangle.positions, triangle.faces).boundary_loop_count(), 0);
 
+    const Network tube = network_of(shapes::tube(5, 3));
+    IndexedMesh<float> mesh = mesh_of(tube);
+    loops = boundary_loops(tube.slot_count(), mesh.faces);
+    HoleFiller filler(mesh, loops, 5);
+    for (const auto& loop : loops) EXPECT_TRUE(filler.fill(loop));
+    EXPECT_EQ(Network(mesh.positions, mesh.faces).validate(), "");
+    EXPECT_EQ(Network(mesh.positions, mesh.faces).boundary_loop_count(), 0);
+    EXPECT_EQ(mesh.positions.size(), tube.faces().size() / 2 + 5 + 2);
+}
+
+TEST(BoundaryLoops, AreFilledIfNarrowAcross) {
+    // One end of a tube squeezed to a crack, about 2 long.
+    const Network tube = network_of(shapes::tube(40, 3));
+    IndexedMesh<float> mesh = mesh_of(tube);
+    const auto loops = boundary_loops(tube.slot_count(), mesh.faces);
+    for (const VertexId v : loops[0]) mesh.positions[static_cast<std::size_t>(v)][0] *= 0.01F;
+    HoleFiller filler(mesh, loops, 12);
+    EXPECT_FALSE(filler.fill(loops[1], 0.5F));  // round, of diameter 2
+    EXPECT_EQ(mesh.faces, tube.faces());
+    EXPECT_FALSE(filler.fill(loops[0], 0.01F));
+    EXPECT_EQ(mesh.faces, tube.faces());
+    EXPECT_TRUE(filler.fill(loops[0], 0.5F));
+    EXPECT_TRUE(filler.fill(loops[1], 3));
+    EXPECT_EQ(Network(mesh.positions, mesh.faces).validate(), "");
+}
+
+TEST(BoundaryLoops, StayOpenWhereVerticesWouldGetTooManyNeighbours) {
     const Network tube = network_of(shapes::tube(12, 3));
-    faces = tube.faces();
-    neighbours = valences_of(tube);
-    EXPECT_FALSE(
-        fill_hole(boundary_loops(tube.slot_count(), faces)[0], positions_of(tube), 4, neighbours, faces));
-    EXPECT_EQ(faces.size(), tube.faces().size());
+    IndexedMesh<float> mesh = mesh_of(tube);
+    const auto loops = boundary_loops(tube.slot_count(), mesh.faces);
+    HoleFiller filler(mesh, loops, 4);
+    EXPECT_FALSE(filler.fill(loops[0]));
+    EXPECT_EQ(mesh.faces, tube.faces());
+    EXPECT_EQ(static_cast<int>(mesh.positions.size()), tube.vertex_count());
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ TEST(OpenStart, LeavesOutSpecks) {
     ASSERT_EQ(start.outliers.size(), cloud.size());
     EXPECT_EQ(std::count(start.outliers.begin(), start.outliers.end(), 1), 30);
     EXPECT_EQ(std::count(start.outliers.end() - 30, start.outliers.end(), 1), 30);
-    EXPECT_TRUE(warns(start, "30 of 5030 points have no part"));
+    EXPECT_TRUE(warns(start, "30 of 5030 points were ignored as outliers"));
 }
 
 TEST(OpenStart, RefusesWhatIsNoSurface) {

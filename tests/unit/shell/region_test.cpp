@@ -53,6 +53,19 @@ TEST(Region, ASphereEnclosesSpace) {
     EXPECT_EQ(region.min_points, 200);
 }
 
+TEST(Region, KnowsTheShareOfTheSurfaceThatEnclosesNothing) {
+    const auto share = [](const std::vector<Point3f>& points) {
+        return sheet_share(
+            examine(points, vcg::Box3f(Point3f(-1, -1, -1), Point3f(5, 1, 1)), 0.05F, 0.01, 20));
+    };
+    std::vector<Point3f> points = sphere(20000);
+    EXPECT_LT(share(points), 0.001);
+    EXPECT_EQ(share(square(10000)), 1);
+    // The sphere has an area of 12.6, the square beside it one of 4.
+    for (const Point3f& p : square(6000)) points.push_back(p + Point3f(3, 0, 0));
+    EXPECT_NEAR(share(points), 4 / 16.6, 0.05);
+}
+
 TEST(Region, APlaneEnclosesNoSpace) {
     const Region region = region_of(square(20000), 0.05F);
     EXPECT_FALSE(region.encloses_space);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/unit/support/open_shapes.h"
+#include "tests/unit/support/shell_shapes.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/base/error.h"
 #include "vcg_core/reconstruct.h"
@@ -48,12 +49,40 @@ TEST(OpenSurface, ComesOutWithItsTopologyAndExactlyAsManyVertices) {
 
 TEST(OpenSurface, IsChosenWhereTheCloudEnclosesNoSpace) {
     for (const Case& each : open_shapes::cases()) {
-        if (each.components > 1) continue;  // the sphere encloses space: the square beside it is closed, too
         SCOPED_TRACE(each.name);
         const NeuralMesh mesh = learn(each.cloud, settings_with(400, kAutomatic));
         EXPECT_EQ(mesh.report.boundary_loops, each.loops);
         EXPECT_TRUE(has_warning(mesh, "the surface ends where they end"));
     }
+}
+
+TEST(OpenSurface, LeavesClosedPartsClosed) {
+    // A sphere, and half of one apart from it.
+    Cloud cloud = shapes::sphere_cloud(20000);
+    for (const vcg::Point3d& p : shapes::sphere_cloud(20000))
+        if (p[0] < 0) cloud.push_back(p + vcg::Point3d(3, 0, 0));
+    const NeuralMesh mesh = learn(cloud, settings_with(600, kAutomatic));
+    EXPECT_EQ(mesh.report.components, 2);
+    EXPECT_EQ(mesh.report.genus, 0);
+    EXPECT_EQ(mesh.report.boundary_loops, 1);
+}
+
+TEST(OpenSurface, IsClosedInOneLayerWhereWallsAreThin) {
+    // Both walls of a cup, too close to each other for a space between them that the shell finds.
+    Random random(1);
+    const Cloud cloud = shell_shapes::sample(shell_shapes::cup(1, 2, 0.06), 100000, random);
+    const NeuralMesh mesh = learn(cloud, settings_with(800, kAutomatic));
+    EXPECT_EQ(mesh.report.components, 1);
+    EXPECT_EQ(mesh.report.genus, 0);
+    EXPECT_EQ(mesh.report.boundary_loops, 0);
+    EXPECT_FALSE(has_warning(mesh, "the surface ends where they end"));
+}
+
+TEST(OpenSurface, MeasuresHolesAgainstTheMeshNotAgainstFarOutliers) {
+    Cloud cloud =
+        open_shapes::cut(shapes::sphere_cloud(20000), [](const vcg::Point3d& p) { return p[2] < 0.5; });
+    for (int i = 0; i < 30; ++i) cloud.emplace_back(40 + 0.01 * i, 40 + 0.01 * (i % 7), 40 + 0.01 * (i % 3));
+    EXPECT_EQ(learn(cloud, settings_with(400, kAutomatic)).report.boundary_loops, 1);
 }
 
 TEST(OpenSurface, IsNotChosenForClosedClouds) {
