@@ -15,13 +15,33 @@ namespace neuralmesh {
 
 namespace {
 
+/// With fewer points per vertex, learning and fit follow the accidents of the points; a vertex that has to
+/// share its points costs more than its absence. Chosen by the points of
+/// tests/experiments/accuracy/scan_table.py.
+constexpr std::size_t kPointsPerCarried = 2;
+
+/// The vertices that learning and fit place by the points; the fit inserts the others, which boundaries would
+/// not let it do in any number. All, unless the surface is closed, the fit
+/// may redistribute vertices and only their number ends growth, or where there are too few points for a fit.
+int carried_vertices(const LearningTask& task, const Settings& settings) {
+    constexpr std::size_t kFewestPoints = 256;
+    const int wanted = settings.target_vertices;
+    if (!settings.fit_to_points || settings.utility_counter != kNormalVariation || !task.encloses_space ||
+        settings.start_mesh == kTetrahedron || settings.stop_below_mean_counter > 0 ||
+        task.target().has_faces() || task.network.boundary_loop_count() > 0 ||
+        task.target().positions().size() < kFewestPoints)
+        return wanted;
+    const std::size_t carried = task.target().positions().size() / kPointsPerCarried;
+    return std::max(task.network.vertex_count(),
+                    static_cast<int>(std::min(carried, static_cast<std::size_t>(wanted))));
+}
+
 /// Number of vertices that the network grows to; see learn_and_fit(). There is a surplus only if the fit may
 /// redistribute vertices and only the number of vertices ends growth. With fewer than kPointsPerVertex points
 /// per vertex, learning cannot place the vertices. Chosen by tests/experiments/accuracy/accuracy_table.py.
-int vertices_to_grow(const LearningTask& task, const Settings& settings) {
+int vertices_to_grow(const LearningTask& task, const Settings& settings, int final_vertices) {
     constexpr int kLargestSurplus = 2500;
     constexpr std::size_t kPointsPerVertex = 10;
-    const int final_vertices = settings.target_vertices;
     if (!settings.fit_to_points || settings.utility_counter != kNormalVariation ||
         settings.start_mesh == kTetrahedron || !task.encloses_space || settings.stop_below_mean_counter > 0)
         return final_vertices;
@@ -41,10 +61,12 @@ LearnerOptions learner_options(const LearningTask& task, const Settings& setting
     return options;
 }
 
-FitReport fit(Network& network, const LearningTask& task, const Settings& settings, Progress& progress) {
+FitReport fit(Network& network, const LearningTask& task, const Settings& settings, int carried,
+              Progress& progress) {
     FitOptions options;
-    options.reduce_to = settings.target_vertices;
     options.expect_strays = task.outliers > 0;
+    options.reduce_to = carried;
+    options.refine_to = carried < settings.target_vertices ? settings.target_vertices : 0;
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
     // error is largest at the rim, and vertices inserted there stick out.
     options.redistribute = settings.utility_counter == kNormalVariation && task.encloses_space;
@@ -64,7 +86,7 @@ PerVertex<float> counters_of(const Learner& learner, const Network& network,
     return counters;
 }
 
-LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, int grow_to,
+LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, int grow_to, int carried,
                             MonotoneProgress& progress) {
     PartOf learning(progress, kPrepared, settings.fit_to_points ? kLearned : 1);
     PartOf fitting(progress, kLearned, 1);
@@ -78,29 +100,33 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
     result.collapses = learner.collapses();
 
     FitReport report;
-    if (settings.fit_to_points && !progress.stopped()) report = fit(result.network, task, settings, fitting);
+    if (settings.fit_to_points && !progress.stopped())
+        report = fit(result.network, task, settings, carried, fitting);
     if (progress.stopped()) {
         result.stop_reason = StopReason::cancelled;
         if (result.network.vertex_count() > settings.target_vertices)
             simplify(result.network, settings.target_vertices);
     }
     result.network.orient_outward();
+    const bool moved = report.improved || report.inserted > 0;
     // If the rounds of the fit were discarded, no vertex has moved to the place of another.
-    result.counters = counters_of(learner, result.network,
-                                  report.improved ? report.sources : PerVertex<VertexId>(), settings);
+    result.counters =
+        counters_of(learner, result.network, moved ? report.sources : PerVertex<VertexId>(), settings);
+    if (carried < settings.target_vertices)
+        result.carried = static_cast<int>(task.target().positions().size() / kPointsPerCarried);
     return result;
 }
 
 }  // namespace
 
 LearnedNetwork learn_and_fit(const LearningTask& task, const Settings& settings, MonotoneProgress& progress) {
-    const int final_vertices = settings.target_vertices;
-    const int grow_to = vertices_to_grow(task, settings);
-    LearnedNetwork first = grow_and_fit(task, settings, grow_to, progress);
-    const bool stalled = first.forced || first.network.vertex_count() > final_vertices;
-    if (!stalled || grow_to == final_vertices || progress.stopped()) return first;
+    const int carried = carried_vertices(task, settings);
+    const int grow_to = vertices_to_grow(task, settings, carried);
+    LearnedNetwork first = grow_and_fit(task, settings, grow_to, carried, progress);
+    const bool stalled = first.forced || first.network.vertex_count() > settings.target_vertices;
+    if (!stalled || grow_to == carried || progress.stopped()) return first;
 
-    LearnedNetwork second = grow_and_fit(task, settings, final_vertices, progress);
+    LearnedNetwork second = grow_and_fit(task, settings, carried, carried, progress);
     second.signals += first.signals;
     second.splits += first.splits;
     second.collapses += first.collapses;

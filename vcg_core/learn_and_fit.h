@@ -23,6 +23,8 @@ struct LearnedNetwork {
     PerVertex<float> counters;  ///< what settings.feature_measure names
     StopReason stop_reason = StopReason::target_reached;
     bool forced = false;  ///< growth stalled and was forced, see growth_budget()
+    /// Vertices that the points carry, if these are less than settings.target_vertices; else 0.
+    int carried = 0;
     /// Of all learning, including growth whose result was discarded.
     long long signals = 0;
     long long splits = 0;
@@ -34,9 +36,12 @@ struct LearnedNetwork {
 /// The fit judges better than the learning where vertices are needed. So the network first grows to more
 /// vertices than settings.target_vertices: up to four times as many for small targets, no more from a target
 /// of 5,000 on. Then the fit removes the vertices whose removal costs least. If that growth stalls, its
-/// result is discarded, and the network grows a second time, to settings.target_vertices. If \p progress asks
-/// to stop, the network has at most settings.target_vertices vertices. Fractions of \p progress run from
-/// kPrepared to 1. Cost: see growth_schedule.h and fit.h.
+/// result is discarded, and the network grows a second time, to settings.target_vertices.
+///
+/// Where there are fewer than two points per vertex asked for, the network learns as many vertices as half
+/// the points. Then the fit inserts the others, which make the mesh smoother between the points. If \p
+/// progress asks to stop, the network has at most settings.target_vertices vertices. Fractions of \p progress
+/// run from kPrepared to 1. Cost: see growth_schedule.h and fit.h.
 LearnedNetwork learn_and_fit(const LearningTask& task, const Settings& settings, MonotoneProgress& progress);
 
 /// The learner's part of \p settings. It grows to settings.target_vertices.

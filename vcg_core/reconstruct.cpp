@@ -65,6 +65,9 @@ void warn_of_growth(const LearnedNetwork& learned, Report& report) {
         report.warnings.push_back(
             "Growth stalled and was forced; usually the points have fewer distinct places than the vertices "
             "asked for. Lower target_vertices if the mesh has slivers.");
+    if (learned.carried > 0 && report.stop_reason == StopReason::target_reached)
+        report.warnings.push_back("The points carry about " + std::to_string(learned.carried) +
+                                  " vertices: the others only make the mesh smoother between the points.");
     if (report.stop_reason == StopReason::cut_short)
         report.warnings.push_back("The mesh has only " + std::to_string(report.vertices) +
                                   " vertices, because growth stalled until the limit on signals was reached. "

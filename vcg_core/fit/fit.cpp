@@ -10,6 +10,7 @@
 
 #include "vcg_core/base/random.h"
 #include "vcg_core/fit/fitter.h"
+#include "vcg_core/fit/refine.h"
 
 namespace neuralmesh {
 
@@ -32,6 +33,9 @@ constexpr int kQuietRounds = 3;
 /// The fit ends when two rounds lower the error by less than this share, but not in the first ones.
 constexpr double kLeastProgress = 0.001;
 constexpr int kFirstRounds = 5;
+
+/// Rounds after the insertion of vertices that the points do not carry: by then the mesh is near the points.
+constexpr int kRefinedRounds = 4;
 
 /// 20 rounds for small meshes, where a round is cheap and every vertex counts.
 int automatic_rounds(int vertices) { return std::min(20, std::max(8, 40000 / std::max(vertices, 1))); }
@@ -148,23 +152,53 @@ private:
     double error_before_last_ = 0;
 };
 
-}  // namespace
-
-FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOptions& options, int threads,
-                        std::uint64_t seed, Progress& progress) {
-    FitReport report;
-    report.sources = own_sources(network);
+PointChoice points_for(int vertices, const TargetSpace& target, const FitOptions& options,
+                       std::uint64_t seed) {
     Random random(seed);
-    const bool reduces = options.reduce_to > 0 && options.reduce_to < network.vertex_count();
-    const int vertices = reduces ? options.reduce_to : network.vertex_count();
     const auto wanted = static_cast<std::size_t>(std::max<long long>(
         options.min_points, static_cast<long long>(options.points_per_vertex) * vertices));
-    PointChoice points = choose_points(target, wanted, random);
+    return choose_points(target, wanted, random);
+}
+
+double learned_share_of(const Network& network, const TargetSpace& target) {
+    if (target.has_faces()) return 0;
+    return kLearnedShare * network.vertex_count() / static_cast<double>(target.positions().size());
+}
+
+/// Inserts vertices and bends the finer mesh through the points. The points do not tell where the vertices
+/// should be, so none is redistributed.
+void refine_and_fit(Network& network, const TargetSpace& target, const FitOptions& options, ThreadTeam& team,
+                    std::uint64_t seed, Progress& progress, FitReport& report) {
+    const double learned_share = learned_share_of(network, target);
+    report.inserted = refine(network, options.refine_to, report.sources);
+    PointChoice points = points_for(network.vertex_count(), target, options, seed);
+    if (report.inserted == 0 || points.fitted.points.size() < kMinPoints) return;
+    Fitter fitter(network, std::move(points), team);
+    if (options.expect_strays) fitter.expect_strays();
+    PartOf untangling(progress, 0, 0.1);
+    PartOf fitting(progress, 0.1, 1);
+    if (!fitter.untangle_surface(untangling)) return;
+    const Network before = network;
+    FitOptions of_refined = options;
+    of_refined.rounds = kRefinedRounds;
+    of_refined.redistribute = false;
+    FitReport refined;
+    FitRounds rounds(network, fitter, of_refined, refined);
+    rounds.run(fitting);
+    rounds.judge(learned_share, team);
+    network = refined.improved ? std::move(rounds.best()) : before;
+}
+
+/// The reduction and the rounds of the fit.
+FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitOptions& options,
+                         ThreadTeam& team, std::uint64_t seed, Progress& progress) {
+    FitReport report;
+    report.sources = own_sources(network);
+    const bool reduces = options.reduce_to > 0 && options.reduce_to < network.vertex_count();
+    const int vertices = reduces ? options.reduce_to : network.vertex_count();
+    PointChoice points = points_for(vertices, target, options, seed);
     if (points.fitted.points.size() < kMinPoints || network.face_count() == 0) return report;
-    const double learned_share = target.has_faces() ? 0.0
-                                                    : kLearnedShare * network.vertex_count() /
-                                                          static_cast<double>(target.positions().size());
-    ThreadTeam team(thread_count(threads));
+    const double learned_share = learned_share_of(network, target);
     Fitter fitter(network, std::move(points), team);
     if (options.expect_strays) fitter.expect_strays();
     // By time: the reduction takes about as long as the rounds.
@@ -188,6 +222,19 @@ FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOp
         network = before;
         report.sources = own_sources(before);
     }
+    return report;
+}
+
+}  // namespace
+
+FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOptions& options, int threads,
+                        std::uint64_t seed, Progress& progress) {
+    ThreadTeam team(thread_count(threads));
+    PartOf fitting(progress, 0, options.refine_to > 0 ? 0.6 : 1);
+    PartOf refining(progress, 0.6, 1);
+    FitReport report = reduce_and_fit(network, target, options, team, seed, fitting);
+    if (options.refine_to > network.vertex_count() && refining(0, "Fitting to the points: more vertices"))
+        refine_and_fit(network, target, options, team, seed, refining, report);
     return report;
 }
 

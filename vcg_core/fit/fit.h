@@ -27,6 +27,9 @@ struct FitOptions {
     /// Leave out stray points (stray_points.h). For clouds that had outliers: those close to the surface are
     /// still there.
     bool expect_strays = false;
+    /// Insert vertices until there are this many, after the rounds, and fit once more. For meshes of more
+    /// vertices than the points carry. 0, or at most the number then: none.
+    int refine_to = 0;
     /// Number of points used: this many per vertex, at least min_points, at most all of a cloud.
     int points_per_vertex = 100;
     int min_points = 100000;
@@ -43,6 +46,7 @@ struct FitReport {
     int rounds = 0;
     int flips = 0;
     int moved_vertices = 0;  ///< removed in one place and inserted in another
+    int inserted = 0;        ///< vertices added because of options.refine_to
     /// False: the result of the rounds was discarded. What comes before them stays: the smoothing of a mesh
     /// that cuts itself, and the reduction.
     bool improved = false;

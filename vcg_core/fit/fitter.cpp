@@ -43,6 +43,9 @@ constexpr float kLastLeastWeight = 1e-3F;
 /// Likely gap of an edge (see PointToPlaneSystem) on a surface without noise, in edge lengths. By Bayes' rule
 /// it determines the least bending weight under noise.
 constexpr float kLikelyGap = 0.05F;
+/// The same with fewer points per vertex than kFewPoints, where it rarely takes a bend for noise.
+constexpr float kLikelyGapOfFew = 0.1F;
+constexpr float kFewPoints = 5;
 /// Noise variances that an edge split has to gain. kMaxSplitVariances holds in general: the best of ten
 /// thousand splits that follow only noise seem to gain about this much. kMinSplitVariances holds if the noise
 /// is well below kSmallNoise edge lengths: then the surface crumples little, and right splits win more than
@@ -130,9 +133,10 @@ void Fitter::silence_strays(const Surface& surface, PointsByFace& points) {
 }
 
 std::vector<float> Fitter::choose_weights(const Surface& surface, const PointsByFace& points) {
-    const float gap = kLikelyGap * mean_edge_length(surface);
     const float points_per_vertex =
         static_cast<float>(points.all().size()) / static_cast<float>(network_.vertex_count());
+    const float gap =
+        (points_per_vertex < kFewPoints ? kLikelyGapOfFew : kLikelyGap) * mean_edge_length(surface);
     return bending_.next_weights(noise_variance_ / (gap * gap * points_per_vertex));
 }
 

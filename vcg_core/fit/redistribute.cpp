@@ -66,6 +66,12 @@ std::vector<EdgeSplit> choose_splits(const Network& network, const std::vector<E
     return chosen;
 }
 
+/// \pre the edge can be split
+VertexMoves::Insertion carry_out(Network& network, const EdgeSplit& split) {
+    const SplitPlace place = *split_place(network, split);
+    return {network.split(place.at, place.first, 3, to_vcg(split.position)), place.at};
+}
+
 }  // namespace
 
 VertexMoves redistribute(Network& network, const std::vector<Collapse>& collapses,
@@ -80,13 +86,18 @@ VertexMoves redistribute(Network& network, const std::vector<Collapse>& collapse
         if (collapse_untouched(network, collapse, touched))
             result.collapses.push_back({collapse.gone, collapse.into});
     }
-    for (std::size_t i = 0; i < result.collapses.size(); ++i) {
-        const EdgeSplit& split = chosen[i];
-        const SplitPlace place = *split_place(network, split);
-        const VertexId added = network.split(place.at, place.first, 3, to_vcg(split.position));
-        result.insertions.push_back({added, place.at});
-    }
+    for (std::size_t i = 0; i < result.collapses.size(); ++i)
+        result.insertions.push_back(carry_out(network, chosen[i]));
     return result;
+}
+
+std::vector<VertexMoves::Insertion> insert(Network& network, const std::vector<EdgeSplit>& splits,
+                                           int max_count) {
+    PerVertex<char> touched(network.slot_count(), 0);
+    std::vector<VertexMoves::Insertion> insertions;
+    for (const EdgeSplit& split : choose_splits(network, splits, max_count, touched))
+        insertions.push_back(carry_out(network, split));
+    return insertions;
 }
 
 std::vector<VertexMoves::DoneCollapse> reduce(Network& network, const std::vector<Collapse>& collapses,

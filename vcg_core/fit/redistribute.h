@@ -31,6 +31,11 @@ struct VertexMoves {
 VertexMoves redistribute(Network& network, const std::vector<Collapse>& collapses,
                          const std::vector<EdgeSplit>& splits, int max_pairs, const PerVertex<char>& barred);
 
+/// Carries out the best \p splits, at most \p max_count. No two have a corner of their faces in common. The
+/// topology stays.
+std::vector<VertexMoves::Insertion> insert(Network& network, const std::vector<EdgeSplit>& splits,
+                                           int max_count);
+
 /// Carries out the cheapest \p collapses, at most \p max_count. No two have a vertex in common, and none has
 /// a \p barred one. The topology stays.
 std::vector<VertexMoves::DoneCollapse> reduce(Network& network, const std::vector<Collapse>& collapses,

@@ -42,6 +42,23 @@ def face_normals(vertices, faces):
     return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
 
 
+def distances(vertices, faces, truth):
+    """The distances of the true surface's samples from the mesh, and of the mesh's samples from the true surface, in %
+    of the diagonal: ((points, distances), (points, distances))."""
+    points, _ = models.sample_surface(vertices, faces, truth.samples, np.random.default_rng(20030102))
+    meshes = pymeshlab.MeshSet(verbose=False)
+    for mesh in (pymeshlab.Mesh(truth.vertices, truth.faces), pymeshlab.Mesh(truth.points), pymeshlab.Mesh(points),
+                 pymeshlab.Mesh(vertices, faces)):
+        meshes.add_mesh(mesh)
+    # The filter leaves each vertex's distance in its quality.
+    every = {"samplevert": True, "samplenum": truth.samples, "maxdist": pymeshlab.PercentageValue(100)}
+    meshes.get_hausdorff_distance(sampledmesh=1, targetmesh=3, **every)
+    meshes.get_hausdorff_distance(sampledmesh=2, targetmesh=0, **every)
+    percent = 100 / truth.diagonal
+    return ((truth.points, meshes.mesh(1).vertex_scalar_array() * percent),
+            (points, meshes.mesh(2).vertex_scalar_array() * percent))
+
+
 def evaluate(vertices, faces, truth):
     """All measures of one mesh, as a dictionary. Raises ValueError for a mesh without faces or with NaN."""
     if len(faces) == 0:

@@ -31,7 +31,9 @@ from compare_accuracy import geometric_mean, numbers, table
 
 OUTLIERS = [("moved", .006), ("moved", .01), ("moved", .05), ("moved", .1), ("box", .01), ("box", .05), ("box", .1),
             ("clumps", .01), ("rays", .01)]
-PER_VERTEX = (1.3, 2, 4, 10, 40)
+PER_VERTEX, NOISE = (1.3, 2, 4, 5, 10, 40), (0, .1)
+DENSITIES = (1, 10, 30)
+WORST_SHARE = .01  # of the surface, whose part of the squared error is told
 GROUPS = ("outliers", "levels", "density", "points")
 DEPTHS, SAMPLES_PER_NODE = (7, 8, 9), (1.5, 5, 15)
 PEERS = ("plain", "tuned", "tuned-selected")
@@ -68,11 +70,13 @@ def clouds(name, truth, options):
             result = scans.scan(vertices, faces, defects)
             yield f"level {level}", result.points, int(result.outlier.sum())
     if "density" in options.groups:
-        for ratio in (1, 10, 30):
+        for ratio in DENSITIES:
             yield f"density {ratio}:1", scans.thinned(vertices, faces, ratio), 0
     if "points" in options.groups:
-        for ratio in PER_VERTEX:
-            yield f"{ratio:g} points per vertex", models.make_cloud(vertices, faces, int(ratio * options.vertices)), 0
+        for noise in NOISE:
+            for ratio in PER_VERTEX:
+                cloud = models.make_cloud(vertices, faces, int(ratio * options.vertices), noise)
+                yield f"{ratio:g} points per vertex" + (f", noise {noise:g} %" if noise else ""), cloud, 0
 
 
 def turned_normals(points, truth):
@@ -117,6 +121,21 @@ def tuned_chain(points, truth, count):
     return best
 
 
+def where(mesh, truth):
+    """Where the error is: forward plus backward RMS in the sparse third, the last along the longest axis, and the part
+    of the squared error that WORST_SHARE of the surface carries, the larger of both ways."""
+    ways = evaluate.distances(*mesh, truth)
+    axis = np.argmax(np.ptp(truth.points, axis=0))
+    low, length = truth.points[:, axis].min(), np.ptp(truth.points[:, axis])
+    sparse, worst = 0, 0
+    for points, distance in ways:
+        last = points[:, axis] > low + 2 / 3 * length
+        sparse += float(np.sqrt(np.mean(distance[last] ** 2)))
+        squares = np.sort(distance ** 2)
+        worst = max(worst, float(squares[-round(WORST_SHARE * len(squares)):].sum() / squares.sum()))
+    return {"sparse_third": sparse, "worst_share": worst}
+
+
 def measured(method, points, truth, options, folder):
     if method in ("tuned", "tuned-selected"):
         return tuned_chain(without_selected(points) if method == "tuned-selected" else points, truth, options.vertices)
@@ -125,7 +144,7 @@ def measured(method, points, truth, options, folder):
     ours = {"plugin": options.plugin, "settings": options.settings} if method == "neural" else {}
     figures = peers.run("neural" if ours else "poisson", folder / "cloud.ply", folder, [options.vertices], **ours)
     mesh = models.load_mesh(folder / f"{options.vertices}.ply")
-    return {**evaluate.evaluate(*mesh, truth), **figures[options.vertices]}
+    return {**evaluate.evaluate(*mesh, truth), **where(mesh, truth), **figures[options.vertices]}
 
 
 def all_rows(options, rows, keep):
@@ -168,6 +187,7 @@ def tables(rows):
     methods = [m for m in PEERS if any(row["method"] == m for row in rows)]
     kinds = {kind for kind, _ in OUTLIERS}
     lines, others = [], []
+    density, even = [], of("density 1:1", "neural")
     for case in cases:
         own = of(case, "neural")
         good = [row for row in own if "error" not in row]
@@ -178,19 +198,27 @@ def tables(rows):
             lines.append([case, len(own), *(ratio(own, clean, key) for key in ("forward_rms", "backward_rms",
                                                                                 "backward_max")),
                           f"{100 * left_out:.0f} %", topology])
+        if case.split()[0] == "density":
+            density.append([case, len(own), ratio(own, even, "sparse_third"),
+                            *(ratio(own, of(case, m), "sparse_third") for m in methods if m == "plain")])
         line = [case, len(own), *(f"{geometric_mean([row[key] for row in good]):.4f}" if good else "-"
-                                  for key in ("forward_rms", "backward_rms")), topology]
+                                  for key in ("forward_rms", "backward_rms")), topology,
+                f"{np.mean([row['worst_share'] for row in good]):.2f}" if good else "-"]
         for method in methods:
-            line += [ratio(own, of(case, method), key) for key in ("forward_rms", "backward_rms")]
+            line += [ratio(own, of(case, method), key) for key in ("forward_rms", "backward_rms", "sum_rms")]
         others.append(line)
     text = []
     if lines:
         text += ["## Outliers, over the same cloud without them: geometric mean (worst model)", "",
                  table(["outliers", "models", "forward", "backward", "backward maximum", "left out, of those added",
                         "topology right"], lines), ""]
-    header = ["case", "models", "forward", "backward", "topology right"]
+    if density:
+        text += ["## Error in the sparse third, over an even cloud of as many points: geometric mean (worst model)", "",
+                 table(["case", "models", "over even", *(["over plain"] if "plain" in methods else [])], density), ""]
+    header = ["case", "models", "forward", "backward", "topology right", "squared error in worst 1 %"]
     return "\n".join([*text, "## Error, and over the peers", "",
-                      table(header + [f"{m}: {way}" for m in methods for way in ("forward", "backward")], others)])
+                      table(header + [f"{m}: {way}" for m in methods for way in ("forward", "backward", "sum")],
+                            others)])
 
 
 def main(arguments=None):

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/fit/refine.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/support/referee.h"
+#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/soundness.h"
+#include "vcg_core/fit/fitter.h"
+#include "vcg_core/reconstruct.h"
+
+namespace neuralmesh {
+namespace {
+
+void expect_refined(const shapes::Shape& shape, int vertices) {
+    const Network before = referee::network_of(shape);
+    Network network = before;
+    PerVertex<VertexId> sources = own_sources(network);
+    EXPECT_EQ(refine(network, vertices, sources), vertices - before.vertex_count());
+    EXPECT_EQ(network.vertex_count(), vertices);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.genus(), before.genus());
+    EXPECT_EQ(network.component_count(), before.component_count());
+    EXPECT_EQ(network.boundary_loop_count(), before.boundary_loop_count());
+    for (const VertexId v : before.vertices()) {
+        EXPECT_EQ(network.position(v), before.position(v));
+        EXPECT_EQ(sources[v], v);
+    }
+    for (const VertexId v : network.vertices()) EXPECT_TRUE(before.alive(sources[v]));
+}
+
+TEST(Refine, ReachesTheNumberAndKeepsTopologyAndVertices) {
+    expect_refined(shapes::icosphere(2), 163);
+    expect_refined(shapes::icosphere(2), 2000);
+    expect_refined(shapes::torus_grid(12, 8), 1000);
+    expect_refined(shapes::bipyramid(14), 1000);
+}
+
+TEST(Refine, LeavesEnoughVerticesAlone) {
+    Network network = referee::network_of(shapes::icosphere(2));
+    PerVertex<VertexId> sources = own_sources(network);
+    EXPECT_EQ(refine(network, 100, sources), 0);
+    EXPECT_EQ(network.vertex_count(), 162);
+}
+
+TEST(Refine, CurvesTheSurface) {
+    Network network = referee::network_of(shapes::icosphere(1));
+    PerVertex<VertexId> sources = own_sources(network);
+    refine(network, 500, sources);
+    for (const VertexId v : network.vertices())
+        EXPECT_NEAR(network.position(v).Norm(), 1, 0.02) << "middles of edges are up to .05 inside";
+}
+
+TEST(Refine, EvensTheEdges) {
+    Network network = referee::network_of(shapes::icosphere(1));
+    PerVertex<VertexId> sources = own_sources(network);
+    refine(network, 1000, sources);
+    float shortest = 1;
+    float longest = 0;
+    for (const VertexId v : network.vertices())
+        for (const VertexId u : network.ring(v)) {
+            const float length = (network.position(u) - network.position(v)).Norm();
+            shortest = std::min(shortest, length);
+            longest = std::max(longest, length);
+        }
+    EXPECT_LT(longest, 4 * shortest);
+}
+
+// 400 points carry 200 vertices.
+TEST(FewPoints, MakeASmoothMeshOfAllVerticesAskedFor) {
+    Settings settings;
+    settings.target_vertices = 3000;
+    NoProgress progress;
+    const NeuralMesh mesh = reconstruct(soundness::target_of(shapes::sphere_cloud(400)), settings, progress);
+    EXPECT_EQ(mesh.report.vertices, 3000);
+    EXPECT_EQ(mesh.report.genus, 0);
+    EXPECT_TRUE(soundness::has_warning(mesh, "carry about 200 vertices"));
+    EXPECT_LT(mesh.report.signals, 300000);
+    for (const vcg::Point3d& p : mesh.positions) EXPECT_NEAR(p.Norm(), 1, 0.03);
+}
+
+TEST(FewPoints, EnoughPointsGiveNoWarning) {
+    Settings settings;
+    settings.target_vertices = 300;
+    NoProgress progress;
+    const NeuralMesh mesh = reconstruct(soundness::target_of(shapes::sphere_cloud(700)), settings, progress);
+    EXPECT_EQ(mesh.report.vertices, 300);
+    EXPECT_FALSE(soundness::has_warning(mesh, "carry about"));
+}
+
+}  // namespace
+}  // namespace neuralmesh

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// More vertices than the points carry: the longest edges are split.
+#pragma once
+
+#include "vcg_core/mesh/network.h"
+
+namespace neuralmesh {
+
+/// Splits inner edges of \p network, the longest first, until it has \p vertices vertices or no edge can be
+/// split. The new vertices curve the surface by the normals at the ends of the edges. \p sources, of
+/// own_sources() and FitReport, gets an entry for each new vertex: that of an end of its edge. O(n log n) for
+/// every doubling of the vertices. \return the number of vertices inserted
+int refine(Network& network, int vertices, PerVertex<VertexId>& sources);
+
+}  // namespace neuralmesh
