@@ -20,6 +20,14 @@ NEURALMESH_ALWAYS_INLINE void close_cycle(EightVectors* at, int valence) {
     at[valence + 1] = at[1];
 }
 
+vcg::Point3f point_of(const EightVectors& v, int lane) { return {v.x[lane], v.y[lane], v.z[lane]}; }
+
+void add_to(EightVectors& v, int lane, const vcg::Point3f& d) {
+    v.x[lane] += d[0];
+    v.y[lane] += d[1];
+    v.z[lane] += d[2];
+}
+
 }  // namespace
 
 /// The loops over the lanes, each compiled for every instruction set.
@@ -86,12 +94,18 @@ void EightSteps::Kernels::gather_along_boundary(EightSteps& p, const Network& ne
 
 void EightSteps::Kernels::smooth_along_boundary(EightSteps& p, float smoothing_rate) {
     const float rate = std::min(1.0F, kBoundarySteps * smoothing_rate);
-    for (int k = 0; k < p.along_boundary_count_; ++k) {
-        const auto& [lane, i, half_way] = p.along_boundary_[k];
-        EightVectors& v = p.ring_now_[i + 1];
-        v.x[lane] += rate * (half_way[0] + 0.5F * p.winner_now_.x[lane] - v.x[lane]);
-        v.y[lane] += rate * (half_way[1] + 0.5F * p.winner_now_.y[lane] - v.y[lane]);
-        v.z[lane] += rate * (half_way[2] + 0.5F * p.winner_now_.z[lane] - v.z[lane]);
+    for (int k = 0; k < p.along_boundary_count_; k += 2) {
+        const int lane = p.along_boundary_[k].lane;
+        const vcg::Point3f w = point_of(p.winner_now_, lane);
+        const vcg::Point3f first = point_of(p.ring_now_[1], lane);
+        const vcg::Point3f last = point_of(p.ring_now_[p.valence_], lane);
+        const vcg::Point3f of_winner = (first + last) * 0.5F - w;
+        for (int j = 0; j < 2; ++j) {
+            const AlongBoundary& beside = p.along_boundary_[k + j];
+            const vcg::Point3f v = j == 0 ? first : last;
+            const vcg::Point3f move = (beside.half_way + w * 0.5F - v - of_winner) * rate;
+            add_to(p.ring_now_[beside.i + 1], lane, move);
+        }
     }
     close_cycle(p.ring_now_, p.valence_);
 }

@@ -13,8 +13,7 @@ struct StepRates {
     int smoothing_steps;   ///< C_L, at least 0
 };
 
-/// Neighbours along a boundary are smoothed by this many times alpha_L. Chosen by open_table.py: less leaves
-/// the boundaries rougher, with 2 they cut corners and narrow holes.
+/// Neighbours along a boundary are smoothed by this many times alpha_L. Chosen by open_table.py.
 constexpr float kBoundarySteps = 1;
 
 }  // namespace neuralmesh

@@ -54,16 +54,20 @@ vcg::Point3d smoothed(const Network& network, const Positions& positions, const 
     return v + l_t * alpha_l;  // section 2: v + alpha_L L_t
 }
 
-/// Ring vertex i, a neighbour of the winner along the boundary, after smoothing: where it is and the middle
-/// between its two neighbours on the boundary, the winner as in \p step and the other as in \p positions.
-vcg::Point3d smoothed_along_boundary(const Network& network, const Positions& positions,
-                                     const BasicStep& step, int i, double alpha_l) {
-    const Ring& winners = network.ring(step.winner);
-    const Ring& ring = network.ring(winners[i]);
-    const VertexId next = i == 0 ? ring[0] : ring[ring.valence - 1];
-    const vcg::Point3d v = step.ring_positions[static_cast<std::size_t>(i)];
-    const vcg::Point3d middle = (positions[next] + step.winner_position) / 2;
-    return v + (middle - v) * std::min(1.0, static_cast<double>(kBoundarySteps) * alpha_l);
+/// Smooths the two neighbours of the winner along the boundary, both from \p step.
+void smooth_along_boundary(const Network& network, const Positions& positions, double alpha_l,
+                           BasicStep& step) {
+    const Ring& ring = network.ring(step.winner);
+    const std::size_t ends[] = {0, ring.valence - std::size_t{1}};
+    const vcg::Point3d of_winner =
+        (step.ring_positions[ends[0]] + step.ring_positions[ends[1]]) / 2 - step.winner_position;  // L(w)
+    for (const std::size_t i : ends) {
+        const Ring& beside = network.ring(ring.neighbours[i]);
+        const VertexId next = i == 0 ? beside[0] : beside[beside.valence - 1];
+        vcg::Point3d& v = step.ring_positions[i];
+        const vcg::Point3d l = (positions[next] + step.winner_position) / 2 - v;  // L(v)
+        v += (l - of_winner) * std::min(1.0, static_cast<double>(kBoundarySteps) * alpha_l);
+    }
 }
 
 }  // namespace
@@ -93,9 +97,7 @@ BasicStep basic_step(const Network& network, const Positions& positions, VertexI
     }
 
     if (ring.open != 0 && rates.smoothing_steps > 0)
-        for (const int i : {0, ring.valence - 1})
-            step.ring_positions[static_cast<std::size_t>(i)] = smoothed_along_boundary(
-                network, positions, step, i, static_cast<double>(rates.smoothing_rate));
+        smooth_along_boundary(network, positions, static_cast<double>(rates.smoothing_rate), step);
 
     const vcg::Point3d n_after = winner_normal(ring, step);
     step.delta = (n_after - n).SquaredNorm() / 2;  // eq 2: 1 - n.n' of unit vectors, without cancellation
