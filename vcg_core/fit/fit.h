@@ -58,7 +58,8 @@ struct FitReport {
 /// Moves the vertices of \p network to lower the sum of squared distances of the points of \p target. Some
 /// points are held out of the fit to judge it. Each round assigns the other points to their nearest faces and
 /// solves linear least squares with a bending term, whose weight minimises the error at the held-out points.
-/// Between rounds, edges are flipped and vertices redistributed where that lowers the distances.
+/// Between rounds, edges are flipped and vertices redistributed where that lowers the distances. A boundary
+/// moves to where the points end, from both sides, and notches that hold points are filled.
 ///
 /// - What stays: components, handles, boundary loops, and the number of vertices unless options.reduce_to is
 ///   less. No face turns over, folds onto a neighbour or becomes a sliver.

@@ -16,6 +16,7 @@
 #include "vcg_core/fit/least_squares.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/noise.h"
+#include "vcg_core/fit/notches.h"
 #include "vcg_core/fit/stray_points.h"
 #include "vcg_core/fit/untangle.h"
 
@@ -111,12 +112,20 @@ PointsByFace Fitter::assign_faces(const Surface& surface) {
     return assign(surface, nearest_by_walk(surface, fitted_, team_));
 }
 
+/// Points beyond the boundary keep their influence: the surface has to reach them.
+void Fitter::weaken_outliers(const Surface& surface, PointsByFace& points) const {
+    const float squared = outlier_distance_ * outlier_distance_;
+    parallel_for(surface.face_count(), kFacesAtATime, team_, [&](int face) {
+        for (PointsByFace::Assignment& a : points.of(face))
+            if (!is_beyond_boundary(surface, {face, a.foot}))
+                a.influence *= std::min(1.0F, squared / std::max(a.foot.squared_distance, 1e-20F));
+    });
+}
+
 PointsByFace Fitter::assign(const Surface& surface, const std::vector<Hit>& hits) {
     PointsByFace points = group_by_face(surface, fitted_, hits);
     noise_variance_ = neuralmesh::noise_variance(surface, points);
-    const float squared = outlier_distance_ * outlier_distance_;
-    for (PointsByFace::Assignment& a : points.all())
-        a.influence *= std::min(1.0F, squared / std::max(a.foot.squared_distance, 1e-20F));
+    weaken_outliers(surface, points);
     if (expects_strays_) silence_strays(surface, points);
     return points;
 }
@@ -229,6 +238,14 @@ int Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
         find_flips(network_, surface, points, kFlipVariances * noise_variance_, team_);
     return guarded(surface, [&](const PerVertex<char>& barred) {
         return neuralmesh::flip_edges(network_, found, barred);
+    });
+}
+
+int Fitter::fill_notches(const Surface& surface, const PointsByFace& points) {
+    const std::vector<VertexId> notches = find_notches(network_, surface, points);
+    if (notches.empty()) return 0;
+    return guarded(surface, [&](const PerVertex<char>& barred) {
+        return neuralmesh::fill_notches(network_, notches, barred);
     });
 }
 

@@ -71,6 +71,8 @@ public:
     /// Computes the feet of \p points again, then flips edges where that brings the points closer. \return
     /// the number of flips
     int flip_edges(const Surface& surface, PointsByFace& points);
+    /// Fills the notches of the boundary that hold points. \return their number
+    int fill_notches(const Surface& surface, const PointsByFace& points);
 
     const HeldOut& held_out() const { return held_out_; }
     /// For every slot of the network: itself, or for an inserted vertex one that was near it.
@@ -79,6 +81,7 @@ public:
 
 private:
     PointsByFace assign(const Surface& surface, const std::vector<Hit>& hits);
+    void weaken_outliers(const Surface& surface, PointsByFace& points) const;
     void silence_strays(const Surface& surface, PointsByFace& points);
     std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
     float least_split_gain(const Surface& surface) const;

@@ -27,22 +27,24 @@ PerVertex<Vector3> smoothed_normals(const Network& network, const Surface& surfa
     return normals;
 }
 
-/// Signed distance from \p p to \p surface along the unit vector \p direction. Alternates between two
+/// Squared distance from \p p to \p surface along the unit vector \p direction. Alternates between two
 /// projections: of a point of the line onto the surface, and of the result onto the line. This approaches the
-/// point where the line meets the surface.
-float distance_along(const Vector3& direction, const Surface& surface, const Vector3& p, WalkStart near) {
+/// point where the line meets the surface. Beyond the boundary, what lacks to meet it counts, too.
+float squared_distance_along(const Vector3& direction, const Surface& surface, const Vector3& p,
+                             WalkStart near) {
     constexpr int kSteps = 2;
     float along = 0;
     for (int step = 0; step < kSteps; ++step) {
         const Vector3 from = p + along * direction;
         const Hit hit = walk_to_nearest(surface, from, near);
+        if (is_beyond_boundary(surface, hit)) return along * along + hit.foot.squared_distance;
         near = walk_start_of(surface, hit);
         Vector3 foot = Vector3::Zero();
         for (int k = 0; k < 3; ++k)
             foot += hit.foot.weights[static_cast<std::size_t>(k)] * surface.corner(hit.face, k);
         along += (foot - from).dot(direction);
     }
-    return along;
+    return along * along;
 }
 
 }  // namespace
@@ -75,9 +77,8 @@ double HeldOut::rms_error(const Surface& surface, float outlier_distance, Thread
     std::vector<float> squared(tracked_.points.size());
     for_chunks(squared.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const float along =
-                distance_along(directions_[i], surface, tracked_.points[i], tracked_.last_hit[i]);
-            squared[i] = along * along;
+            squared[i] =
+                squared_distance_along(directions_[i], surface, tracked_.points[i], tracked_.last_hit[i]);
         }
     });
     double sum = 0;

@@ -24,6 +24,11 @@ constexpr float kDamping = 2e-3F;
 constexpr float kRetreat = 8.0F;
 /// A boundary vertex has few points around it, which may miss as many by chance.
 constexpr float kByChance = 1.5F;
+/// Pull of a boundary edge to where the points end, in points per vertex. Chosen by open_table.py, as the
+/// next.
+constexpr float kBoundaryPull = 0.3F;
+/// Weight of the bending of the boundary, in points per vertex.
+constexpr float kBoundaryBending = 0.05F;
 /// An edge counts as a crease from this many times the median gap.
 constexpr float kCrease = 4.0F;
 
@@ -48,7 +53,10 @@ PointToPlaneSystem::FaceSums PointToPlaneSystem::sum_over(const Surface& surface
     for (const PointsByFace::Assignment& assignment : points.of(face)) {
         const auto& w = assignment.foot.weights;
         const Vector3 e = assignment.point - w[0] * a - w[1] * b - w[2] * c;
-        const bool inside = w[0] > 0 && w[1] > 0 && w[2] > 0;
+        const int zeros = (w[0] > 0 ? 0 : 1) + (w[1] > 0 ? 0 : 1) + (w[2] > 0 ? 0 : 1);
+        // Boundary edges move sideways to their targets only.
+        const bool inside =
+            zeros == 0 || (zeros == 1 && is_beyond_boundary(surface, {face, assignment.foot}));
         const float length = e.norm();
         const Vector3 n = inside || length < 1e-9F ? normal : Vector3(e / length);
         Symmetric3 direction;
@@ -83,6 +91,8 @@ PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& su
         regularise(surface, missing[v], v);
     });
     add_bending(surface);
+    for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) add_target(target);
+    add_boundary_bending(surface);
 }
 
 void PointToPlaneSystem::gather(const PerFace<FaceSums>& sums, const Surface& surface, VertexId v) {
@@ -170,6 +180,61 @@ void PointToPlaneSystem::add_bending(const Surface& surface) {
     }
 }
 
+void PointToPlaneSystem::add_target(const BoundaryTarget& target) {
+    const Symmetric3 direction = Symmetric3::outer(target.outward);
+    const float weight =
+        kBoundaryPull * points_per_vertex_ * target.weight / static_cast<float>(target.parts);
+    for (int i = 0; i < target.parts; ++i) {
+        const float b = target.share(i);
+        const float a = 1 - b;
+        diagonal_[target.a].add(direction, weight * a * a);
+        diagonal_[target.b].add(direction, weight * b * b);
+        row(target.a)[network_.ring(target.a).find(target.b)].add(direction, weight * a * b);
+        row(target.b)[network_.ring(target.b).find(target.a)].add(direction, weight * a * b);
+        force_[target.a] += weight * a * target.offset(i) * target.outward;
+        force_[target.b] += weight * b * target.offset(i) * target.outward;
+    }
+}
+
+/// The gap of a boundary vertex: from the place on the line between its neighbours along the boundary that
+/// divides it as the vertex divides the boundary.
+void PointToPlaneSystem::add_boundary_bending(const Surface& surface) {
+    std::vector<float> turns;
+    for (VertexId v : network_.vertices()) {
+        const Ring& ring = network_.ring(v);
+        if (ring.open == 0) continue;
+        const VertexId a = ring[0];
+        const VertexId b = ring[ring.valence - 1];
+        const Vector3 to_a = surface.positions[a] - surface.positions[v];
+        const Vector3 to_b = surface.positions[b] - surface.positions[v];
+        const float length = to_a.norm() + to_b.norm();
+        if (!(length > 0)) continue;
+        const float t = to_a.norm() / length;
+        const Vector3 gap = (t - 1) * to_a - t * to_b;
+        boundary_terms_.push_back({{v, a, b, v}, {1, t - 1, -t, 0}, gap, 1});
+        turns.push_back(gap.norm() / length);
+        centre_along((to_b - to_a).normalized(), 0.5F * (to_a + to_b), v);
+    }
+    if (turns.empty()) return;
+    const float crease = std::max(kCrease * median(turns), 1e-9F);
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+        BendingTerm& term = boundary_terms_[i];
+        term.weight = kBoundaryBending * points_per_vertex_ / (1 + (turns[i] / crease) * (turns[i] / crease));
+        for (std::size_t k = 0; k < 3; ++k) {
+            const float c = term.coefficient[k];
+            diagonal_[term.corner[k]].add_identity(term.weight * c * c);
+            force_[term.corner[k]] -= term.weight * c * term.gap;
+        }
+    }
+}
+
+/// Pulls boundary vertex \p v along the boundary, by the part of \p away in the unit vector \p direction.
+void PointToPlaneSystem::centre_along(const Vector3& direction, const Vector3& away, VertexId v) {
+    const float centring = kCentring * points_per_vertex_;
+    diagonal_[v].add(Symmetric3::outer(direction), centring);
+    force_[v] += centring * away.dot(direction) * direction;
+}
+
 void PointToPlaneSystem::multiply(float lambda, const PerVertex<Vector3>& u,
                                   PerVertex<Vector3>& result) const {
     for (VertexId v = 0; v < network_.slot_count(); ++v) {
@@ -185,6 +250,12 @@ void PointToPlaneSystem::multiply(float lambda, const PerVertex<Vector3>& u,
                       c[3] * u[term.corner[3]];
         gap *= lambda * term.weight;
         for (std::size_t k = 0; k < 4; ++k) result[term.corner[k]] += c[k] * gap;
+    }
+    for (const BendingTerm& term : boundary_terms_) {  // their squares are in the diagonal
+        const auto& c = term.coefficient;
+        const Vector3 gap = c[0] * u[term.corner[0]] + c[1] * u[term.corner[1]] + c[2] * u[term.corner[2]];
+        for (std::size_t k = 0; k < 3; ++k)
+            result[term.corner[k]] += term.weight * c[k] * (gap - c[k] * u[term.corner[k]]);
     }
 }
 

@@ -14,19 +14,20 @@ namespace {
 /// Arguments of Network::split() that split an edge.
 struct SplitPlace {
     VertexId at;  ///< the end of the edge that keeps its other neighbours
-    int first;    ///< ring position of the three neighbours that the new vertex takes, the other end in the
-                  ///< middle
+    int first;    ///< ring position of the first neighbour that the new vertex takes
+    int count;    ///< of them: three, the other end in the middle; two on a boundary, the other end first
 };
 
-/// From the end \p at of the edge. A fan that includes a boundary edge of \p at would pull the boundary to
-/// the new vertex instead of splitting the edge.
+/// From the end \p at of the edge. A fan that includes a boundary edge of \p at besides the edge to split
+/// would pull the boundary to the new vertex instead of splitting the edge.
 std::optional<SplitPlace> split_place_at(const Network& network, VertexId at, VertexId other) {
     const Ring& ring = network.ring(at);
     const int i = ring.find(other);
-    if (i < 0 || (ring.open != 0 && (i < 2 || i + 2 >= ring.valence))) return std::nullopt;
-    const int first = i == 0 ? ring.valence - 1 : i - 1;
-    if (!network.can_split(at, first, 3)) return std::nullopt;
-    return SplitPlace{at, first};
+    const bool on_boundary = ring.open != 0 && i == 0;
+    if (i < 0 || (ring.open != 0 && !on_boundary && (i < 2 || i + 2 >= ring.valence))) return std::nullopt;
+    const int previous = i == 0 ? ring.valence - 1 : i - 1;
+    const SplitPlace place{at, on_boundary ? 0 : previous, on_boundary ? 2 : 3};
+    return network.can_split(at, place.first, place.count) ? std::optional(place) : std::nullopt;
 }
 
 /// Nothing if the edge cannot be split.
@@ -56,7 +57,9 @@ std::vector<EdgeSplit> choose_splits(const Network& network, const std::vector<E
         if (static_cast<int>(chosen.size()) >= max_count) break;
         const Ring& ring = network.ring(split.a);
         const int i = ring.find(split.b);
-        const std::array<VertexId, 4> corners{split.a, split.b, ring.next(i), ring.previous(i)};
+        const bool on_boundary = ring.open != 0 && i == 0;
+        const std::array<VertexId, 4> corners{split.a, split.b, ring.next(i),
+                                              on_boundary ? ring.next(i) : ring.previous(i)};
         if (!split_place(network, split) ||
             std::any_of(corners.begin(), corners.end(), [&](VertexId v) { return touched[v] != 0; }))
             continue;
@@ -69,7 +72,7 @@ std::vector<EdgeSplit> choose_splits(const Network& network, const std::vector<E
 /// \pre the edge can be split
 VertexMoves::Insertion carry_out(Network& network, const EdgeSplit& split) {
     const SplitPlace place = *split_place(network, split);
-    return {network.split(place.at, place.first, 3, to_vcg(split.position)), place.at};
+    return {network.split(place.at, place.first, place.count, to_vcg(split.position)), place.at};
 }
 
 }  // namespace

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "vcg_core/base/parallel_for.h"
+#include "vcg_core/fit/boundary_targets.h"
 
 namespace neuralmesh {
 
@@ -40,7 +42,7 @@ FaceHatSums hat_sums(const Surface& surface, const PointsByFace& points, int fac
     return sums;
 }
 
-/// The split of the inner edge a-b; its gain is negative if no point is near, or if it is less than \p
+/// The split of the edge a-b by its faces; its gain is negative if no point is near, or if it is less than \p
 /// least_gain for points of weight 1.
 EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const PerFace<FaceHatSums>& sums,
                    float least_gain, VertexId a, VertexId b) {
@@ -60,6 +62,7 @@ EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const Per
             faces[found++] = f;
         }
     }
+    if (found == 1) faces[1] = faces[0];  // a boundary edge
     const Vector3& at_a = surface.positions[a];
     const Vector3& at_b = surface.positions[b];
     if (!(both.phi_phi > 0)) return {-1, a, b, 0.5F * (at_a + at_b)};
@@ -68,6 +71,44 @@ EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const Per
     const float gain = both.phi_residual * both.phi_residual / both.phi_phi;
     const bool enough = gain >= least_gain * points.mean_weight(faces[0], faces[1]);
     return {enough ? gain : -1, a, b, 0.5F * (at_a + at_b) + offset * normal.normalized()};
+}
+
+float cubed(float x) { return x * x * x; }
+
+/// Adds to the split of a boundary edge what the new vertex gains by moving outward or inward, beyond what
+/// the edge's ends would gain. The points between an edge and where they end, or as many missing ones, add up
+/// to squared distances of density x offset^3 / 3 per length.
+void add_boundary_gain(EdgeSplit& split, const BoundaryTarget& target) {
+    const auto parts = static_cast<float>(target.parts);
+    const auto from_middle = [&](int i) { return target.share(i) - 0.5F; };
+    float mean = 0;
+    float slope = 0;
+    float phi_mean = 0;
+    float squares = 0;
+    const auto phi = [&](int i) { return 1 - 2 * std::abs(from_middle(i)); };
+    for (int i = 0; i < target.parts; ++i) {
+        mean += target.offset(i) / parts;
+        slope += target.offset(i) * from_middle(i);
+        squares += from_middle(i) * from_middle(i);
+        phi_mean += phi(i) / parts;
+    }
+    if (squares > 0) slope /= squares;
+    const auto rest = [&](int i) { return target.offset(i) - mean - slope * from_middle(i); };
+    float phi_rest = 0;
+    float phi_phi = 0;
+    for (int i = 0; i < target.parts; ++i) {
+        phi_rest += (phi(i) - phi_mean) * rest(i);
+        phi_phi += (phi(i) - phi_mean) * (phi(i) - phi_mean);
+    }
+    if (!(phi_phi > 0)) return;  // fewer than three parts
+    const float bound = kMaxOffset * target.length;
+    const float offset = std::min(std::max(phi_rest / phi_phi, -bound), bound);
+    float drop = 0;
+    for (int i = 0; i < target.parts; ++i)
+        drop += cubed(std::abs(rest(i))) - cubed(std::abs(rest(i) - (phi(i) - phi_mean) * offset));
+    if (!(drop > 0)) return;
+    split.gain = std::max(split.gain, 0.0F) + drop * target.density * target.length / (3 * parts);
+    split.position += (1 - phi_mean) * offset * target.outward;
 }
 
 }  // namespace
@@ -85,6 +126,11 @@ std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surfac
             const EdgeSplit split = split_of(surface, points, sums, least_gain, a, ring[i]);
             if (split.gain >= 0) splits.push_back(split);
         }
+    }
+    for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) {
+        EdgeSplit split = split_of(surface, points, sums, 0, target.a, target.b);
+        add_boundary_gain(split, target);
+        if (split.gain >= least_gain * points.mean_weight(target.face, target.face)) splits.push_back(split);
     }
     std::stable_sort(splits.begin(), splits.end(),
                      [](const EdgeSplit& x, const EdgeSplit& y) { return x.gain > y.gain; });

@@ -18,10 +18,11 @@ struct EdgeSplit {
     Vector3 position;
 };
 
-/// The splits of inner edges that gain at least \p least_gain (>= 0), most gain first, by linear least
+/// The splits of edges that gain at least \p least_gain (>= 0), most gain first, by linear least
 /// squares over the offset of the new vertex from the middle of its edge, along the mean normal of the edge's
-/// faces. \p surface is that of the network. O(points + vertices). The result does not depend on the number
-/// of threads.
+/// faces. The new vertex of a boundary edge also follows the edge's BoundaryTarget, which counts the distance
+/// between the boundary and where the points end; such an edge is that of a face (a, b, c). \p surface is
+/// that of the network. O(points + vertices). The result does not depend on the number of threads.
 std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surface, const PointsByFace& points,
                                    float least_gain, ThreadTeam& team);
 

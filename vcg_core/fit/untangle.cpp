@@ -32,14 +32,24 @@ PerVertex<char> surroundings(const Network& network, const std::vector<SelfCross
     return inside;
 }
 
-void smooth(const Network& network, const PerVertex<char>& where, PerVertex<Vector3>& positions) {
+/// On a boundary the middle of the two neighbours there, so that the boundary does not draw back.
+Vector3 middle_of_ring(const Ring& ring, const PerVertex<Vector3>& positions) {
+    if (ring.open != 0) return (positions[ring[0]] + positions[ring[ring.valence - 1]]) / 2;
+    Vector3 middle = Vector3::Zero();
+    for (VertexId u : ring) middle += positions[u];
+    return middle / static_cast<float>(ring.valence);
+}
+
+/// Smooths the \p rings rings around the \p crossings. Boundary vertices move only if they are corners of
+/// crossings: the others are where the points end.
+void smooth(const Network& network, const std::vector<SelfCrossing>& crossings, int rings,
+            PerVertex<Vector3>& positions) {
+    const PerVertex<char> corners = surroundings(network, crossings, 0);
+    const PerVertex<char> near = surroundings(network, crossings, rings);
     const PerVertex<Vector3> before = positions;
     for (VertexId v : network.vertices()) {
-        const Ring& ring = network.ring(v);
-        if (where[v] == 0 || ring.open != 0) continue;
-        Vector3 middle = Vector3::Zero();
-        for (VertexId u : ring) middle += before[u];
-        positions[v] += kStep * (middle / static_cast<float>(ring.valence) - before[v]);
+        const bool moves = network.ring(v).open != 0 ? corners[v] != 0 : near[v] != 0;
+        if (moves) positions[v] += kStep * (middle_of_ring(network.ring(v), before) - before[v]);
     }
 }
 
@@ -78,8 +88,8 @@ std::optional<std::vector<SelfCrossing>> untangle(Network& network, ThreadTeam& 
     for (int round = 0; round < kRounds && !crossings.empty(); ++round) {
         if (stopped(round + 1)) return std::nullopt;
         const Surface before = surface;
-        const PerVertex<char> where = surroundings(network, crossings, std::min(1 + round / 2, kMaxRings));
-        for (int sweep = 0; sweep < kSweeps; ++sweep) smooth(network, where, surface.positions);
+        const int rings = std::min(1 + round / 2, kMaxRings);
+        for (int sweep = 0; sweep < kSweeps; ++sweep) smooth(network, crossings, rings, surface.positions);
         limit_moves(start, max_move, surface.positions);
         crossings = update_self_crossings(surface, before, crossings, team);
     }

@@ -231,6 +231,24 @@ void Network::flip(VertexId a, VertexId b) {
     insert_after(ring_of(d), b, c);
 }
 
+bool Network::can_fill_notch(VertexId v) const {
+    const Ring& r = ring(v);
+    if (r.open == 0 || r.valence < 3) return false;
+    const Ring& after = ring(r[0]);
+    const Ring& before = ring(r[r.valence - 1]);
+    return after.find(r[r.valence - 1]) < 0 && after.valence < kMax && before.valence < kMax;
+}
+
+void Network::fill_notch(VertexId v) {
+    if (!can_fill_notch(v)) throw TopologyError("This notch cannot be filled; ask can_fill_notch() first.");
+    Ring& r = ring_of(v);
+    const VertexId after = r[0];
+    const VertexId before = r[r.valence - 1];
+    r.open = 0;
+    insert(ring_of(after), ring(after).valence, before);
+    insert(ring_of(before), 0, after);
+}
+
 PerVertex<VertexId> Network::compact() {
     std::vector<VertexId> order;
     for (const VertexId v : vertices()) order.push_back(v);

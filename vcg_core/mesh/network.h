@@ -91,6 +91,13 @@ public:
     /// boundary) and Ring::kMaxValence.
     bool can_flip(VertexId a, VertexId b) const;
 
+    /// Fills the notch at a boundary vertex: adds the face of v and its two neighbours along the boundary,
+    /// which makes v an inner vertex. \pre can_fill_notch(v). O(valence).
+    void fill_notch(VertexId v);
+    /// True if v is on a boundary of more than three edges, the two neighbours along it are not adjacent yet,
+    /// and all valences stay between 3 (2 on a boundary) and Ring::kMaxValence.
+    bool can_fill_notch(VertexId v) const;
+
     /// Renumbers the vertices to 0 .. vertex_count() - 1 and keeps their order. Invalidates all ids, for
     /// example those in a WinnerSearch. \return per old slot the new id, or -1. O(vertices).
     PerVertex<VertexId> compact();

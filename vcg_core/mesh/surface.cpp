@@ -19,6 +19,19 @@ Surface::Surface(const Network& network)
     PerVertex<int> next = first_face_;
     for (int f = 0; f < faces.size(); ++f)
         for (VertexId v : faces[f]) face_of_[static_cast<std::size_t>(next[v]++)] = f;
+    mark_boundary(network);
+}
+
+void Surface::mark_boundary(const Network& network) {
+    for (const VertexId v : network.vertices()) {
+        const Ring& ring = network.ring(v);
+        if (ring.open == 0) continue;
+        if (boundary_.empty()) boundary_.resize(face_count(), 0);
+        for (const int f : faces_around(v))
+            for (unsigned k = 0; k < 3; ++k)
+                if (faces[f][k] == v && faces[f][(k + 1) % 3] == ring[0])
+                    boundary_[f] = static_cast<std::uint8_t>(boundary_[f] | 1U << k);
+    }
 }
 
 Vector3 normal_beyond(const Surface& surface, VertexId a, VertexId b) {

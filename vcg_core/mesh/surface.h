@@ -5,6 +5,7 @@
 // over faces that leave the connectivity alone.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "vcg_core/base/span.h"
@@ -23,6 +24,11 @@ public:
     PerFace<Triangle> faces;       ///< Network::faces()
 
     int face_count() const { return faces.size(); }
+    bool has_boundary() const { return !boundary_.empty(); }
+    /// Whether the edge from corner \p k to the next one, of \p face, lies on the boundary.
+    bool on_boundary(int face, std::size_t k) const {
+        return has_boundary() && (boundary_[face] >> k & 1) != 0;
+    }
     /// Position of corner \p k, 0 to 2, of \p face.
     const Vector3& corner(int face, int k) const {
         return positions[faces[face][static_cast<std::size_t>(k)]];
@@ -33,7 +39,10 @@ public:
     }
 
 private:
-    PerVertex<int> first_face_;  ///< where those of a slot begin in face_of_; one more entry at the end
+    void mark_boundary(const Network& network);
+
+    PerFace<std::uint8_t> boundary_;  ///< bit k: on_boundary(face, k); empty for closed surfaces
+    PerVertex<int> first_face_;       ///< where those of a slot begin in face_of_; one more entry at the end
     std::vector<int> face_of_;
 };
 
@@ -56,6 +65,14 @@ inline Vector3 unit_normal(const Surface& surface, int face) {
 /// Unit normal of the face beyond the edge \p a to \p b of a face, which has it as b to a; 0 on a boundary.
 /// O(valence).
 Vector3 normal_beyond(const Surface& surface, VertexId a, VertexId b);
+
+/// Whether the foot lies on a boundary edge or at its end: the point is beyond the boundary.
+inline bool is_beyond_boundary(const Surface& surface, const Hit& hit) {
+    const auto& w = hit.foot.weights;
+    for (std::size_t k = 0; surface.has_boundary() && k < 3; ++k)
+        if (surface.on_boundary(hit.face, k) && !(w[(k + 2) % 3] > 0)) return true;
+    return false;
+}
 
 /// Mean length of the edges; those on a boundary have half the weight. O(faces). \pre the surface has a face
 float mean_edge_length(const Surface& surface);

@@ -115,6 +115,28 @@ TEST(Redistribute, LeavesTheBoundaryAlone) {
     EXPECT_GT(splits, 200);
 }
 
+TEST(Redistribute, SplitsBoundaryEdgesOnTheBoundary) {
+    const Network grid = referee::network_of(shapes::grid(8, 8));
+    int splits = 0;
+    for (VertexId a : grid.vertices()) {
+        if (grid.ring(a).open == 0 || grid.adjacent(a, 27)) continue;
+        const VertexId b = grid.ring(a)[0];
+        const vcg::Point3f middle = (grid.position(a) + grid.position(b)) / 2;
+        Network network = grid;
+        const VertexMoves moves =
+            redistribute(network, {{0, 27, grid.ring(27)[0]}}, {{1, a, b, to_eigen(middle)}}, 1,
+                         PerVertex<char>(network.slot_count(), 0));
+        ASSERT_EQ(moves.insertions.size(), 1U) << a;
+        ASSERT_EQ(network.validate(), "");
+        const Ring& ring = network.ring(moves.insertions[0].added);
+        EXPECT_EQ(ring.valence, 3);
+        EXPECT_EQ(ring[0], b);
+        EXPECT_EQ(ring[2], a);
+        ++splits;
+    }
+    EXPECT_GT(splits, 20);
+}
+
 TEST(Reduce, RemovesTheCheapestThatDoNotTouch) {
     const FitScene scene = cube_scene();
     ThreadTeam team(1);

@@ -56,6 +56,19 @@ TEST(Untangle, SmoothsOutACrumpledCap) {
     EXPECT_LT(moved, 200) << "vertices far from the cap do not move";
 }
 
+TEST(Untangle, SmoothsOutARimThatCutsItself) {
+    Network network = referee::network_of(shapes::grid(8, 8));
+    // A boundary edge is drawn inwards, one end above the sheet and the other below.
+    VertexId a = 0;
+    while (network.ring(a).open == 0 || network.ring(a).valence < 4) ++a;
+    const VertexId b = network.ring(a)[0];
+    network.set_position(a, network.position(a) * 0.5F + vcg::Point3f(0, 0, 0.12F));
+    network.set_position(b, network.position(b) * 0.5F - vcg::Point3f(0, 0, 0.12F));
+    ASSERT_FALSE(cut_faces(network).empty());
+    EXPECT_TRUE(smoothed_out(network, 1).empty());
+    EXPECT_TRUE(cut_faces(network).empty());
+}
+
 TEST(Untangle, AddsNoCrossingsWhereSmoothingFails) {
     for (const double noise : {0.6, 1.5}) {
         Network network = crumpled_sphere(noise);

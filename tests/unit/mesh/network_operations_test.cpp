@@ -204,6 +204,26 @@ TEST(Network, EveryFlipIsExactOrRefused) {
     EXPECT_GT(tally.refused, 1000);
 }
 
+// A notch is filled by one face: the boundary gets one edge less, the topology stays.
+TEST(Network, EveryFilledNotchIsExactOrRefused) {
+    Tally tally;
+    for (const Start& start : starts()) {
+        SCOPED_TRACE(start.name);
+        const Network before = network_of(start.shape);
+        for (const VertexId v : before.vertices()) {
+            const Ring& ring = before.ring(v);
+            std::vector<Triangle> expected = before.faces();
+            if (ring.open != 0) expected.push_back({v, ring[ring.valence - 1], ring[0]});
+            const bool legal = ring.open != 0 && ring.valence > 2 &&
+                               acceptable(expected, census(before.faces()), before.vertex_count());
+            ASSERT_EQ(before.can_fill_notch(v), legal) << v;
+            attempt(before, legal, canonical(expected), tally, [&](Network& net) { net.fill_notch(v); });
+        }
+    }
+    EXPECT_GT(tally.done, 20);
+    EXPECT_GT(tally.refused, 20);
+}
+
 TEST(Network, OperationsOnASphereKeepItsVolume) {
     const Network before = network_of(shapes::icosphere(2));
     const double volume = enclosed_volume(before);

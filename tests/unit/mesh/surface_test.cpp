@@ -202,5 +202,27 @@ TEST(FaceWalk, NeverEndsFurtherThanItBegan) {
     }
 }
 
+TEST(Surface, KnowsItsBoundaryEdges) {
+    EXPECT_FALSE(Surface(referee::network_of(shapes::icosphere(1))).has_boundary());
+    const Network network = referee::network_of(shapes::grid(4, 3));
+    const Surface surface(network);
+    int edges = 0;
+    for (int f = 0; f < surface.face_count(); ++f)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const VertexId a = surface.faces[f][k];
+            const VertexId b = surface.faces[f][(k + 1) % 3];
+            const bool expected = normal_beyond(surface, a, b).isZero();
+            EXPECT_EQ(surface.on_boundary(f, k), expected);
+            edges += expected ? 1 : 0;
+            const Foot middle =
+                foot_on_triangle((surface.positions[a] + surface.positions[b]) / 2, surface.corner(f, 0),
+                                 surface.corner(f, 1), surface.corner(f, 2));
+            Foot exact = middle;
+            exact.weights[(k + 2) % 3] = 0;
+            EXPECT_EQ(is_beyond_boundary(surface, {f, exact}), expected);
+        }
+    EXPECT_EQ(edges, network.edge_count() - (3 * surface.face_count() - network.edge_count()));
+}
+
 }  // namespace
 }  // namespace neuralmesh

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The boundary in the fit: where the points end, notches, and whole fits of sheets and half spheres.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tests/unit/fit/fit_scene.h"
+#include "tests/unit/support/targets.h"
+#include "vcg_core/fit/boundary_targets.h"
+#include "vcg_core/fit/fit.h"
+#include "vcg_core/fit/notches.h"
+
+namespace neuralmesh {
+namespace {
+
+/// A flat grid of 8 x 8 unit squares around the origin, z = 0.
+shapes::Shape sheet() {
+    shapes::Shape shape = shapes::grid(9, 9);
+    vcg::Point3d low = shape.positions.front();
+    vcg::Point3d high = low;
+    for (const vcg::Point3d& p : shape.positions)
+        for (int k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], p[k]);
+            high[k] = std::max(high[k], p[k]);
+        }
+    for (vcg::Point3d& p : shape.positions) p = (p - (low + high) / 2) * (8 / (high[0] - low[0]));
+    return shape;
+}
+
+/// Points spread evenly over a square of that half width.
+shapes::Cloud square(int count, double half) {
+    Random random(5);
+    shapes::Cloud cloud;
+    for (int i = 0; i < count; ++i)
+        cloud.emplace_back(half * shapes::signed_unit(random), half * shapes::signed_unit(random), 0);
+    return cloud;
+}
+
+struct Boundary {
+    double length = 0;
+    double mean_distance = 0;  ///< of its vertices
+    double most = 0;           ///< largest distance
+};
+
+/// \p distance(p): from the true boundary.
+template <class Distance>
+Boundary boundary_of(const Network& network, const Distance& distance) {
+    Boundary result;
+    int count = 0;
+    for (const VertexId v : network.vertices()) {
+        if (network.ring(v).open == 0) continue;
+        const vcg::Point3d p = vcg::Point3d::Construct(network.position(v));
+        result.length += (vcg::Point3d::Construct(network.position(network.ring(v)[0])) - p).Norm();
+        result.mean_distance += distance(p);
+        result.most = std::max(result.most, distance(p));
+        ++count;
+    }
+    result.mean_distance /= std::max(count, 1);
+    return result;
+}
+
+class TargetsOfASheet : public testing::TestWithParam<double> {};
+
+// The sheet is 8 wide, the points reach less or more far.
+TEST_P(TargetsOfASheet, LieWhereThePointsEnd) {
+    const double half = GetParam();
+    const FitScene scene(referee::network_of(sheet()), square(20000, half));
+    const std::vector<BoundaryTarget> targets =
+        find_boundary_targets(scene.network, scene.surface, scene.points);
+    EXPECT_EQ(targets.size(), 32U);
+    double sum = 0;
+    int count = 0;
+    for (const BoundaryTarget& target : targets) {
+        EXPECT_EQ(target.parts, BoundaryTarget::kMostParts);
+        EXPECT_EQ(target.weight, 1);
+        for (int i = 0; i < target.parts; ++i) {
+            const Vector3& a = scene.surface.positions[target.a];
+            const Vector3& b = scene.surface.positions[target.b];
+            const Vector3 at = (1 - target.share(i)) * a + target.share(i) * b;
+            // At the corners the points of the other side may be missing.
+            if (std::min(std::abs(at[0]), std::abs(at[1])) > 3) continue;
+            EXPECT_GT(target.outward.dot(at), 0);
+            EXPECT_NEAR(target.offset(i), half - 4, 0.12);
+            sum += static_cast<double>(target.offset(i));
+            ++count;
+        }
+    }
+    EXPECT_NEAR(sum / count, half - 4, 0.015);  // a strip of that width holds .8 points in front of a part
+}
+
+INSTANTIATE_TEST_SUITE_P(Reaching, TargetsOfASheet, testing::Values(3.7, 3.9, 4.0, 4.1, 4.3));
+
+TEST(BoundaryTargets, StopAtAGap) {
+    shapes::Cloud cloud = square(20000, 3.8);
+    for (int i = 0; i < 20; ++i) cloud.emplace_back(4.5, 0.05 * i, 0);  // outliers beyond
+    const FitScene scene(referee::network_of(sheet()), cloud);
+    for (const BoundaryTarget& target : find_boundary_targets(scene.network, scene.surface, scene.points))
+        for (int i = 0; i < target.parts; ++i) EXPECT_LT(target.offset(i), 0);
+}
+
+TEST(BoundaryTargets, AreNoneOnClosedSurfaces) {
+    const FitScene scene(referee::network_of(shapes::icosphere(2)), shapes::sphere_cloud(2000));
+    EXPECT_TRUE(find_boundary_targets(scene.network, scene.surface, scene.points).empty());
+    EXPECT_TRUE(find_notches(scene.network, scene.surface, scene.points).empty());
+}
+
+// A face at the boundary is missing.
+TEST(Notches, AreFilledWhereTheyHoldPoints) {
+    shapes::Shape shape = sheet();
+    const Network whole = referee::network_of(shape);
+    // A face with a boundary edge and an inner vertex opposite.
+    const auto removed = std::find_if(shape.faces.begin(), shape.faces.end(), [&](const Triangle& f) {
+        int open = 0;
+        for (VertexId v : f) open += whole.ring(v).open;
+        const Ring& a = whole.ring(f[0]);
+        const Ring& b = whole.ring(f[1]);
+        const Ring& c = whole.ring(f[2]);
+        return open == 2 && a.valence > 3 && b.valence > 3 && c.valence > 3;
+    });
+    ASSERT_NE(removed, shape.faces.end());
+    const Triangle face = *removed;
+    shape.faces.erase(removed);
+    const Network notched = referee::network_of(shape);
+    const FitScene full(notched, square(20000, 4));
+    const std::vector<VertexId> notches = find_notches(full.network, full.surface, full.points);
+    ASSERT_EQ(notches.size(), 1U);
+    EXPECT_NE(std::find(face.begin(), face.end(), notches[0]), face.end());
+    Network network = notched;
+    PerVertex<char> barred(network.slot_count(), 0);
+    EXPECT_EQ(fill_notches(network, notches, barred), 1);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(referee::canonical(network.faces()), referee::canonical(whole.faces()));
+    network = notched;
+    barred[face[0]] = 1;
+    EXPECT_EQ(fill_notches(network, notches, barred), 0);
+
+    // Points only away from the notch: it stays.
+    shapes::Cloud rest;
+    const vcg::Point3f p = notched.position(notches[0]);
+    for (const vcg::Point3d& q : square(20000, 4))
+        if ((q - vcg::Point3d::Construct(p)).Norm() > 1.1) rest.push_back(q);
+    const FitScene empty(notched, rest);
+    EXPECT_TRUE(find_notches(empty.network, empty.surface, empty.points).empty());
+}
+
+void fit(Network& network, const shapes::Cloud& cloud) {
+    NoProgress progress;
+    const TargetSpace target = targets::target_of(cloud);
+    // The core's frame of the cloud.
+    for (const VertexId v : network.vertices())
+        network.set_position(v, target.frame().inside(vcg::Point3d::Construct(network.position(v))));
+    fit_to_points(network, target, FitOptions(), 1, 3, progress);
+    EXPECT_EQ(network.validate(), "");
+    for (const VertexId v : network.vertices())
+        network.set_position(v, vcg::Point3f::Construct(target.frame().outside(network.position(v))));
+}
+
+// The mesh begins too small or too large, and rough.
+TEST(FitOfABoundary, BringsASheetToTheEndOfItsPoints) {
+    Random random(9);
+    for (const double size : {0.8, 1.08, 0.8, 1.08, 0.8, 1.08}) {
+        shapes::Shape shape = sheet();
+        for (vcg::Point3d& p : shape.positions) p = p * size + shapes::in_ball(random) * 0.15;
+        Network network = referee::network_of(shape);
+        fit(network, square(20000, 4));
+        const Boundary boundary = boundary_of(network, [](const vcg::Point3d& p) {
+            return std::abs(std::max(std::abs(p[0]), std::abs(p[1])) - 4);
+        });
+        EXPECT_NEAR(boundary.length, 32, 1) << size;
+        EXPECT_LT(boundary.mean_distance, 0.1) << size;  // of an edge; .32 at the start
+        EXPECT_LT(boundary.most, 0.5) << size;  // at corners
+    }
+}
+
+TEST(FitOfABoundary, BringsHalfASphereToTheEndOfItsPoints) {
+    shapes::Shape sphere = shapes::icosphere(3);
+    shapes::Shape half = sphere;
+    half.faces.clear();
+    half.positions.clear();
+    std::vector<VertexId> number(sphere.positions.size(), -1);
+    const auto at = [&](VertexId v) { return sphere.positions[static_cast<std::size_t>(v)]; };
+    for (const Triangle& f : sphere.faces) {
+        if (std::min({at(f[0])[2], at(f[1])[2], at(f[2])[2]}) < -0.01) continue;
+        Triangle kept{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            VertexId& n = number[static_cast<std::size_t>(f[k])];
+            if (n < 0) {
+                n = static_cast<VertexId>(half.positions.size());
+                half.positions.push_back(at(f[k]));
+            }
+            kept[k] = n;
+        }
+        half.faces.push_back(kept);
+    }
+    shapes::Cloud cloud;
+    for (const vcg::Point3d& p : shapes::sphere_cloud(40000))
+        if (p[2] > -0.1) cloud.push_back(p / p.Norm());
+    Network network = referee::network_of(half, 0.03);
+    fit(network, cloud);
+    const Boundary boundary =
+        boundary_of(network, [](const vcg::Point3d& p) { return std::abs(p[2] + 0.1); });
+    EXPECT_NEAR(boundary.length, 2 * shapes::kPi * std::sqrt(0.99), 0.12);
+    EXPECT_LT(boundary.mean_distance, 0.01);
+    EXPECT_LT(boundary.most, 0.07);  // half an edge
+}
+
+}  // namespace
+}  // namespace neuralmesh
