@@ -14,8 +14,10 @@ namespace neuralmesh {
 
 #if __has_include(<common/parameters/rich_parameter/rich_percentage.h>)
 using RichLength = RichPercentage;
+using Length = MESHLAB_SCALAR;
 #else
 using RichLength = RichAbsPerc;  // its name until 2022.02
+using Length = float;
 #endif
 
 /// The diagonal of the current layer, of which lengths are shown as percentages; 1 if it has
@@ -50,8 +52,8 @@ void add_parameter(RichParameterList& list, const SettingInfo& info, double diag
             list.addParam(RichFloat(id, static_cast<float>(value), label, help, extra...));
             break;
         case SettingInfo::Kind::length:
-            list.addParam(RichLength(id, static_cast<MESHLAB_SCALAR>(value / 100 * diagonal), 0,
-                                     static_cast<MESHLAB_SCALAR>(diagonal), label, help, extra...));
+            list.addParam(RichLength(id, static_cast<Length>(value / 100 * diagonal), 0,
+                                     static_cast<Length>(diagonal), label, help, extra...));
             break;
         case SettingInfo::Kind::choice: {
             QStringList names;

@@ -20,9 +20,13 @@ namespace {
 /// tests/experiments/accuracy/scan_table.py.
 constexpr std::size_t kPointsPerCarried = 2;
 
+/// The fit inserts up to this many times the vertices that it finds. A number that is a slip of the pen, 20
+/// million from 500 points, would take all memory at once; learning takes its time and can be cancelled.
+constexpr int kMostPerCarried = 64;
+
 /// The vertices that learning and fit place by the points; the fit inserts the others, which boundaries would
-/// not let it do in any number. All, unless the surface is closed, the fit
-/// may redistribute vertices and only their number ends growth, or where there are too few points for a fit.
+/// not let it do in any number. All, unless the surface is closed, the fit may redistribute vertices and only
+/// their number ends growth, or where there are too few points for a fit.
 int carried_vertices(const LearningTask& task, const Settings& settings) {
     constexpr std::size_t kFewestPoints = 256;
     const int wanted = settings.target_vertices;
@@ -32,6 +36,7 @@ int carried_vertices(const LearningTask& task, const Settings& settings) {
         task.target().positions().size() < kFewestPoints)
         return wanted;
     const std::size_t carried = task.target().positions().size() / kPointsPerCarried;
+    if (static_cast<std::size_t>(wanted) / kMostPerCarried > carried) return wanted;
     return std::max(task.network.vertex_count(),
                     static_cast<int>(std::min(carried, static_cast<std::size_t>(wanted))));
 }

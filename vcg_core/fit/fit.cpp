@@ -174,13 +174,14 @@ double learned_share_of(const Network& network, const TargetSpace& target) {
 void refine_and_fit(Network& network, const TargetSpace& target, const FitOptions& options, ThreadTeam& team,
                     std::uint64_t seed, Progress& progress, FitReport& report) {
     const double learned_share = learned_share_of(network, target);
-    report.inserted = refine(network, options.refine_to, report.sources);
+    PartOf inserting(progress, 0, 0.1);
+    report.inserted = refine(network, options.refine_to, report.sources, inserting);
     PointChoice points = points_for(network.vertex_count(), target, options, seed);
     if (report.inserted == 0 || points.fitted.points.size() < kMinPoints) return;
     Fitter fitter(network, std::move(points), team);
     if (options.expect_strays) fitter.expect_strays();
-    PartOf untangling(progress, 0, 0.1);
-    PartOf fitting(progress, 0.1, 1);
+    PartOf untangling(progress, 0.1, 0.2);
+    PartOf fitting(progress, 0.2, 1);
     if (!fitter.untangle_surface(untangling)) return;
     const Network before = network;
     FitOptions of_refined = options;

@@ -67,9 +67,11 @@ std::vector<EdgeSplit> splits_of_edges(const Network& network, float at_least) {
 
 }  // namespace
 
-int refine(Network& network, int vertices, PerVertex<VertexId>& sources) {
+int refine(Network& network, int vertices, PerVertex<VertexId>& sources, Progress& progress) {
     const int before = network.vertex_count();
     while (network.vertex_count() < vertices) {
+        const double done_share = static_cast<double>(network.vertex_count()) / vertices;
+        if (!progress(done_share, "Fitting to the points: more vertices")) break;
         const int missing = vertices - network.vertex_count();
         std::vector<VertexMoves::Insertion> done = insert(network, splits_of_edges(network, kLong), missing);
         // The ends of the longest edges may have as many neighbours as a vertex can.

@@ -4,6 +4,7 @@
 // More vertices than the points carry: the longest edges are split.
 #pragma once
 
+#include "vcg_core/base/progress.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
@@ -11,7 +12,8 @@ namespace neuralmesh {
 /// Splits inner edges of \p network, the longest first, until it has \p vertices vertices or no edge can be
 /// split. The new vertices curve the surface by the normals at the ends of the edges. \p sources, of
 /// own_sources() and FitReport, gets an entry for each new vertex: that of an end of its edge. O(n log n) for
-/// every doubling of the vertices. \return the number of vertices inserted
-int refine(Network& network, int vertices, PerVertex<VertexId>& sources);
+/// every doubling of the vertices. \p progress is asked before each pass. \return the number of vertices
+/// inserted
+int refine(Network& network, int vertices, PerVertex<VertexId>& sources, Progress& progress);
 
 }  // namespace neuralmesh

@@ -20,7 +20,8 @@ void expect_refined(const shapes::Shape& shape, int vertices) {
     const Network before = referee::network_of(shape);
     Network network = before;
     PerVertex<VertexId> sources = own_sources(network);
-    EXPECT_EQ(refine(network, vertices, sources), vertices - before.vertex_count());
+    NoProgress progress;
+    EXPECT_EQ(refine(network, vertices, sources, progress), vertices - before.vertex_count());
     EXPECT_EQ(network.vertex_count(), vertices);
     EXPECT_EQ(network.validate(), "");
     EXPECT_EQ(network.genus(), before.genus());
@@ -43,14 +44,30 @@ TEST(Refine, ReachesTheNumberAndKeepsTopologyAndVertices) {
 TEST(Refine, LeavesEnoughVerticesAlone) {
     Network network = referee::network_of(shapes::icosphere(2));
     PerVertex<VertexId> sources = own_sources(network);
-    EXPECT_EQ(refine(network, 100, sources), 0);
+    NoProgress progress;
+    EXPECT_EQ(refine(network, 100, sources, progress), 0);
     EXPECT_EQ(network.vertex_count(), 162);
+}
+
+TEST(Refine, EndsWhenProgressAsksToStop) {
+    class Once : public Progress {
+    public:
+        bool operator()(double /*fraction*/, const char* /*text*/) override { return calls++ == 0; }
+        int calls = 0;
+    } once;
+    Network network = referee::network_of(shapes::icosphere(2));
+    PerVertex<VertexId> sources = own_sources(network);
+    EXPECT_GT(refine(network, 5000, sources, once), 0);
+    EXPECT_EQ(once.calls, 2);
+    EXPECT_LT(network.vertex_count(), 5000);
+    EXPECT_EQ(network.validate(), "");
 }
 
 TEST(Refine, CurvesTheSurface) {
     Network network = referee::network_of(shapes::icosphere(1));
     PerVertex<VertexId> sources = own_sources(network);
-    refine(network, 500, sources);
+    NoProgress progress;
+    refine(network, 500, sources, progress);
     for (const VertexId v : network.vertices())
         EXPECT_NEAR(network.position(v).Norm(), 1, 0.02) << "middles of edges are up to .05 inside";
 }
@@ -58,7 +75,8 @@ TEST(Refine, CurvesTheSurface) {
 TEST(Refine, EvensTheEdges) {
     Network network = referee::network_of(shapes::icosphere(1));
     PerVertex<VertexId> sources = own_sources(network);
-    refine(network, 1000, sources);
+    NoProgress progress;
+    refine(network, 1000, sources, progress);
     float shortest = 1;
     float longest = 0;
     for (const VertexId v : network.vertices())
