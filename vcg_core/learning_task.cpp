@@ -78,12 +78,25 @@ bool leave_out(LearningTask& task, const std::vector<std::uint8_t>& out) {
     return true;
 }
 
-void remove_outliers(LearningTask& task, int threads) {
-    const std::vector<vcg::Point3f>& points = task.target().positions();
-    const std::vector<std::uint8_t> out = find_outliers(points, threads);
+/// The survey of the points to learn, made anew after some were left out.
+class Survey {
+public:
+    explicit Survey(int threads) : threads_(threads) {}
+    const CloudSurvey& of(const std::vector<vcg::Point3f>& points) {
+        if (!survey_ || survey_->cloud.size() != points.size()) survey_.emplace(points, threads_);
+        return *survey_;
+    }
+
+private:
+    int threads_;
+    std::optional<CloudSurvey> survey_;
+};
+
+void remove_outliers(LearningTask& task, Survey& survey, int threads) {
+    const std::vector<std::uint8_t> out = find_outliers(survey.of(task.target().positions()), threads);
     if (out.empty()) return;
     const auto count = static_cast<std::size_t>(std::count(out.begin(), out.end(), 1));
-    const std::size_t all = points.size();
+    const std::size_t all = out.size();
     std::string sentence = share_of(count, all);
     if (!leave_out(task, out)) {
         sentence += " look like outliers, and the others span no surface: all points were learned.";
@@ -98,8 +111,8 @@ void remove_outliers(LearningTask& task, int threads) {
 }
 
 /// Gives the points weights by which signals are even over the surface.
-void weigh_points(LearningTask& task, int threads) {
-    std::optional<TargetSpace> even = task.target().evenly(threads);
+void weigh_points(LearningTask& task, Survey& survey) {
+    std::optional<TargetSpace> even = task.target().evenly(survey.of(task.target().positions()));
     if (even) task.cleaned = std::move(even);
 }
 
@@ -224,10 +237,11 @@ void begin(LearningTask& task, const Settings& settings, Progress& progress) {
 LearningTask prepare(const TargetSpace& given, const Settings& settings, Progress& progress) {
     LearningTask task(given);
     remove_repeated_points(task);
-    if (settings.remove_outliers && !given.has_faces()) remove_outliers(task, settings.threads);
+    Survey survey(settings.threads);
+    if (settings.remove_outliers && !given.has_faces()) remove_outliers(task, survey, settings.threads);
     begin(task, settings, progress);
-    if (settings.even_sampling && settings.utility_counter != kSignalCount)
-        weigh_points(task, settings.threads);
+    if (settings.even_sampling && settings.utility_counter != kSignalCount && !given.has_faces())
+        weigh_points(task, survey);
     return task;
 }
 

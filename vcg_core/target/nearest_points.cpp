@@ -93,25 +93,22 @@ void NearestPoints::build_boxes() {
 }
 
 void NearestPoints::nearest(Place place, int k, std::vector<Neighbour>& result) const {
+    const auto wanted = std::min(static_cast<std::size_t>(k), static_cast<std::size_t>(size()) - 1);
     result.clear();
-    const auto wanted = std::min(static_cast<std::size_t>(k), keys_.size() - 1);
     if (wanted == 0) return;
+    result.reserve(wanted + 1);
+    float bound = std::numeric_limits<float>::infinity();
     const auto add = [&](Place p, float d) {
         const Neighbour candidate{d, p};
-        if (p == place || (result.size() == wanted && !(candidate < result.front()))) return;
-        if (result.size() == wanted) {
-            std::pop_heap(result.begin(), result.end());
-            result.pop_back();
-        }
+        if (d > bound || p == place || (result.size() == wanted && !(candidate < result.back()))) return;
         result.push_back(candidate);
-        std::push_heap(result.begin(), result.end());
+        auto at = result.end() - 1;
+        for (; at != result.begin() && candidate < *(at - 1); --at) *at = *(at - 1);
+        *at = candidate;
+        if (result.size() > wanted) result.pop_back();
+        if (result.size() == wanted) bound = result.back().squared_distance;
     };
-    const auto bound = [&] {
-        return result.size() < wanted ? std::numeric_limits<float>::infinity()
-                                      : result.front().squared_distance;
-    };
-    visit_near(point(place), add, bound);
-    std::sort_heap(result.begin(), result.end());
+    visit_near(point(place), add, [&] { return bound; });
 }
 
 }  // namespace neuralmesh

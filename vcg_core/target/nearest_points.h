@@ -42,7 +42,7 @@ public:
     const vcg::Point3f& point(Place place) const { return points_[index(place)]; }
 
     /// The \p k points nearest to that at \p place, itself excluded, nearest first. Fewer if there are not as
-    /// many. O(k log k + log n) for most points. \p result is overwritten.
+    /// many. O(k^2 + log n) for most points. \p result is overwritten.
     void nearest(Place place, int k, std::vector<Neighbour>& result) const;
 
     /// Is a point that \p counts (called with its place) within \p radius of that at \p place?
@@ -78,9 +78,8 @@ private:
 inline float squared_distance(const vcg::Box3f& box, const vcg::Point3f& p) {
     float sum = 0;
     for (int k = 0; k < 3; ++k) {
-        const float below = box.min[k] - p[k], above = p[k] - box.max[k];
-        const float d = below > above ? below : above;
-        if (d > 0) sum += d * d;
+        const float d = std::max(std::max(box.min[k] - p[k], p[k] - box.max[k]), 0.0F);  // without branches
+        sum += d * d;
     }
     return sum;
 }

@@ -11,7 +11,6 @@
 #include "vcg_core/base/logarithm.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/target/isolated_groups.h"
-#include "vcg_core/target/nearest_points.h"
 
 namespace neuralmesh {
 namespace {
@@ -19,9 +18,9 @@ namespace {
 using Place = NearestPoints::Place;
 using Neighbours = std::vector<NearestPoints::Neighbour>;
 
-constexpr int kSpacingNeighbour = 10;  ///< a point's spacing is the distance to this neighbour
+constexpr int kSpacingNeighbour = CloudSurvey::kNeighbour;  ///< the distance to it is a point's spacing
 constexpr int kWide = 48, kNarrow = 16;
-constexpr Place kSampleStride = 32;  ///< one of so many consecutive points tells the usual spacing
+constexpr Place kSampleStride = CloudSurvey::kRun;  ///< one of so many points tells the usual spacing
 constexpr std::size_t kSamplesAround = 5;
 constexpr float kSparse = 2;   ///< suspects are sparser than usual by this factor
 constexpr Place kWindow = 64;  ///< places to each side that are looked at before a search
@@ -37,7 +36,8 @@ float median(std::vector<float> values) {
 /// The places of suspects and what is known of them.
 class Suspects {
 public:
-    Suspects(const NearestPoints& cloud, ThreadTeam& team) : cloud_(cloud), team_(team) {
+    Suspects(const CloudSurvey& survey, ThreadTeam& team) : cloud_(survey.cloud), team_(team) {
+        note_spacings(survey);
         find();
         if (suspects_.empty()) return;
         gather_neighbours();
@@ -64,9 +64,9 @@ private:
     static constexpr double kFew = 0.002;  ///< of the points
     static constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
 
+    void note_spacings(const CloudSurvey& survey);
     void find();
     std::vector<Place> lifted() const;
-    std::vector<float> sampled_spacings(float& of_all) const;
     bool has_close_neighbours(Place place, float radius) const;
     void gather_neighbours();
     void measure();
@@ -107,26 +107,18 @@ private:
     std::vector<double> evidence_;
 };
 
-/// The median spacing around each of the samples; \p of_all gets that of all samples.
-std::vector<float> Suspects::sampled_spacings(float& of_all) const {
-    std::vector<float> samples((cloud_.size() + kSampleStride - 1) / kSampleStride);
-    for_chunks(samples.size(), kChunk / kSampleStride, team_,
-               [&](std::size_t, std::size_t begin, std::size_t end) {
-                   Neighbours scratch;
-                   for (std::size_t i = begin; i < end; ++i) {
-                       const std::size_t place = i * kSampleStride + kSampleStride / 2;
-                       samples[i] = spacing(std::min(static_cast<Place>(place), cloud_.size() - 1), scratch);
-                   }
-               });
-    of_all = median(samples);
-    std::vector<float> around(samples.size());
+/// The median spacing of the cloud, and that around each of its samples.
+void Suspects::note_spacings(const CloudSurvey& survey) {
+    std::vector<float> samples;
+    for (const float squared : survey.squared_spacings) samples.push_back(std::sqrt(squared));
+    of_all_ = median(samples);
+    around_.resize(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const std::size_t begin = i - std::min(i, kSamplesAround / 2);
         const std::size_t end = std::min(samples.size(), i + kSamplesAround / 2 + 1);
         const auto at = samples.begin();
-        around[i] = median({at + static_cast<std::ptrdiff_t>(begin), at + static_cast<std::ptrdiff_t>(end)});
+        around_[i] = median({at + static_cast<std::ptrdiff_t>(begin), at + static_cast<std::ptrdiff_t>(end)});
     }
-    return around;
 }
 
 /// Are there kSpacingNeighbour points within \p radius, among those of nearby places? True for nearly all
@@ -145,20 +137,17 @@ bool Suspects::has_close_neighbours(Place place, float radius) const {
 }
 
 void Suspects::find() {
-    float of_all = 0;
-    around_ = sampled_spacings(of_all);
     std::vector<std::vector<Suspect>> found((cloud_.size() + kChunk - 1) / kChunk);
     for_chunks(cloud_.size(), kChunk, team_, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         Neighbours scratch;
         for (std::size_t i = begin; i < end; ++i) {
             const auto place = static_cast<Place>(i);
-            const float radius = kSparse * std::min(of_all, around_[place / kSampleStride]);
+            const float radius = kSparse * std::min(of_all_, around_[place / kSampleStride]);
             if (has_close_neighbours(place, radius)) continue;
             const float own = spacing(place, scratch);
             if (own > radius) found[chunk].push_back({place, own});
         }
     });
-    of_all_ = of_all;
     for (const std::vector<Suspect>& part : found)
         suspects_.insert(suspects_.end(), part.begin(), part.end());
 }
@@ -298,15 +287,15 @@ double Suspects::threshold() const {
 
 }  // namespace
 
-std::vector<std::uint8_t> find_outliers(const std::vector<vcg::Point3f>& points, int threads) {
-    if (points.size() < kFewestForOutliers) return {};
+std::vector<std::uint8_t> find_outliers(const CloudSurvey& survey, int threads) {
+    const NearestPoints& cloud = survey.cloud;
+    if (cloud.size() < kFewestForOutliers) return {};
     ThreadTeam team(thread_count(threads));
-    const NearestPoints cloud(points);
-    std::vector<std::uint8_t> out(points.size());
-    Suspects(cloud, team).mark(out);
+    std::vector<std::uint8_t> out(cloud.size());
+    Suspects(survey, team).mark(out);
     mark_isolated_clumps(cloud, out);
     if (std::find(out.begin(), out.end(), 1) == out.end()) return {};
-    std::vector<std::uint8_t> result(points.size());
+    std::vector<std::uint8_t> result(cloud.size());
     for (Place p = 0; p < cloud.size(); ++p) result[cloud.index(p)] = out[p];
     return result;
 }

@@ -7,16 +7,13 @@
 #include <numeric>
 
 #include "vcg_core/base/median.h"
-#include "vcg_core/base/parallel_for.h"
-#include "vcg_core/target/nearest_points.h"
 
 namespace neuralmesh {
 namespace {
 
 constexpr std::size_t kFewestPoints = 1024;
-/// The area of a point is the squared distance to this neighbour, up to a factor.
-constexpr int kNeighbour = 10;
-/// It varies by a third by chance. The median of so many runs takes out most of that, and single outliers.
+/// The area of a point is its squared spacing, up to a factor. The median of so many runs takes out most of
+/// what it varies by chance, and single outliers.
 constexpr std::size_t kSmoothed = 5;
 /// A cloud is uneven if a fifth of its surface has more than kUneven times the area per point that a tenth of
 /// its points have. Even random clouds of the models of tests/experiments/accuracy, 2,000 to 100,000 points
@@ -27,22 +24,6 @@ constexpr float kUneven = 2.5F;
 /// Bound on the ratio of an area to the median: the few points of the far end of a room must not draw all
 /// signals. Room scans have 1000:1 and more between the percentiles.
 constexpr float kMostRatio = 100;
-constexpr std::size_t kChunk = 32;
-
-/// The squared distance from the middle point of each run to its kNeighbour-th neighbour.
-std::vector<float> sampled_areas(const NearestPoints& cloud, ThreadTeam& team) {
-    std::vector<float> areas((cloud.size() + PointAreas::kRun - 1) / PointAreas::kRun);
-    for_chunks(areas.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
-        std::vector<NearestPoints::Neighbour> near;
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t place =
-                std::min<std::size_t>(i * PointAreas::kRun + PointAreas::kRun / 2, cloud.size() - 1);
-            cloud.nearest(static_cast<NearestPoints::Place>(place), kNeighbour, near);
-            areas[i] = near.back().squared_distance;
-        }
-    });
-    return areas;
-}
 
 /// The median of each value and those before and after it.
 std::vector<float> smoothed(const std::vector<float>& values) {
@@ -90,16 +71,15 @@ void normalise(std::vector<float>& of_run, float median, std::size_t points) {
 
 }  // namespace
 
-std::optional<PointAreas> areas_if_uneven(const std::vector<vcg::Point3f>& points, int threads) {
-    if (points.size() < kFewestPoints) return std::nullopt;
-    ThreadTeam team(thread_count(threads));
-    const NearestPoints cloud(points);
+std::optional<PointAreas> areas_if_uneven(const CloudSurvey& survey) {
+    const NearestPoints& cloud = survey.cloud;
+    if (cloud.size() < kFewestPoints) return std::nullopt;
     PointAreas result;
-    result.of_run = smoothed(sampled_areas(cloud, team));
+    result.of_run = smoothed(survey.squared_spacings);
     const Spread spread = spread_of(result.of_run);
     if (!(spread.high > kUneven * spread.low) || !(spread.median > 0)) return std::nullopt;
-    normalise(result.of_run, spread.median, points.size());
-    result.points.reserve(points.size());
+    normalise(result.of_run, spread.median, cloud.size());
+    result.points.reserve(cloud.size());
     for (NearestPoints::Place p = 0; p < cloud.size(); ++p) result.points.push_back(cloud.point(p));
     return result;
 }

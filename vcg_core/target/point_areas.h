@@ -10,20 +10,21 @@
 #include <optional>
 #include <vector>
 
+#include "vcg_core/target/cloud_survey.h"
+
 namespace neuralmesh {
 
 /// A cloud in an order in which points near in space mostly come near, and the area that each stands for. One
 /// area holds for a run of kRun consecutive points: the squared spacing there.
 struct PointAreas {
-    static constexpr std::size_t kRun = 32;
+    static constexpr std::size_t kRun = CloudSurvey::kRun;
 
     std::vector<vcg::Point3f> points;
     std::vector<float> of_run;  ///< area per point; 1 in the mean over the points
 };
 
-/// The areas of \p points; nothing if their density is even but for chance, or if they are too few to tell.
-/// The result does not depend on \p threads (0: all cores). O(n log n): 0.02 s for 100,000 points on one
-/// thread. Memory: 24 bytes per point.
-std::optional<PointAreas> areas_if_uneven(const std::vector<vcg::Point3f>& points, int threads);
+/// The areas of the points of \p survey; nothing if their density is even but for chance, or if they are too
+/// few to tell. O(n).
+std::optional<PointAreas> areas_if_uneven(const CloudSurvey& survey);
 
 }  // namespace neuralmesh

@@ -165,9 +165,8 @@ std::optional<TargetSpace> TargetSpace::each_place_once() const {
     return once;
 }
 
-std::optional<TargetSpace> TargetSpace::evenly(int threads) const {
-    if (has_faces()) return std::nullopt;
-    std::optional<PointAreas> areas = areas_if_uneven(positions_, threads);
+std::optional<TargetSpace> TargetSpace::evenly(const CloudSurvey& survey) const {
+    std::optional<PointAreas> areas = areas_if_uneven(survey);
     if (!areas) return std::nullopt;
     TargetSpace even;
     even.frame_ = frame_;

@@ -63,9 +63,9 @@ public:
     std::optional<TargetSpace> each_place_once() const;
 
     /// The cloud with weights by which signals are even over the surface, in another order and the same
-    /// frame, if its density is uneven: see point_areas.h. Nothing otherwise, or for triangles. Does not
-    /// depend on \p threads (0: all cores). O(points log points).
-    std::optional<TargetSpace> evenly(int threads) const;
+    /// frame, if its density is uneven: see point_areas.h. Nothing otherwise. O(points). \pre \p survey is
+    /// that of positions(), and !has_faces()
+    std::optional<TargetSpace> evenly(const CloudSurvey& survey) const;
     bool is_weighted() const { return !weights_.empty(); }
     /// The area that point \p i stands for; 1 in the mean. \pre !has_faces()
     float weight(std::size_t i) const { return weights_.empty() ? 1.0F : weights_[i / PointAreas::kRun]; }

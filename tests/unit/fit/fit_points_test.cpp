@@ -63,7 +63,8 @@ std::size_t count_of(const PointChoice& choice) {
 
 // The upper half of the sphere has a fortieth of the points.
 TEST(ChoosePoints, WeighsTheHalvesOfAnUnevenSphereByArea) {
-    const auto target = soundness::target_of(shapes::uneven_sphere_cloud(20000, 40)).evenly(1);
+    const TargetSpace given = soundness::target_of(shapes::uneven_sphere_cloud(20000, 40));
+    const auto target = given.evenly(CloudSurvey(given.positions(), 1));
     ASSERT_TRUE(target.has_value());
     for (const std::size_t wanted : {30000, 20000, 5000, 800}) {
         Random random(1);
@@ -79,7 +80,8 @@ TEST(ChoosePoints, WeighsTheHalvesOfAnUnevenSphereByArea) {
 }
 
 TEST(ChoosePoints, TakesTheSparsePointsFirst) {
-    const auto target = soundness::target_of(shapes::uneven_sphere_cloud(20000, 40)).evenly(1);
+    const TargetSpace given = soundness::target_of(shapes::uneven_sphere_cloud(20000, 40));
+    const auto target = given.evenly(CloudSurvey(given.positions(), 1));
     ASSERT_TRUE(target.has_value());
     Random random(1);
     const PointChoice choice = choose_points(*target, 1000, random);

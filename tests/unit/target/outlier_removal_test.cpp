@@ -18,6 +18,10 @@ namespace {
 
 using Cloud = std::vector<vcg::Point3f>;
 
+std::vector<std::uint8_t> outliers_of(const Cloud& cloud, int threads) {
+    return find_outliers(CloudSurvey(cloud, threads), threads);
+}
+
 constexpr double kTau = 6.283185307179586;
 
 vcg::Point3f direction(Random& random) {
@@ -48,19 +52,19 @@ std::size_t count_of(const std::vector<std::uint8_t>& out, std::size_t begin, st
 std::size_t found_beside_a_sphere(const Cloud& more, Random& random) {
     Cloud cloud = sphere(20000, random);
     cloud.insert(cloud.end(), more.begin(), more.end());
-    const std::vector<std::uint8_t> out = find_outliers(cloud, 1);
+    const std::vector<std::uint8_t> out = outliers_of(cloud, 1);
     EXPECT_LE(count_of(out, 0, 20000), 20u) << "at most .1 % of the surface";
     return count_of(out, 20000, cloud.size());
 }
 
 TEST(OutlierRemoval, FindsNoneInCleanClouds) {
     Random random(1);
-    EXPECT_TRUE(find_outliers(sphere(20000, random), 1).empty());
-    EXPECT_TRUE(find_outliers(sphere(kFewestForOutliers, random), 1).empty());
-    EXPECT_TRUE(find_outliers({}, 1).empty());
+    EXPECT_TRUE(outliers_of(sphere(20000, random), 1).empty());
+    EXPECT_TRUE(outliers_of(sphere(kFewestForOutliers, random), 1).empty());
+    EXPECT_TRUE(outliers_of(Cloud(2), 1).empty());
     Cloud noisy = sphere(20000, random);
     for (vcg::Point3f& p : noisy) p *= 1 + 0.02F * (random.unit() + random.unit() - 1);
-    EXPECT_LE(count_of(find_outliers(noisy, 1), 0, noisy.size()), 20u) << "noise of several spacings";
+    EXPECT_LE(count_of(outliers_of(noisy, 1), 0, noisy.size()), 20u) << "noise of several spacings";
 }
 
 TEST(OutlierRemoval, FindsScatteredPointsFarFromTheSurface) {
@@ -83,7 +87,7 @@ TEST(OutlierRemoval, KeepsANoisySurfaceBesideManyOutliers) {
         p *= 1 + 0.02F * noise;  // standard deviation .0035, half a spacing
     }
     for (int i = 0; i < 1000; ++i) cloud.push_back(anywhere(random));
-    const std::vector<std::uint8_t> out = find_outliers(cloud, 1);
+    const std::vector<std::uint8_t> out = outliers_of(cloud, 1);
     EXPECT_LE(count_of(out, 0, 20000), 20u) << "at most .1 %";
     EXPECT_GE(count_of(out, 20000, cloud.size()), 800u);
 }
@@ -135,7 +139,7 @@ TEST(OutlierRemoval, KeepsAHalfThatIsAThousandTimesSparser) {
     int below = 0;
     for (const vcg::Point3f& p : sphere(400000, random))
         if (p[2] >= 0 || ++below % 1000 == 0) cloud.push_back(p);
-    const std::vector<std::uint8_t> out = find_outliers(cloud, 1);
+    const std::vector<std::uint8_t> out = outliers_of(cloud, 1);
     EXPECT_LE(count_of(out, 0, out.size()), 30u) << "of the 200 sparse points";
 }
 
@@ -150,7 +154,7 @@ TEST(OutlierRemoval, KeepsTheFarEndOfAFloorSeenFromOnePlace) {
             floor.emplace_back(static_cast<float>(r * std::cos(angle)),
                                static_cast<float>(r * std::sin(angle)), -0.01F);
         }
-    const std::vector<std::uint8_t> out = find_outliers(floor, 1);
+    const std::vector<std::uint8_t> out = outliers_of(floor, 1);
     EXPECT_LE(count_of(out, 0, out.size()), floor.size() / 1000);
 }
 
@@ -158,11 +162,11 @@ TEST(OutlierRemoval, DoesNotDependOnThreadsNorOnScale) {
     Random random(9);
     Cloud cloud = sphere(20000, random);
     for (int i = 0; i < 500; ++i) cloud.push_back(anywhere(random));
-    const std::vector<std::uint8_t> one = find_outliers(cloud, 1);
-    EXPECT_EQ(find_outliers(cloud, 2), one);
-    EXPECT_EQ(find_outliers(cloud, 7), one);
+    const std::vector<std::uint8_t> one = outliers_of(cloud, 1);
+    EXPECT_EQ(outliers_of(cloud, 2), one);
+    EXPECT_EQ(outliers_of(cloud, 7), one);
     for (vcg::Point3f& p : cloud) p *= 1024;  // exact
-    EXPECT_EQ(find_outliers(cloud, 1), one);
+    EXPECT_EQ(outliers_of(cloud, 1), one);
 }
 
 TEST(OutlierRemoval, OneFarPointDoesNotHideTheOthers) {
@@ -170,7 +174,7 @@ TEST(OutlierRemoval, OneFarPointDoesNotHideTheOthers) {
     Cloud cloud = sphere(20000, random);
     for (int i = 0; i < 100; ++i) cloud.push_back(direction(random) * (0.05F + 0.15F * random.unit()));
     cloud.emplace_back(1e5F, 0.0F, 0.0F);
-    const std::vector<std::uint8_t> out = find_outliers(cloud, 1);
+    const std::vector<std::uint8_t> out = outliers_of(cloud, 1);
     EXPECT_EQ(count_of(out, 0, 20000), 0u);
     EXPECT_EQ(count_of(out, 20000, cloud.size()), 101u);
 }
@@ -179,8 +183,8 @@ TEST(OutlierRemoval, CopesWithCoincidingPoints) {
     Random random(11);
     Cloud cloud = sphere(5000, random);
     for (int i = 0; i < 400; ++i) cloud.emplace_back(0.3F, 0.0F, 0.0F);
-    EXPECT_LE(count_of(find_outliers(cloud, 1), 0, cloud.size()), 5u);
-    EXPECT_TRUE(find_outliers(Cloud(1000, {1, 1, 1}), 1).empty());
+    EXPECT_LE(count_of(outliers_of(cloud, 1), 0, cloud.size()), 5u);
+    EXPECT_TRUE(outliers_of(Cloud(1000, {1, 1, 1}), 1).empty());
 }
 
 }  // namespace
