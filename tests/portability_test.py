@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Extensions of compilers, processors and systems are in two files only, where each has a portable branch."""
+"""Extensions of compilers, processors and systems are in two files only, where each has a portable branch. No result
+depends on the mathematics library."""
 
 import re
 import sys
@@ -22,6 +23,8 @@ EXTENSIONS = {
     "a call of POSIX": r"\b(madvise|mmap|dlsym|dlopen|sysconf|posix_memalign|pthread_\w+)\s*\(",
     "a type whose size depends on the system": r"\b(?<!long )long\b(?! (long|double)\b)|\bssize_t\b|\b__int128\b",
     "a macro that Windows does not define by default": r"\bM_(PI|E|SQRT2|LN2)\w*\b",
+    "a function whose last bit depends on the mathematics library":
+        r"\bstd::(sin|cos|tan|asin|acos|atan2?|sinh|cosh|tanh|exp2?|expm1|log|log2|log10|log1p|pow|cbrt|hypot)f?\(",
     "aligned_alloc, which Windows lacks": r"\baligned_alloc\b",
 }
 COMMENT_OR_STRING = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:[^"\\\n]|\\.)*"', re.DOTALL)
@@ -52,7 +55,7 @@ class Portability(unittest.TestCase):
     def test_every_kind_of_extension_is_found(self):
         samples = ["__builtin_clz(x);", "[[gnu::pure]] int f();", "#ifdef __GNUC__", "_mm_pause();",
                    "#include <sys/mman.h>", "madvise(p, n, 0);", "unsigned long n;", "double x = M_PI;",
-                   "std::aligned_alloc(64, n);"]
+                   "std::pow(x, 3);", "std::aligned_alloc(64, n);"]
         clean = ['// as long as __builtin_clz', 'long long n; long double x; f("long");', "/* long\nlong */ int n;"]
         with tempfile.TemporaryDirectory() as folder:
             base = Path(folder) / "vcg_core" / "base"

@@ -17,6 +17,8 @@ namespace neuralmesh {
 /// A position or direction in geometric computations: Eigen's type, for its expression templates and boxes.
 /// The network itself stores vcglib's points.
 using Vector3 = Eigen::Vector3f;
+static_assert(Eigen::internal::packet_traits<float>::Vectorizable == 0,
+              "Define EIGEN_DONT_VECTORIZE: else the order of Eigen's sums depends on the processor.");
 
 inline Vector3 to_eigen(const vcg::Point3f& p) { return {p[0], p[1], p[2]}; }
 inline vcg::Point3f to_vcg(const Vector3& p) { return {p[0], p[1], p[2]}; }

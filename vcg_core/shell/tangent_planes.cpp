@@ -29,8 +29,7 @@ constexpr float kLeastWidth = 0.3F;
 constexpr float kSureWeight = 0.1F;
 /// The lattice gets coarser where more than half of the planes are thicker than this: noise fills it.
 constexpr float kThick = 0.35F;
-constexpr double kCoarser = 1.5;
-constexpr int kCoarserSteps = 2;
+constexpr float kCoarser[] = {1, 1.5F, 2.25F};
 /// From this many lattice steps on a spacing is that of points, not of cells, and the surface must reach
 /// farther by this factor at most.
 constexpr float kSparse = 1.2F, kUneven = 1.7F;
@@ -339,15 +338,15 @@ TangentPlanes tangent_planes(const std::vector<Point3f>& points, const Box3f& bo
                              const TangentPlaneOptions& options) {
     TangentPlanes result;
     const float finest = step_for(points, box, options);
-    for (int i = 0; i <= kCoarserSteps; ++i) {
+    for (const float coarser : kCoarser) {
         TangentPlanes candidate;
-        candidate.step = finest * static_cast<float>(std::pow(kCoarser, i));
+        candidate.step = finest * coarser;
         const std::vector<Moments> cells = moments_of_cells(points, Lattice(box, candidate.step, 0));
         if (cells.size() <= kPlanesAround) break;
         fit_planes(cells, candidate);
         candidate.thickness = median_thickness(candidate.planes);
         const bool thin = candidate.thickness < kThick;
-        if (i == 0 || thin) result = std::move(candidate);
+        if (result.planes.empty() || thin) result = std::move(candidate);
         if (thin) break;
     }
     if (result.planes.empty()) return result;

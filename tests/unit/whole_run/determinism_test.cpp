@@ -90,10 +90,38 @@ void hash_bytes(const std::vector<T>& values, std::uint64_t& hash) {
         hash = (hash ^ static_cast<std::uint8_t>(bytes[i])) * 0x100000001b3U;
 }
 
-/// One line for each run on noisy, sharp and flat clouds with variants(). The clouds need no function of the
-/// mathematics library, whose results may differ between machines.
+std::string line_for(const std::string& run, const NeuralMesh& mesh) {
+    std::uint64_t hash = 0xcbf29ce484222325U;
+    hash_bytes(mesh.positions, hash);
+    hash_bytes(mesh.faces, hash);
+    hash_bytes(mesh.counters, hash);
+    hash_bytes(mesh.features, hash);
+    std::ostringstream line;
+    line << run << ' ' << mesh.report.signals << ' ' << std::hex << hash << '\n';
+    return line.str();
+}
+
+/// An open surface, and a closed one with stray points.
+std::string runs_on_scans() {
+    Settings settings;
+    settings.target_vertices = 200;
+    shapes::Cloud bowl;
+    for (const vcg::Point3d& p : shapes::sphere_cloud(4000, 0.01))
+        if (p[2] < 0.25) bowl.push_back(p);
+    const NeuralMesh open = learn(bowl, settings);
+    EXPECT_EQ(open.report.boundary_loops, 1);
+    shapes::Cloud dusty = shapes::sphere_cloud(3000, 0.01);
+    Random random(2);
+    for (int i = 0; i < 60; ++i) dusty.push_back(shapes::in_cube(random) * 2);
+    const NeuralMesh cleaned = learn(dusty, settings);
+    EXPECT_GT(cleaned.report.outliers, 30);
+    return line_for("bowl", open) + line_for("dusty", cleaned);
+}
+
+/// One line for each run on noisy, sharp and flat clouds with variants(), and those of runs_on_scans(). The
+/// clouds need no function of the mathematics library, whose results may differ between machines.
 std::string recorded_runs() {
-    std::ostringstream lines;
+    std::string lines;
     const std::pair<const char*, shapes::Cloud> clouds[] = {{"sphere", shapes::sphere_cloud(1500, 0.01)},
                                                             {"box", shapes::box_cloud(1500, {1, 0.7, 0.3})},
                                                             {"sheet", shapes::plane_cloud(1500)}};
@@ -101,17 +129,10 @@ std::string recorded_runs() {
         int variant = 0;
         for (Settings settings : variants()) {
             settings.feature_measure = variant % 2 == 0 ? kCreaseMeasure : kFeatureCounter;
-            const NeuralMesh mesh = learn(cloud, settings);
-            std::uint64_t hash = 0xcbf29ce484222325U;
-            hash_bytes(mesh.positions, hash);
-            hash_bytes(mesh.faces, hash);
-            hash_bytes(mesh.counters, hash);
-            hash_bytes(mesh.features, hash);
-            lines << name << ' ' << variant++ << ' ' << mesh.report.signals << ' ' << std::hex << hash
-                  << std::dec << '\n';
+            lines += line_for(name + (' ' + std::to_string(variant++)), learn(cloud, settings));
         }
     }
-    return lines.str();
+    return lines + runs_on_scans();
 }
 
 /// For any compiler, optimisation and machine. NEURALMESH_RECORD=1 records the bytes after an intended
