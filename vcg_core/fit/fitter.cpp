@@ -13,6 +13,7 @@
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/edge_flips.h"
+#include "vcg_core/fit/layers.h"
 #include "vcg_core/fit/least_squares.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/noise.h"
@@ -47,6 +48,13 @@ constexpr float kLikelyGap = 0.05F;
 /// The same with fewer points per vertex than kFewPoints, where it rarely takes a bend for noise.
 constexpr float kLikelyGapOfFew = 0.1F;
 constexpr float kFewPoints = 5;
+/// Layers of points: the local stiffness in least bending weights of independent noise, and the rounds that
+/// take out the folds that learning has left between layers, with their bending weight. Chosen by
+/// tests/experiments/accuracy/scan_table.py --groups levels.
+constexpr float kLayerStiffness = 3;
+constexpr int kStiffRounds = 3;
+constexpr float kStiffWeight = 50;
+constexpr float kWeightAfterStiff = 1;
 /// Noise variances that an edge split has to gain. kMaxSplitVariances holds in general: the best of ten
 /// thousand splits that follow only noise seem to gain about this much. kMinSplitVariances holds if the noise
 /// is well below kSmallNoise edge lengths: then the surface crumples little, and right splits win more than
@@ -105,7 +113,41 @@ PointsByFace Fitter::locate_points(const Surface& surface) {
     const std::vector<Hit> hits = nearest_by_tree(surface, fitted_, team_);
     if (!(outlier_distance_ > 0)) outlier_distance_ = outlier_distance(surface, hits);
     held_out_.locate(surface, team_);
-    return assign(surface, hits);
+    PointsByFace points = assign(surface, hits);
+    examine_layers(surface, points);
+    return points;
+}
+
+double Fitter::error_at(const HeldOut& held_out, const Surface& surface) const {
+    const double error = held_out.rms_error(surface, outlier_distance_, team_);
+    if (!(bending_error_ > 0)) return error;
+    return std::sqrt(error * error + bending_error_ * mean_squared_gap(surface));
+}
+
+void Fitter::examine_layers(const Surface& surface, const PointsByFace& points) {
+    layering_ = 0;
+    bending_error_ = 0;
+    stiff_rounds_ = 0;
+    if (static_cast<float>(points.all().size()) < kFewPoints * static_cast<float>(network_.vertex_count()))
+        return;
+    layering_ = layering(network_, surface, local_variances(network_, surface, points));
+    if (!(layering_ > 0)) return;
+    constexpr double kEdgesPerVertex = 3;
+    double sum = 0;
+    for (const float s : stiffness_for_layers(surface, points)) sum += static_cast<double>(s);
+    bending_error_ = kEdgesPerVertex * sum / network_.vertex_count();
+    stiff_rounds_ = kStiffRounds;
+}
+
+/// By Bayes' rule, as the least weight, but with the variance around each vertex.
+PerVertex<float> Fitter::stiffness_for_layers(const Surface& surface, const PointsByFace& points) const {
+    if (!(layering_ > 0)) return {};
+    PerVertex<float> stiffness = local_variances(network_, surface, points);
+    const float gap = kLikelyGap * mean_edge_length(surface);
+    const float points_per_vertex =
+        static_cast<float>(points.all().size()) / static_cast<float>(network_.vertex_count());
+    for (float& s : stiffness) s *= layering_ * kLayerStiffness / (gap * gap * points_per_vertex);
+    return stiffness;
 }
 
 PointsByFace Fitter::assign_faces(const Surface& surface) {
@@ -146,14 +188,16 @@ std::vector<float> Fitter::choose_weights(const Surface& surface, const PointsBy
         static_cast<float>(points.all().size()) / static_cast<float>(network_.vertex_count());
     const float gap =
         (points_per_vertex < kFewPoints ? kLikelyGapOfFew : kLikelyGap) * mean_edge_length(surface);
-    return bending_.next_weights(noise_variance_ / (gap * gap * points_per_vertex));
+    std::vector<float> weights = bending_.next_weights(noise_variance_ / (gap * gap * points_per_vertex));
+    if (stiff_rounds_ > 0) weights = {kStiffWeight};
+    return weights;
 }
 
 double Fitter::solve(const PointsByFace& points, Surface& surface) {
     const std::vector<float> weights = choose_weights(surface, points);
     const Surface start = surface;
     const MoveLimits limits(network_, start);
-    const PointToPlaneSystem system(network_, surface, points, team_);
+    const PointToPlaneSystem system(network_, surface, points, team_, stiffness_for_layers(surface, points));
     std::vector<PerVertex<Vector3>> solutions(weights.size());
     for_chunks(weights.size(), 1, team_, [&](std::size_t i, std::size_t, std::size_t) {
         solutions[i] = limits.bounded(system.solve(weights[i]));
@@ -162,22 +206,22 @@ double Fitter::solve(const PointsByFace& points, Surface& surface) {
     double best_error = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         surface.positions = solutions[i];
-        const double error = held_out_error(surface);
+        const double error = held_out_.rms_error(surface, outlier_distance_, team_);
         if (i > 0 && error >= best_error) continue;
         best = i;
         best_error = error;
     }
     solved_ = true;
-    bending_.choose(weights[best]);
+    bending_.choose(stiff_rounds_ > 0 ? kWeightAfterStiff : weights[best]);
     surface.positions = solutions[best];
     if (!guard_.objections(self_crossings(surface, team_)).empty()) {
         PerVertex<Vector3> displacements = solutions[best];
         for (VertexId v = 0; v < displacements.size(); ++v) displacements[v] -= start.positions[v];
         surface.positions = limits.without_crossings(displacements, guard_, team_);
-        best_error = held_out_error(surface);
+        best_error = held_out_.rms_error(surface, outlier_distance_, team_);
     }
     for (VertexId v : network_.vertices()) network_.set_position(v, to_vcg(surface.positions[v]));
-    return best_error;
+    return stiff_rounds_-- > 0 ? HUGE_VAL : best_error;
 }
 
 /// The least gain that justifies an edge split, as a sum of squared distances.

@@ -54,12 +54,11 @@ public:
     PointsByFace assign_faces(const Surface& surface);
     /// From now on measures the error along the smoothed normals of \p surface.
     void set_directions(const Surface& surface) { held_out_.set_directions(network_, surface, team_); }
-    /// Root mean square error at the held-out points.
+    /// Root mean square error at the held-out points. If the points lie in layers, which held-out points
+    /// cannot tell from bends, the squared error includes how much the surface bends.
     double held_out_error(const Surface& surface) const { return error_at(held_out_, surface); }
     /// The same at other held-out points, with their own directions.
-    double error_at(const HeldOut& held_out, const Surface& surface) const {
-        return held_out.rms_error(surface, outlier_distance_, team_);
-    }
+    double error_at(const HeldOut& held_out, const Surface& surface) const;
 
     /// Solves the least squares for several bending weights and moves the vertices to the solution with the
     /// least error at the held-out points. Moves \p surface, that of the network, with them. \return the
@@ -83,6 +82,8 @@ private:
     PointsByFace assign(const Surface& surface, const std::vector<Hit>& hits);
     void weaken_outliers(const Surface& surface, PointsByFace& points) const;
     void silence_strays(const Surface& surface, PointsByFace& points);
+    void examine_layers(const Surface& surface, const PointsByFace& points);
+    PerVertex<float> stiffness_for_layers(const Surface& surface, const PointsByFace& points) const;
     std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
     float least_split_gain(const Surface& surface) const;
     template <class Change>
@@ -98,6 +99,9 @@ private:
     HeldOut held_out_;
     float outlier_distance_ = 0;  ///< from the first assignment; fixed, so that errors stay comparable
     float noise_variance_ = 0;    ///< from the last assignment
+    float layering_ = 0;          ///< see layering(); from the last exact search
+    double bending_error_ = 0;    ///< of layers: weight of the mean squared gap in squared errors
+    int stiff_rounds_ = 0;        ///< still to come: their bending weight lets the surface follow no layer
     bool expects_strays_ = false;
     bool solved_ = false;  ///< vertices have moved
     BendingSearch bending_;

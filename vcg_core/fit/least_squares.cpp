@@ -73,7 +73,8 @@ PointToPlaneSystem::FaceSums PointToPlaneSystem::sum_over(const Surface& surface
 }
 
 PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& surface,
-                                       const PointsByFace& points, ThreadTeam& team)
+                                       const PointsByFace& points, ThreadTeam& team,
+                                       const PerVertex<float>& stiffness)
     : network_(network),
       points_per_vertex_(static_cast<float>(points.all().size()) /
                          static_cast<float>(network.vertex_count())),
@@ -90,7 +91,7 @@ PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& su
         gather(sums, surface, v);
         regularise(surface, missing[v], v);
     });
-    add_bending(surface);
+    add_bending(surface, stiffness);
     for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) add_target(target);
     add_boundary_bending(surface);
 }
@@ -151,9 +152,10 @@ bool PointToPlaneSystem::make_bending_term(const Surface& surface, const std::ar
     return true;
 }
 
-void PointToPlaneSystem::add_bending(const Surface& surface) {
+void PointToPlaneSystem::add_bending(const Surface& surface, const PerVertex<float>& stiffness) {
     bending_force_.assign(surface.positions.size(), Vector3::Zero());
     bending_diagonal_.assign(surface.positions.size(), 0);
+    stiff_diagonal_.assign(surface.positions.size(), 0);
     std::vector<float> gaps;
     for (VertexId a : network_.vertices()) {
         const Ring& ring = network_.ring(a);
@@ -172,11 +174,21 @@ void PointToPlaneSystem::add_bending(const Surface& surface) {
     for (std::size_t i = 0; i < gaps.size(); ++i) {
         BendingTerm& term = bending_terms_[i];
         term.weight = points_per_vertex_ / (1 + (gaps[i] / crease) * (gaps[i] / crease));
+        if (!stiffness.empty()) stiffen(term, stiffness);
         for (std::size_t k = 0; k < 4; ++k) {
             const float c = term.coefficient[k];
             bending_force_[term.corner[k]] -= term.weight * c * term.gap;
             bending_diagonal_[term.corner[k]] += term.weight * c * c;
         }
+    }
+}
+
+void PointToPlaneSystem::stiffen(BendingTerm& term, const PerVertex<float>& stiffness) {
+    for (const VertexId v : term.corner) term.stiffness += stiffness[v] / 4;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const float c = term.coefficient[k];
+        force_[term.corner[k]] -= term.stiffness * term.weight * c * term.gap;
+        stiff_diagonal_[term.corner[k]] += term.stiffness * term.weight * c * c;
     }
 }
 
@@ -248,7 +260,7 @@ void PointToPlaneSystem::multiply(float lambda, const PerVertex<Vector3>& u,
         const auto& c = term.coefficient;
         Vector3 gap = c[0] * u[term.corner[0]] + c[1] * u[term.corner[1]] + c[2] * u[term.corner[2]] +
                       c[3] * u[term.corner[3]];
-        gap *= lambda * term.weight;
+        gap *= (lambda + term.stiffness) * term.weight;
         for (std::size_t k = 0; k < 4; ++k) result[term.corner[k]] += c[k] * gap;
     }
     for (const BendingTerm& term : boundary_terms_) {  // their squares are in the diagonal
@@ -269,7 +281,7 @@ PerVertex<Symmetric3> PointToPlaneSystem::preconditioner(float lambda) const {
     PerVertex<Symmetric3> result(diagonal_.size());
     for (VertexId v : network_.vertices()) {
         Symmetric3 d = diagonal_[v];
-        d.add_identity(lambda * bending_diagonal_[v]);
+        d.add_identity(lambda * bending_diagonal_[v] + stiff_diagonal_[v]);
         result[v] = d.inverse();
     }
     return result;

@@ -21,7 +21,7 @@ namespace neuralmesh {
 /// vertices. They minimise
 ///
 ///   sum over points    w ((n.e)^2 + kTangential |e_t|^2)   e = p - sum_k b_k (x_k + u_k), e_t = e - (n.e) n
-/// + sum over edges     lambda c_e |gap_e(x + u)|^2         bending
+/// + sum over edges     (lambda + s_e) c_e |gap_e(x + u)|^2 bending; s_e: stiffness, the mean at the corners
 /// + sum over vertices  centring within the tangent plane, and damping, both weak
 /// + sum over vertices  a pull to the middle of the ring, for those that lack points
 /// + sum over boundary edges     the squared distance of each part from where the points end, outward
@@ -37,9 +37,9 @@ namespace neuralmesh {
 /// its face only: the mean of their distances from the edge would leave it short of their end.
 class PointToPlaneSystem {
 public:
-    /// Keeps a reference to \p network. O(points + vertices).
+    /// Keeps a reference to \p network. \p stiffness: of the vertices; empty: none. O(points + vertices).
     PointToPlaneSystem(const Network& network, const Surface& surface, const PointsByFace& points,
-                       ThreadTeam& team);
+                       ThreadTeam& team, const PerVertex<float>& stiffness = {});
 
     /// When solve() ends: at the residual \p tolerance relative to that of u = 0, in the norm of the
     /// preconditioner, or after \p iterations. The defaults suit rounds that are repeated with new faces.
@@ -64,7 +64,8 @@ private:
         std::array<VertexId, 4> corner;  ///< the edge's ends, then the two vertices opposite
         std::array<float, 4> coefficient;
         Vector3 gap;
-        float weight;  ///< c_e
+        float weight;         ///< c_e
+        float stiffness = 0;  ///< s_e
     };
     /// The part of a face: blocks of the pairs of corners 00, 11, 22, 01, 12, 20, right sides of the corners.
     struct FaceSums {
@@ -77,7 +78,8 @@ private:
     void regularise(const Surface& surface, float missing_points, VertexId v);
     static bool make_bending_term(const Surface& surface, const std::array<VertexId, 4>& corner,
                                   BendingTerm& term);
-    void add_bending(const Surface& surface);
+    void add_bending(const Surface& surface, const PerVertex<float>& stiffness);
+    void stiffen(BendingTerm& term, const PerVertex<float>& stiffness);
     void add_target(const BoundaryTarget& target);
     void add_boundary_bending(const Surface& surface);
     void centre_along(const Vector3& direction, const Vector3& away, VertexId v);
@@ -96,6 +98,7 @@ private:
     std::vector<BendingTerm> bending_terms_;
     std::vector<BendingTerm> boundary_terms_;  ///< of boundary vertices, with three corners; part of A
     PerVertex<float> bending_diagonal_;
+    PerVertex<float> stiff_diagonal_;  ///< of the stiffness
     PerVertex<Vector3> bending_force_;
 };
 

@@ -112,6 +112,20 @@ TEST_F(LeastSquares, MeasuresThePointsAsDefined) {
     EXPECT_NEAR((energy(heavy) - energy(system)) / 2, expected, 1e-3 * std::abs(expected));
 }
 
+// Even stiffness adds to the bending weight.
+TEST_F(LeastSquares, TakesStiffnessForBendingWeight) {
+    constexpr float kStiffness = 3;
+    const PerVertex<float> even(network.slot_count(), kStiffness);
+    const PointToPlaneSystem stiff(network, surface, points, team, even);
+    const Matrix expected = matrix_of(system, network.slot_count(), 0.5F + kStiffness);
+    EXPECT_LT((matrix_of(stiff, network.slot_count(), 0.5F) - expected).norm(), 1e-5 * expected.norm());
+    EXPECT_LT((flat(stiff.right_side(0.5F)) - flat(system.right_side(0.5F + kStiffness))).norm(),
+              1e-4 * flat(system.right_side(0.5F + kStiffness)).norm());
+    const PointToPlaneSystem::Accuracy exact{1e-6, 1000};
+    EXPECT_LT((flat(stiff.solve(0.5F, exact)) - flat(system.solve(0.5F + kStiffness, exact))).norm(),
+              1e-3 * flat(stiff.solve(0.5F, exact)).norm());
+}
+
 // All points lie at the same height above a plane: it moves to them, nearly without sliding sideways.
 TEST(PointToPlaneSystem, LiftsAPlaneToItsPoints) {
     const Network plane = referee::network_of(shapes::grid(8, 8));

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/fit/layers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace neuralmesh {
+
+namespace {
+
+/// Sums over the points of a face: their squared distances from its mean height, and their number less one.
+struct Spread {
+    float squares = 0;
+    float count = 0;
+    Spread& operator+=(const Spread& other) {
+        squares += other.squares;
+        count += other.count;
+        return *this;
+    }
+};
+
+PerVertex<Vector3> smoothed_normals(const Network& network, const Surface& surface) {
+    constexpr int kSpreads = 2;
+    PerVertex<Vector3> normals(surface.positions.size(), Vector3::Zero());
+    for (int f = 0; f < surface.face_count(); ++f)
+        for (const VertexId v : surface.faces[f]) normals[v] += area_vector(surface, f);
+    spread_over_rings(network, normals, kSpreads);
+    return normals;
+}
+
+Spread spread_of(const Surface& surface, const PointsByFace& points, int face, const Vector3& normal) {
+    float sum = 0;
+    float squares = 0;
+    for (const PointsByFace::Assignment& a : points.of(face)) {
+        const float height = normal.dot(a.point - surface.corner(face, 0));
+        sum += height;
+        squares += height * height;
+    }
+    const auto n = static_cast<float>(points.of(face).size());
+    return {std::max(0.0F, squares - sum * sum / n), n - 1};
+}
+
+}  // namespace
+
+PerVertex<float> local_variances(const Network& network, const Surface& surface, const PointsByFace& points) {
+    constexpr int kMinPoints = 3;
+    constexpr int kSpreads = 1;
+    const PerVertex<Vector3> normals = smoothed_normals(network, surface);
+    PerVertex<Spread> spreads(surface.positions.size());
+    for (int f = 0; f < surface.face_count(); ++f) {
+        if (points.of(f).size() < kMinPoints) continue;
+        const Triangle& t = surface.faces[f];
+        const Vector3 normal = (normals[t[0]] + normals[t[1]] + normals[t[2]]).normalized();
+        const Spread spread = spread_of(surface, points, f, normal);
+        for (const VertexId v : t) spreads[v] += spread;
+    }
+    spread_over_rings(network, spreads, kSpreads);
+    PerVertex<float> variances(spreads.size(), 0);
+    for (const VertexId v : network.vertices())
+        if (spreads[v].count > 0) variances[v] = spreads[v].squares / spreads[v].count;
+    return variances;
+}
+
+float layering(const Network& network, const Surface& surface, const PerVertex<float>& variances) {
+    // Shares of the mean edge. Below, learning hardly follows the layers.
+    constexpr float kNarrow = 0.15F, kWide = 0.25F;
+    // Ratio of the widest to the narrowest spread, but for the extreme hundredth and tenth of the vertices.
+    // Independent noise of .3 and .6 % of the diagonal: 1.19 to 1.30; virtual scans of level 3: 1.55 to 1.66.
+    constexpr float kEven = 1.35F, kUneven = 1.5F;
+    constexpr std::size_t kTenth = 10, kHundredth = 100;
+    std::vector<float> spreads;
+    for (const VertexId v : network.vertices()) spreads.push_back(std::sqrt(variances[v]));
+    std::sort(spreads.begin(), spreads.end());
+    const std::size_t n = spreads.size();
+    const float narrow = spreads[n / kTenth];
+    const float wide = spreads[n - 1 - n / kHundredth];
+    if (!(narrow > 0)) return 0;
+    const auto ramp = [](float x, float low, float high) {
+        return std::min(std::max((x - low) / (high - low), 0.0F), 1.0F);
+    };
+    return ramp(spreads[n / 2] / mean_edge_length(surface), kNarrow, kWide) *
+           ramp(wide / narrow, kEven, kUneven);
+}
+
+double mean_squared_gap(const Surface& surface) {
+    // Equilateral triangles of a sphere that meet at the angle t leave a gap of t * sqrt(3) / 4 edges, and
+    // deviate by t from the normal at their common corner. The sum of such unit normals is shorter than their
+    // number by the share t^2 / 2.
+    constexpr double kSquaredGap = 2 * 3.0 / 16;
+    double sum = 0;
+    int vertices = 0;
+    for (VertexId v = 0; v < surface.positions.size(); ++v) {
+        const Span<const int> faces = surface.faces_around(v);
+        if (faces.size() == 0) continue;
+        Vector3 normal = Vector3::Zero();
+        for (const int f : faces) normal += unit_normal(surface, f);
+        sum += 1 - static_cast<double>(normal.norm()) / static_cast<double>(faces.size());
+        ++vertices;
+    }
+    const auto edge = static_cast<double>(mean_edge_length(surface));
+    return kSquaredGap * edge * edge * sum / std::max(vertices, 1);
+}
+
+}  // namespace neuralmesh
