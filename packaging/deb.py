@@ -16,7 +16,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 NAME = "meshlab-plugin-neuralmesh"
-MAINTAINER = "The Neural Mesh authors <neural-mesh@example.org>"
 
 
 @dataclass
@@ -80,13 +79,13 @@ CHANGES = """{name} ({version}) {suite}; urgency=medium
 """
 
 
-def write(out, plugin, target, version, date):
-    """Writes the package to the folder `out` and returns its path."""
+def write(out, plugin, target, version, date, maintainer):
+    """Writes the package to the folder `out` and returns its path. `maintainer`: "name <address>"."""
     full = f"{version}-{target.revision}"
     path = out / f"{NAME}_{full}_amd64.deb"
     with tempfile.TemporaryDirectory() as scratch:
         tree = Path(scratch) / "tree"
-        fill(tree, plugin, target, version, full, date)
+        fill(tree, plugin, target, version, full, date, maintainer)
         for file in [tree, *tree.rglob("*")]:
             file.chmod(0o755 if file.is_dir() else 0o644)
             os.utime(file, (date, date))
@@ -95,7 +94,7 @@ def write(out, plugin, target, version, date):
     return path
 
 
-def fill(tree, plugin, target, version, full, date):
+def fill(tree, plugin, target, version, full, date, maintainer):
     """The files of the package, below the folder `tree`."""
     plugins = tree / "usr/lib/x86_64-linux-gnu/meshlab/plugins"
     documents = tree / "usr/share/doc" / NAME
@@ -103,7 +102,7 @@ def fill(tree, plugin, target, version, full, date):
         folder.mkdir(parents=True)
     shutil.copyfile(plugin, plugins / plugin.name)
     (documents / "copyright").write_text(COPYRIGHT.format(year=time.gmtime(date).tm_year))
-    changes = CHANGES.format(name=NAME, version=full, suite=target.suite, upstream=version, maintainer=MAINTAINER,
+    changes = CHANGES.format(name=NAME, version=full, suite=target.suite, upstream=version, maintainer=maintainer,
                              date=email.utils.formatdate(date))
     (documents / "changelog.Debian.gz").write_bytes(gzip.compress(changes.encode(), mtime=0))
     (documents / "changelog.gz").write_bytes(gzip.compress((ROOT / "CHANGELOG.md").read_bytes(), mtime=0))
@@ -114,4 +113,4 @@ def fill(tree, plugin, target, version, full, date):
         f"{hashlib.md5(path.read_bytes()).hexdigest()}  {path.relative_to(tree)}\n" for path in files))
     kilobytes = sum(-(-path.stat().st_size // 1024) for path in files)
     (tree / "DEBIAN/control").write_text(CONTROL.format(
-        name=NAME, version=full, maintainer=MAINTAINER, kilobytes=kilobytes, depends=target.depends))
+        name=NAME, version=full, maintainer=maintainer, kilobytes=kilobytes, depends=target.depends))

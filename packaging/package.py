@@ -40,6 +40,9 @@ HOST_VERSIONS = {
     "pymeshlab-2025.7": {"GLIBC": "2.35", "GLIBCXX": "3.4.29", "CXXABI": "1.3.13"},
 }
 ARCHIVE_HOSTS = {"meshlab-2022.02": "2022.02", "meshlab-2025.07": "2025.07"}
+# Whom the packages name, unless DEBFULLNAME and DEBEMAIL are set, as for any Debian package. The project has no address
+# of its own; example.org is reserved for such cases.
+MAINTAINER = ("Neural Mesh maintainers", "neural-mesh@example.org")
 MOST_BYTES = 2_000_000  # of a stripped plugin
 WHERE_TO_PUT_IT = """Neural Mesh {version} for MeshLab {release} ({scalar} build) on {platform}.
 Install it in MeshLab: Help - Plugin Info - Load Plugins, then choose libfilter_neuralmesh.so of this folder.
@@ -67,6 +70,11 @@ def source_date():
         return int(output_of("git", "-C", ROOT, "log", "-1", "--format=%ct"))
     except (OSError, subprocess.CalledProcessError):
         raise PackagingError("This is no git repository: set SOURCE_DATE_EPOCH, such as to $(date +%s).") from None
+
+
+def maintainer():
+    """(name, address)"""
+    return tuple(os.environ.get(name) or default for name, default in zip(("DEBFULLNAME", "DEBEMAIL"), MAINTAINER))
 
 
 def number(version):
@@ -132,9 +140,10 @@ def make_packages(plugins, out):
     with tempfile.TemporaryDirectory() as scratch:
         ready = {host: stripped(plugins, host, scratch) for host in HOST_VERSIONS}
         made = [write_archive(out, host, ready[host], version, date) for host in ARCHIVE_HOSTS]
-        made += [deb.write(out, ready[target.host], target, version, date) for target in deb.TARGETS]
+        made += [deb.write(out, ready[target.host], target, version, date, "{} <{}>".format(*maintainer()))
+                 for target in deb.TARGETS]
         glibc = needed_versions(ready["pymeshlab-2025.7"])["GLIBC"]
-        made.append(wheel.write(out, ready["pymeshlab-2025.7"], version, date, glibc))
+        made.append(wheel.write(out, ready["pymeshlab-2025.7"], version, date, glibc, maintainer()))
     sums = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in sorted(made)]
     (out / "SHA256SUMS").write_text("".join(sums))
     return sorted(made)

@@ -17,6 +17,8 @@ METADATA = """Metadata-Version: 2.1
 Name: neural-mesh
 Version: {version}
 Summary: A point cloud to a triangle mesh with exactly the vertices you ask for, as a filter of pymeshlab
+Maintainer: {maintainer[0]}
+Maintainer-email: {maintainer[1]}
 License: GPL-3.0-or-later
 Requires-Python: >=3.9
 Requires-Dist: pymeshlab ==2025.7.*
@@ -34,13 +36,14 @@ Or as a command: `neural-mesh cloud.ply mesh.ply target_vertices=5000`.
 """
 
 
-def write(out, plugin, version, date, glibc):
-    """Writes the wheel to the folder `out` and returns its path. `glibc`: the oldest version it runs with."""
+def write(out, plugin, version, date, glibc, maintainer):
+    """Writes the wheel to the folder `out` and returns its path. `glibc`: the oldest version it runs with.
+    `maintainer`: (name, address)."""
     tag = f"py3-none-manylinux_{glibc.replace('.', '_')}_x86_64"
     info = f"neural_mesh-{version}.dist-info"
     files = {f"neural_mesh/{path.name}": path.read_bytes() for path in sorted((HERE / "neural_mesh").glob("*.py"))}
     files[f"neural_mesh/{plugin.name}"] = plugin.read_bytes()
-    files[f"{info}/METADATA"] = METADATA.format(version=version).encode()
+    files[f"{info}/METADATA"] = METADATA.format(version=version, maintainer=maintainer).encode()
     files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: neural-mesh\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
     files[f"{info}/entry_points.txt"] = b"[console_scripts]\nneural-mesh = neural_mesh.__main__:main\n"
     files[f"{info}/licenses/LICENSE"] = (HERE.parent / "LICENSE").read_bytes()

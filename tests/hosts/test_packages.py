@@ -69,6 +69,17 @@ def test_the_same_plugins_give_the_same_packages(build, dist, tmp_path):
         assert ((tmp_path / date / "SHA256SUMS").read_text() == (dist / "SHA256SUMS").read_text()) is same
 
 
+def test_all_packages_name_the_maintainer_of_the_environment(build, tmp_path):
+    make(build, tmp_path, SOURCE_DATE_EPOCH="1700000000", DEBFULLNAME="A Packager", DEBEMAIL="packager@example.org")
+    for path in tmp_path.glob("*.deb"):
+        found = subprocess.run(["dpkg-deb", "--field", str(path), "Maintainer"], check=True, stdout=subprocess.PIPE,
+                               text=True)
+        assert found.stdout == "A Packager <packager@example.org>\n"
+    with zipfile.ZipFile(the_file(tmp_path, "*.whl")) as archive:
+        name = next(name for name in archive.namelist() if name.endswith("/METADATA"))
+        assert "Maintainer: A Packager\nMaintainer-email: packager@example.org\n" in archive.read(name).decode()
+
+
 def test_plugins_need_nothing_newer_than_their_host(build, tmp_path):
     for host, limits in packaging.HOST_VERSIONS.items():
         needed = packaging.needed_versions(packaging.stripped(build / "plugins", host, tmp_path))
