@@ -66,7 +66,7 @@ TEST(ChoosePoints, WeighsTheHalvesOfAnUnevenSphereByArea) {
     const TargetSpace given = soundness::target_of(shapes::uneven_sphere_cloud(20000, 40));
     const auto target = given.evenly(CloudSurvey(given.positions(), 1));
     ASSERT_TRUE(target.has_value());
-    for (const std::size_t wanted : {30000, 20000, 5000, 800}) {
+    for (const std::size_t wanted : {30000U, 20000U, 5000U, 800U}) {
         Random random(1);
         const PointChoice choice = choose_points(*target, wanted, random);
         const std::size_t most = std::min<std::size_t>(wanted, 20000);
