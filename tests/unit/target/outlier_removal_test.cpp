@@ -11,6 +11,7 @@
 #include <numeric>
 #include <vector>
 
+#include "tests/unit/support/shapes.h"
 #include "vcg_core/base/random.h"
 
 namespace neuralmesh {
@@ -38,9 +39,7 @@ Cloud sphere(std::size_t count, Random& random) {
     return cloud;
 }
 
-vcg::Point3f anywhere(Random& random) {
-    return vcg::Point3f(random.unit(), random.unit(), random.unit()) - vcg::Point3f(0.5F, 0.5F, 0.5F);
-}
+vcg::Point3f anywhere(Random& random) { return vcg::Point3f::Construct(shapes::in_cube(random) * 0.5); }
 
 std::size_t count_of(const std::vector<std::uint8_t>& out, std::size_t begin, std::size_t end) {
     if (out.empty()) return 0;
