@@ -151,8 +151,8 @@ std::optional<OpenStart> try_open_start(const TargetSpace& target, const StartMe
     try {
         OpenStart start = make_open_start(target, settings, progress);
         const auto vertices = static_cast<int>(start.positions.size());
-        const bool open =
-            start.loops > 0 && (settings.close_holes_up_to >= 0 || start.widest_loop > kWidestClosed);
+        const bool open = start.loops > 0 && !start.two_layers &&
+                          (settings.close_holes_up_to >= 0 || start.widest_loop > kWidestClosed);
         const bool two_walls = start.loops == 0 && !shell.encloses_space && vertices >= kTwoWalls;
         if ((open || two_walls) && start.thickness < kTooThick && vertices <= settings.target_vertices &&
             start.genus <= kMostHandles * vertices)

@@ -14,10 +14,15 @@ namespace {
 constexpr int kSpreads = 2;  ///< of the density, over the rings
 /// An edge is divided into parts of at least that many points, up to the height of its face.
 constexpr float kPointsPerPart = 12;
+/// Each part is at least that many spacings of points wide; in front of shorter edges points are looked for
+/// beyond their ends, too.
+constexpr float kLeastWidth = 2;
 /// Points end at a gap of this many times the mean gap between points that follow each other.
 constexpr float kUnlikelyGap = 12;
 /// This many of the last points say where they end: the very last one may be an outlier.
 constexpr std::size_t kLastPoints = 2;
+/// The surface ends at most so many mean gaps beyond the very last point: few points would let it go too far.
+constexpr float kMostBeyond = 0.5F;
 /// An edge with fewer points than kFewPoints per part has less weight, and none below kTooFewPoints.
 constexpr float kFewPoints = 4;
 constexpr float kTooFewPoints = 0.5F;
@@ -61,9 +66,12 @@ public:
         along_ = along / (length * length);
         normal_ = area.normalized();
         outward_ = along.cross(normal_).normalized();
-        const auto whole = static_cast<int>(std::min(expected / kPointsPerPart, 1e6F));
-        const int parts = std::clamp(whole, 1, BoundaryTarget::kMostParts);
+        const float least_width = kLeastWidth / std::sqrt(density);
+        const float most_parts = std::min(expected / kPointsPerPart, length / least_width);
+        const int parts =
+            std::clamp(static_cast<int>(std::min(most_parts, 1e6F)), 1, BoundaryTarget::kMostParts);
         const auto count = static_cast<float>(parts);
+        beyond_ends_ = std::max(0.0F, (least_width / length - 1) / 2);
         BoundaryTarget target{edge_[0],
                               edge_[1],
                               face_,
@@ -77,7 +85,8 @@ public:
         const float most = kMostOffset * std::max(height_, length);
         for (std::size_t i = 0; static_cast<int>(i) < parts; ++i)
             target.offsets[i] =
-                std::clamp(end_of(heights_[i], count / (density * length)), -kMostOffset * height_, most);
+                std::clamp(end_of(heights_[i], count / (density * std::max(length, least_width))),
+                           -kMostOffset * height_, most);
         targets.push_back(target);
     }
 
@@ -104,10 +113,11 @@ private:
                 const Vector3 p = assigned.point - at(0);
                 const float share = p.dot(along_);
                 const float height = p.dot(outward_);
-                if (share < 0 || share >= 1 || height < -height_ ||
+                if (share < -beyond_ends_ || share >= 1 + beyond_ends_ || height < -height_ ||
                     std::abs(p.dot(normal_)) > kAside * height_)
                     continue;
-                heights_[static_cast<std::size_t>(share * static_cast<float>(parts))].push_back(height);
+                const int part = parts == 1 ? 0 : static_cast<int>(share * static_cast<float>(parts));
+                heights_[static_cast<std::size_t>(part)].push_back(height);
             }
         }
     }
@@ -119,7 +129,9 @@ private:
         std::size_t count = 0;
         while (count < heights.size() && heights[count] - last < kUnlikelyGap * gap) last = heights[count++];
         const std::size_t back = std::min(count, kLastPoints);
-        return back == 0 ? -height_ : heights[count - back] + static_cast<float>(back) * gap;
+        if (back == 0) return -height_;
+        return std::min(heights[count - back] + static_cast<float>(back) * gap,
+                        heights[count - 1] + kMostBeyond * gap);
     }
 
     const Network& network_;
@@ -131,6 +143,7 @@ private:
     int face_ = 0;
     Vector3 along_, normal_, outward_;
     float height_ = 0;
+    float beyond_ends_ = 0;  ///< points are looked for that far beyond its ends, in its lengths
     std::vector<int> faces_;
     std::array<std::vector<float>, BoundaryTarget::kMostParts> heights_;
 };

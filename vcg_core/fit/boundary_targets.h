@@ -32,9 +32,8 @@ struct BoundaryTarget {
 
 /// The targets of the boundary edges. In front of each part of an edge, points are followed outward, from one
 /// height of the edge's face before the edge, up to a gap that the density of the points makes unlikely. The
-/// surface ends beyond the last points by the width that as many points fill at that density. O(boundary
-/// edges
-/// + their points).
+/// surface ends beyond the last points by the width that as many points fill at that density, but hardly
+/// beyond the very last. O(boundary edges + their points).
 std::vector<BoundaryTarget> find_boundary_targets(const Network& network, const Surface& surface,
                                                   const PointsByFace& points);
 

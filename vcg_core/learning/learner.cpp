@@ -12,6 +12,7 @@
 
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/random.h"
+#include "vcg_core/learning/boundary_faces.h"
 #include "vcg_core/learning/half_edge_collapse.h"
 #include "vcg_core/learning/vertex_split.h"
 
@@ -139,6 +140,7 @@ bool Learner::vertex_split() {
 }
 
 int Learner::half_edge_collapse() {
+    if (!state_.to_the_letter()) mend_boundary_faces(state_, true);
     const int removed = neuralmesh::half_edge_collapse(state_, schedule_.last_collapse());
     schedule_.collapsed(signals(), network().vertex_count());
     return removed;
@@ -166,6 +168,7 @@ bool Learner::settle(int per_vertex, Progress& progress, bool observe) {
         const double done = static_cast<double>(signals() - begin) / static_cast<double>(end - begin);
         if (!report("Settling", done, progress)) return false;
     }
+    if (observe && !state_.to_the_letter()) mend_boundary_faces(state_, false);
     return true;
 }
 

@@ -60,7 +60,8 @@ public:
     /// vertex can be split. O(log n).
     bool vertex_split();
     /// Half-Edge Collapse of all vertices that have been inactive since its last call, see
-    /// half_edge_collapse.h. \return the number of vertices removed. O(n).
+    /// half_edge_collapse.h. Before, mends the faces along boundaries, see boundary_faces.h. \return the
+    /// number of inactive vertices removed. O(n).
     int half_edge_collapse();
     /// Learns settling_signals(per_vertex, vertices) signals without splits and collapses, so that counters
     /// describe the final connectivity.

@@ -249,6 +249,21 @@ void Network::fill_notch(VertexId v) {
     insert(ring_of(before), 0, after);
 }
 
+bool Network::can_open_face(VertexId v) const {
+    const Ring& r = ring(v);
+    return r.open != 0 && r.valence > 2 && ring(r[0]).valence > 2 && ring(r[1]).open == 0;
+}
+
+void Network::open_face(VertexId v) {
+    if (!can_open_face(v)) throw TopologyError("This face cannot be removed; ask can_open_face() first.");
+    const VertexId after = ring(v)[0];
+    Ring& corner = ring_of(ring(v)[1]);
+    erase(ring_of(v), after);
+    erase(ring_of(after), v);
+    rotate(corner, corner.find(after));
+    corner.open = 1;
+}
+
 PerVertex<VertexId> Network::compact() {
     std::vector<VertexId> order;
     for (const VertexId v : vertices()) order.push_back(v);

@@ -98,6 +98,13 @@ public:
     /// and all valences stay between 3 (2 on a boundary) and Ring::kMaxValence.
     bool can_fill_notch(VertexId v) const;
 
+    /// The inverse: removes the face at the boundary edge from \p v to ring(v)[0]. Its third corner, the
+    /// inner vertex ring(v)[1], joins the boundary. \pre can_open_face(v). O(valence).
+    void open_face(VertexId v);
+    /// True if v is on a boundary, the third corner is an inner vertex, and both ends of the edge keep a
+    /// valence of at least 2.
+    bool can_open_face(VertexId v) const;
+
     /// Renumbers the vertices to 0 .. vertex_count() - 1 and keeps their order. Invalidates all ids, for
     /// example those in a WinnerSearch. \return per old slot the new id, or -1. O(vertices).
     PerVertex<VertexId> compact();

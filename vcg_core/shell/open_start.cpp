@@ -17,6 +17,7 @@
 #include "vcg_core/shell/outliers.h"
 #include "vcg_core/shell/start_points.h"
 #include "vcg_core/shell/tangent_planes.h"
+#include "vcg_core/shell/two_layers.h"
 
 namespace neuralmesh {
 namespace {
@@ -232,16 +233,10 @@ void orient_convex_side_outward(Network& network) {
 /// The points outside of the lattice, or of planes that were dropped.
 std::vector<std::uint8_t> outliers_of(const std::vector<Point3f>& points, const Box3f& box,
                                       const TangentPlanes& planes, const std::vector<char>& kept) {
-    const Lattice lattice(box, planes.step, 0);
     std::vector<std::uint8_t> result;
-    PerNode<std::int32_t> cell_at(lattice.size(), -1);
-    std::int32_t cells = 0;
+    const std::vector<int> cell_of = cells_of(points, box, planes);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const NodeId node = lattice.node_of(points[i]);
-        if (node < cell_at.size()) {
-            if (cell_at[node] < 0) cell_at[node] = cells++;  // as the planes were numbered
-            if (kept[at(cell_at[node])] != 0) continue;
-        }
+        if (cell_of[i] >= 0 && kept[at(cell_of[i])] != 0) continue;
         result.resize(points.size(), 0);
         result[i] = 1;
     }
@@ -329,6 +324,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     orient_convex_side_outward(network);
     write_mesh(network, result);
     result.thickness = static_cast<double>(planes.thickness);
+    result.two_layers = median_kurtosis(points, box, planes) < kTwoLayers;
     set_outliers(outliers_of(points, box, planes, kept), static_cast<long long>(points.size()), enough,
                  options.learn_outliers || target.has_faces(), result);
     warn_of_cuts(target, planes, result);

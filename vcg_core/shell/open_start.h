@@ -58,6 +58,7 @@ struct OpenStart {
         0;  ///< of the smallest sphere around the widest hole, as share of the mesh's diagonal
     double widest_filled = 0;  ///< diameter of the widest hole that was filled
     double thickness = 0;      ///< median of that of the tangent planes (tangent_planes.h)
+    bool two_layers = false;   ///< most of the points lie on the two sides of a thin wall (two_layers.h)
     /// 1 for each point of the cloud that is not to be learned; empty if there are none, too many, or if the
     /// target has faces.
     std::vector<std::uint8_t> outliers;

@@ -91,17 +91,29 @@ float step_for(const std::vector<Point3f>& points, const Box3f& box, const Tange
     return std::min(step, coarsest);
 }
 
-std::vector<Moments> moments_of_cells(const std::vector<Point3f>& points, const Lattice& lattice) {
+/// Cells get numbers in the order of their first points.
+std::vector<int> numbered_cells(const std::vector<Point3f>& points, const Lattice& lattice) {
     PerNode<std::int32_t> cell_at(lattice.size(), -1);
-    std::vector<Moments> cells;
+    std::vector<int> cells;
+    cells.reserve(points.size());
+    std::int32_t count = 0;
     for (const Point3f& p : points) {
         const NodeId node = lattice.node_of(p);
-        if (node >= cell_at.size()) continue;
-        if (cell_at[node] < 0) {
-            cell_at[node] = static_cast<std::int32_t>(cells.size());
-            cells.emplace_back();
-        }
-        cells[static_cast<std::size_t>(cell_at[node])].add(p);
+        const bool inside = node < cell_at.size();
+        if (inside && cell_at[node] < 0) cell_at[node] = count++;
+        cells.push_back(inside ? cell_at[node] : -1);
+    }
+    return cells;
+}
+
+std::vector<Moments> moments_of_cells(const std::vector<Point3f>& points, const Lattice& lattice) {
+    const std::vector<int> cell_of = numbered_cells(points, lattice);
+    std::vector<Moments> cells;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (cell_of[i] < 0) continue;
+        const auto cell = static_cast<std::size_t>(cell_of[i]);
+        if (cell == cells.size()) cells.emplace_back();
+        cells[cell].add(points[i]);
     }
     return cells;
 }
@@ -353,6 +365,10 @@ TangentPlanes tangent_planes(const std::vector<Point3f>& points, const Box3f& bo
     smooth_spacings(result);
     orient(result);
     return result;
+}
+
+std::vector<int> cells_of(const std::vector<Point3f>& points, const Box3f& box, const TangentPlanes& planes) {
+    return numbered_cells(points, Lattice(box, planes.step, 0));
 }
 
 }  // namespace neuralmesh

@@ -56,4 +56,8 @@ struct TangentPlaneOptions {
 TangentPlanes tangent_planes(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box,
                              const TangentPlaneOptions& options);
 
+/// For each of these points the number of the plane of its cell; -1 outside of the lattice. O(points).
+std::vector<int> cells_of(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box,
+                          const TangentPlanes& planes);
+
 }  // namespace neuralmesh

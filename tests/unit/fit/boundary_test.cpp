@@ -94,6 +94,21 @@ TEST_P(TargetsOfASheet, LieWhereThePointsEnd) {
 
 INSTANTIATE_TEST_SUITE_P(Reaching, TargetsOfASheet, testing::Values(3.7, 3.9, 4.0, 4.1, 4.3));
 
+// Of points in rows as many are last at once; short edges have few in front of them.
+TEST(BoundaryTargets, DoNotReachFarBeyondRows) {
+    for (const int rows : {18, 30, 60}) {
+        const double spacing = 8.0 / (rows - 1);
+        shapes::Cloud cloud;
+        for (int i = 0; i < rows * rows; ++i)
+            cloud.emplace_back(spacing * (i % rows) - 4, spacing * (i / rows) - 4, 0);
+        const FitScene scene(referee::network_of(sheet()), cloud);
+        const auto targets = find_boundary_targets(scene.network, scene.surface, scene.points);
+        EXPECT_FALSE(targets.empty());
+        for (const BoundaryTarget& target : targets)
+            for (int i = 0; i < target.parts; ++i) EXPECT_LT(target.offset(i), 0.5 * spacing) << rows;
+    }
+}
+
 TEST(BoundaryTargets, StopAtAGap) {
     shapes::Cloud cloud = square(20000, 3.8);
     for (int i = 0; i < 20; ++i) cloud.emplace_back(4.5, 0.05 * i, 0);  // outliers beyond
@@ -172,7 +187,7 @@ TEST(FitOfABoundary, BringsASheetToTheEndOfItsPoints) {
         });
         EXPECT_NEAR(boundary.length, 32, 1) << size;
         EXPECT_LT(boundary.mean_distance, 0.1) << size;  // of an edge; .32 at the start
-        EXPECT_LT(boundary.most, 0.5) << size;  // at corners
+        EXPECT_LT(boundary.most, 0.5) << size;           // at corners
     }
 }
 

@@ -224,6 +224,28 @@ TEST(Network, EveryFilledNotchIsExactOrRefused) {
     EXPECT_GT(tally.refused, 20);
 }
 
+// An opened face makes its inner corner a boundary vertex: the boundary gets one edge more, the topology
+// stays.
+TEST(Network, EveryOpenedFaceIsExactOrRefused) {
+    Tally tally;
+    for (const Start& start : starts()) {
+        SCOPED_TRACE(start.name);
+        const Network before = network_of(start.shape);
+        for (const VertexId v : before.vertices()) {
+            const Ring& ring = before.ring(v);
+            std::vector<Triangle> expected = canonical(before.faces());
+            const Triangle gone = canonical({{v, ring[0], ring[1]}}).front();
+            expected.erase(std::remove(expected.begin(), expected.end(), gone), expected.end());
+            const bool legal = ring.open != 0 && before.ring(ring[1]).open == 0 &&
+                               acceptable(expected, census(before.faces()), before.vertex_count());
+            ASSERT_EQ(before.can_open_face(v), legal) << v;
+            attempt(before, legal, canonical(expected), tally, [&](Network& net) { net.open_face(v); });
+        }
+    }
+    EXPECT_GT(tally.done, 20);
+    EXPECT_GT(tally.refused, 20);
+}
+
 TEST(Network, OperationsOnASphereKeepItsVolume) {
     const Network before = network_of(shapes::icosphere(2));
     const double volume = enclosed_volume(before);

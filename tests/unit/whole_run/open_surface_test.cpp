@@ -78,6 +78,15 @@ TEST(OpenSurface, IsClosedInOneLayerWhereWallsAreThin) {
     EXPECT_FALSE(has_warning(mesh, "the surface ends where they end"));
 }
 
+TEST(OpenSurface, IsNotChosenWhereBothSidesOfAWallLookLikeOneSheet) {
+    // The wall is as thick as one to two spacings of the points: an open surface would run between its sides.
+    for (const int count : {3000, 10000}) {
+        Random random(1);
+        const Cloud cloud = shell_shapes::sample(shell_shapes::cup(1, 2, 0.06), count, random);
+        EXPECT_EQ(learn(cloud, settings_with(400, kAutomatic)).report.boundary_loops, 0) << count;
+    }
+}
+
 TEST(OpenSurface, MeasuresHolesAgainstTheMeshNotAgainstFarOutliers) {
     Cloud cloud =
         open_shapes::cut(shapes::sphere_cloud(20000), [](const vcg::Point3d& p) { return p[2] < 0.5; });

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Faces along a boundary that learning has flattened or folded. Not in the paper, whose meshes are closed.
+#pragma once
+
+#include "vcg_core/learning/learning_state.h"
+
+namespace neuralmesh {
+
+/// Looks at the face of every boundary edge. Signals from beyond the edge pull the face's third corner
+/// towards the edge and across it. There the face folds over, so that the normal seems to vary, and attracts
+/// splits.
+/// - A third corner that is an inner vertex joins the boundary, if its angle is obtuse or the face folded.
+/// - An ear, a face with two boundary edges, is flipped with the face behind it, unless its tip is sharp. A
+/// folded
+///   ear that cannot be flipped is removed, if \p may_remove, with its tip.
+/// - Another folded face with three corners on the boundary is flipped with a neighbour, if that unfolds it.
+/// O(n). \return the number of faces changed
+int mend_boundary_faces(LearningState& state, bool may_remove);
+
+}  // namespace neuralmesh
