@@ -203,7 +203,10 @@ TEST(FindSplits, GainIsTheMeasuredDrop) {
         const EdgeSplit& split = splits[i];
         EXPECT_LE(split.gain, last);
         last = split.gain;
-        if (i % 5 != 0) continue;
+        // The gain of a boundary edge counts the points that are missing beyond it, too.
+        const Ring& ring = scene.network.ring(split.a);
+        const bool on_boundary = ring.open != 0 && (ring[0] == split.b || ring[ring.valence - 1] == split.b);
+        if (i % 5 != 0 || on_boundary) continue;
         // A collapse far away that costs nothing makes a pair with the split.
         Network after = scene.network;
         const VertexMoves moves = redistribute(after, {free_collapse(scene.network, split)}, {split}, 1,
