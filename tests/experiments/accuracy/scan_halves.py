@@ -9,7 +9,9 @@
 LEARN is the program build/tests/learn. Prints a table (markdown): per half the components, the genus, the boundary
 loops wider than 5 % of the diagonal, and the vertices farther than 3 local spacings from the cloud. The local spacing
 is the distance of the nearest point of the cloud to its tenth neighbour, over 1.78: the edge of the square that each of
-even points has. Spikes are measured against all points.
+even points has. Far vertices are measured against all points. Those that are the nearest vertex of no point are told
+apart: they span a closed hole or a bay of the boundary. So are those that stick out: farther from the cloud than the
+mean length of their own edges. Where an edge has many spacings, a vertex half an edge off a bay counts as far.
 """
 
 import argparse
@@ -54,16 +56,29 @@ def loop_widths(vertices, faces):
     return np.array(widths)
 
 
+def mean_edges(vertices, faces):
+    """The mean length of each vertex's edges, those inside the surface counted twice."""
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    lengths, ends = np.linalg.norm(vertices[edges[:, 0]] - vertices[edges[:, 1]], axis=1), edges.ravel()
+    sums = np.bincount(ends, weights=np.repeat(lengths, 2), minlength=len(vertices))
+    return sums / np.maximum(np.bincount(ends, minlength=len(vertices)), 1)
+
+
 class Cloud:
     def __init__(self, points):
         self.points, self.tree, self.diagonal = points, cKDTree(points), models.diagonal(points)
 
-    def spikes(self, vertices):
-        """The distances of the vertices from the cloud, in local spacings."""
+    def far(self, vertices, faces):
+        """How many vertices are far; of these, are the nearest one of no point, and stick out; and the distance of the
+        farthest in local spacings."""
         distance, nearest = self.tree.query(vertices)
         neighbours, _ = self.tree.query(self.points[nearest], k=[SPACING_NEIGHBOUR + 1])
-        spacing = np.maximum(neighbours[:, 0] / SPACING_FACTOR, 1e-9 * self.diagonal)
-        return distance / spacing
+        spacings = distance / np.maximum(neighbours[:, 0] / SPACING_FACTOR, 1e-9 * self.diagonal)
+        _, winners = cKDTree(vertices).query(self.points)
+        without_points = np.bincount(winners, minlength=len(vertices)) == 0
+        far = spacings > SPIKE
+        return (int(far.sum()), int((far & without_points).sum()),
+                int((far & (distance > mean_edges(vertices, faces))).sum()), f"{spacings.max():.1f}")
 
 
 def learned(options, points, name):
@@ -82,12 +97,11 @@ def row(options, name, cloud, half):
     points = cloud.points[np.random.default_rng(half).permutation(len(cloud.points))[:len(cloud.points) // 2]]
     report, mesh = learned(options, points, f"{Path(name).stem}-{half}")
     if report is None:
-        return None, [name, half, mesh, "", "", "", ""]
+        return None, [name, half, mesh, *[""] * 6]
     vertices, faces = models.load_mesh(mesh)
     wide = int((loop_widths(vertices, faces) > WIDE * cloud.diagonal).sum())
-    far = cloud.spikes(vertices)
     same = report["components"], report["genus"], wide
-    return same, [name, half, *same, int((far > SPIKE).sum()), f"{far.max():.1f}"]
+    return same, [name, half, *same, *cloud.far(vertices, faces)]
 
 
 def main(arguments=None):
@@ -109,7 +123,8 @@ def main(arguments=None):
             lines.append(line)
             print(*line, file=sys.stderr, flush=True)
         stable += len(found) == 1 and None not in found
-    header = ["cloud", "half", "components", "genus", f"loops over {100 * WIDE:g} %", "spikes", "farthest, spacings"]
+    header = ["cloud", "half", "components", "genus", f"loops over {100 * WIDE:g} %", f"over {SPIKE} spacings away", "of no point",
+              "stick out", "farthest, spacings"]
     print(table(header, lines))
     print(f"\n{stable} of {len(options.clouds)} clouds have the same topology from all halves.")
 

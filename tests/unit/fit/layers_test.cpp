@@ -85,16 +85,16 @@ double roughness(const Network& network) {
 }
 
 TEST(Layers, AreCrossedSmoothly) {
-    Network network = referee::network_of(shapes::icosphere(3), 0.25 * kEdge);
+    Network network = referee::network_of(shapes::icosphere(3), 0.4 * kEdge);
     const double before = roughness(network);
-    const Cloud cloud = views(0.5 * kEdge, 0.1 * kEdge);
+    const Cloud cloud = views(1.2 * kEdge, 0.1 * kEdge);
     NoProgress progress;
     const TargetSpace target = soundness::target_of(cloud);
     for (const VertexId v : network.vertices())
         network.set_position(v, target.frame().inside(vcg::Point3d::Construct(network.position(v))));
     const FitReport report = fit_to_points(network, target, {}, 1, 1, progress);
     EXPECT_TRUE(report.improved);
-    EXPECT_LT(roughness(network), 6) << before << " before";
+    EXPECT_LT(roughness(network), 10) << before << " before";
 }
 
 }  // namespace
