@@ -324,6 +324,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     orient_convex_side_outward(network);
     write_mesh(network, result);
     result.thickness = static_cast<double>(planes.thickness);
+    result.spacing = static_cast<double>(planes.step);
     result.two_layers = median_kurtosis(points, box, planes) < kTwoLayers;
     set_outliers(outliers_of(points, box, planes, kept), static_cast<long long>(points.size()), enough,
                  options.learn_outliers || target.has_faces(), result);

@@ -56,6 +56,7 @@ struct OpenStart {
     int loops = 0;  ///< boundary loops
     double widest_loop =
         0;  ///< of the smallest sphere around the widest hole, as share of the mesh's diagonal
+    double spacing = 0;        ///< of the points, in the core's frame: the step of the lattice of cells
     double widest_filled = 0;  ///< diameter of the widest hole that was filled
     double thickness = 0;      ///< median of that of the tangent planes (tangent_planes.h)
     bool two_layers = false;   ///< most of the points lie on the two sides of a thin wall (two_layers.h)

@@ -105,6 +105,19 @@ TEST(OpenSurface, IsNotChosenForClosedClouds) {
     }
 }
 
+// Sparse points leave gaps that look like openings.
+TEST(OpenSurface, IsNotChosenForClosedCloudsOfFewPoints) {
+    for (const int count : {500, 1000, 3000}) {
+        SCOPED_TRACE(count);
+        for (const Cloud& cloud :
+             {shapes::sphere_cloud(count), shapes::torus_cloud(count), shapes::box_cloud(count)})
+            EXPECT_EQ(learn(cloud, settings_with(200, kAutomatic)).report.boundary_loops, 0);
+        const Cloud half =
+            open_shapes::cut(shapes::sphere_cloud(2 * count), [](const vcg::Point3d& p) { return p[2] < 0; });
+        EXPECT_EQ(learn(half, settings_with(200, kAutomatic)).report.boundary_loops, 1);
+    }
+}
+
 TEST(OpenSurface, ClosesWhatIsNarrowerThanAskedFor) {
     const Cloud cap =
         open_shapes::cut(shapes::sphere_cloud(20000), [](const vcg::Point3d& p) { return p[2] < 0.8; });
