@@ -49,8 +49,8 @@ constexpr float kLikelyGap = 0.05F;
 constexpr float kLikelyGapOfFew = 0.1F;
 constexpr float kFewPoints = 5;
 /// Layers of points: the local stiffness in least bending weights of independent noise, and the rounds that
-/// take out the folds that learning has left between layers, with their bending weight. Chosen by
-/// tests/experiments/accuracy/scan_table.py --groups levels.
+/// take out the folds that learning has left between layers, with their bending weight. Chosen on
+/// the clouds of tests/experiments/accuracy/scan_table.py --groups levels.
 constexpr float kLayerStiffness = 3;
 constexpr int kStiffRounds = 3;
 constexpr float kStiffWeight = 50;
