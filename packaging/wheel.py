@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The wheel for pymeshlab: pure Python and the plugin, without Python's ABI, so one wheel serves all versions of it."""
+"""The wheel for pymeshlab: pure Python and the plugin, without Python's ABI, so one wheel serves all versions of it.
+
+It does not require pymeshlab, so that pip never replaces the one there is; the extra `pymeshlab` does."""
 
 import base64
 import hashlib
@@ -21,7 +23,8 @@ Maintainer: {maintainer[0]}
 Maintainer-email: {maintainer[1]}
 License: GPL-3.0-or-later
 Requires-Python: >=3.9
-Requires-Dist: pymeshlab ==2025.7.*
+Provides-Extra: pymeshlab
+Requires-Dist: pymeshlab ==2025.7.*; extra == "pymeshlab"
 Description-Content-Type: text/markdown
 
 ```python

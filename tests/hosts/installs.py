@@ -102,7 +102,7 @@ def test_the_wheel(build, system):
     for config in ("/etc/pip.conf", "/etc/ssl/certs/ca-certificates.crt"):
         if Path(config).exists():
             shutil.copy(config, f"{debian.folder}{config}")
-    debian.run("pip install --quiet --break-system-packages neural_mesh-*.whl")
+    debian.run("pip install --quiet --break-system-packages pymeshlab==2025.7.* neural_mesh-*.whl")
     debian.run("neural-mesh cloud.ply mesh.ply target_vertices=300")
     check(build, debian.folder / "root/mesh.ply", 300)
 

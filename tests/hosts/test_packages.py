@@ -136,7 +136,7 @@ def test_what_the_wheel_contains(dist):
             "neural_mesh/__init__.py", "neural_mesh/__main__.py", f"neural_mesh/{PLUGIN}",
             *(f"{info}/{file}" for file in ("METADATA", "WHEEL", "RECORD", "entry_points.txt", "licenses/LICENSE"))}
         metadata = archive.read(f"{info}/METADATA").decode()
-    assert f"Version: {version}" in metadata and "Requires-Dist: pymeshlab ==2025.7.*" in metadata
+    assert f"Version: {version}" in metadata and 'Requires-Dist: pymeshlab ==2025.7.*; extra == "pymeshlab"' in metadata
 
 
 @pytest.fixture(scope="session")
