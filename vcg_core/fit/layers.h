@@ -19,7 +19,7 @@ namespace neuralmesh {
 PerVertex<float> local_variances(const Network& network, const Surface& surface, const PointsByFace& points);
 
 /// How surely the points lie in layers, in [0, 1], by the \p variances of local_variances(): 0 if they are
-/// close to the surface, or spread evenly. O(vertices).
+/// close to the surface, spread evenly, or fill a space. O(vertices).
 float layering(const Network& network, const Surface& surface, const PerVertex<float>& variances);
 
 /// The mean squared gap of the edges (see PointToPlaneSystem), estimated from how the faces around each

@@ -55,6 +55,18 @@ TEST(Layers, AreNeitherNoiseNorCleanPoints) {
     EXPECT_EQ(layering_of(views(0.05 * kEdge, 0)), 0) << "close to the surface";
 }
 
+// As points throughout a body do.
+TEST(Layers, AreNotPointsThatFillASpace) {
+    EXPECT_EQ(layering_of(views(2 * kEdge, 0.5 * kEdge)), 0);
+    Cloud cube;
+    Random random(1);
+    for (int i = 0; i < kPoints; ++i) {
+        const double x = shapes::signed_unit(random), y = shapes::signed_unit(random);
+        cube.emplace_back(x, y, shapes::signed_unit(random));
+    }
+    EXPECT_EQ(layering_of(cube), 0);
+}
+
 TEST(Layers, LocalVariancesAreThatOfTheNoise) {
     constexpr double kNoise = 0.04;
     const double deviation = kNoise / std::sqrt(5.0);  // along one axis, of noise that fills a ball
