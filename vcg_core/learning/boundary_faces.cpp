@@ -11,9 +11,9 @@ namespace neuralmesh {
 
 namespace {
 
-/// Cosine of the angle from which on the third corner joins the boundary. Chosen by open_table.py.
+/// Cosine of the angle, 134 degrees, from which on the third corner joins the boundary.
 constexpr float kWidestAngle = -0.7F;
-/// Cosine of the angle below which the tip of an ear keeps its two neighbours.
+/// Cosine of the angle, 73 degrees, below which an ear stays: there a tip with two neighbours is regular.
 constexpr float kSharpEar = 0.3F;
 
 /// The face at the boundary edge from a to b, with its third corner c.
@@ -40,8 +40,7 @@ float cosine_at(const Network& network, VertexId v, VertexId a, VertexId b) {
     return to_a * to_b / std::sqrt(to_a.SquaredNorm() * to_b.SquaredNorm());
 }
 
-/// Flips the inner edge from \p u to \p v of the face (u, v, w) if neither new face is folded against \p
-/// side.
+/// Flips the inner edge u-v of the face (u, v, w) if neither new face is folded against \p side.
 bool flip_unfolds(Network& network, VertexId u, VertexId v, VertexId w, const vcg::Point3f& side) {
     if (!network.can_flip(u, v)) return false;
     const Ring& ring = network.ring(u);

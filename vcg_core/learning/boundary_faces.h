@@ -9,13 +9,13 @@
 namespace neuralmesh {
 
 /// Looks at the face of every boundary edge. Signals from beyond the edge pull the face's third corner
-/// towards the edge and across it. There the face folds over, so that the normal seems to vary, and attracts
+/// towards the edge and across it. Then the face is folded: normals seem to vary there, which attracts
 /// splits.
-/// - A third corner that is an inner vertex joins the boundary, if its angle is obtuse or the face folded.
+/// - If the third corner is an inner vertex, and its angle is obtuse or the face is folded, the face is
+///   removed and the corner joins the boundary.
 /// - An ear, a face with two boundary edges, is flipped with the face behind it, unless its tip is sharp. A
-/// folded
-///   ear that cannot be flipped is removed, if \p may_remove, with its tip.
-/// - Another folded face with three corners on the boundary is flipped with a neighbour, if that unfolds it.
+///   folded ear that cannot be flipped is removed with its tip, if \p may_remove.
+/// - Any other folded face is flipped with a neighbour, if that unfolds it.
 /// O(n). \return the number of faces changed
 int mend_boundary_faces(LearningState& state, bool may_remove);
 
