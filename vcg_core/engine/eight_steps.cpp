@@ -85,27 +85,23 @@ NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::gather(EightSteps& p, const 
 /// The winner is the last neighbour of the first of its ring, and the first one of the last.
 void EightSteps::Kernels::gather_along_boundary(EightSteps& p, const Network& network, int lane) {
     const vcg::Point3f origin = network.position(p.winners_[lane]);
-    for (const int i : {0, p.valence_ - 1}) {
-        const Ring& ring = network.ring((*p.rings_[lane])[i]);
-        const VertexId next = ring[i == 0 ? 0 : ring.valence - 1];
-        p.along_boundary_[p.along_boundary_count_++] = {lane, i, (network.position(next) - origin) * 0.5F};
-    }
+    const auto half_way_to = [&](VertexId v) { return (network.position(v) - origin) * 0.5F; };
+    const Ring& of_first = network.ring((*p.rings_[lane])[0]);
+    const Ring& of_last = network.ring((*p.rings_[lane])[p.valence_ - 1]);
+    p.along_boundary_[p.along_boundary_count_++] = {lane, half_way_to(of_first[0]),
+                                                    half_way_to(of_last[of_last.valence - 1])};
 }
 
 void EightSteps::Kernels::smooth_along_boundary(EightSteps& p, float smoothing_rate) {
     const float rate = std::min(1.0F, kBoundarySteps * smoothing_rate);
-    for (int k = 0; k < p.along_boundary_count_; k += 2) {
-        const int lane = p.along_boundary_[k].lane;
+    for (int k = 0; k < p.along_boundary_count_; ++k) {
+        const auto& [lane, half_way_of_first, half_way_of_last] = p.along_boundary_[k];
         const vcg::Point3f w = point_of(p.winner_now_, lane);
         const vcg::Point3f first = point_of(p.ring_now_[1], lane);
         const vcg::Point3f last = point_of(p.ring_now_[p.valence_], lane);
         const vcg::Point3f of_winner = (first + last) * 0.5F - w;
-        for (int j = 0; j < 2; ++j) {
-            const AlongBoundary& beside = p.along_boundary_[k + j];
-            const vcg::Point3f v = j == 0 ? first : last;
-            const vcg::Point3f move = (beside.half_way + w * 0.5F - v - of_winner) * rate;
-            add_to(p.ring_now_[beside.i + 1], lane, move);
-        }
+        add_to(p.ring_now_[1], lane, (half_way_of_first + w * 0.5F - first - of_winner) * rate);
+        add_to(p.ring_now_[p.valence_], lane, (half_way_of_last + w * 0.5F - last - of_winner) * rate);
     }
     close_cycle(p.ring_now_, p.valence_);
 }

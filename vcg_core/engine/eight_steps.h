@@ -53,10 +53,11 @@ private:
         EightInts inner;  ///< -1; 0 for a boundary vertex, which stands still
     };
 
-    /// A neighbour of a winner along the boundary.
+    /// The two neighbours of a winner along the boundary, the first and the last of its ring.
     struct AlongBoundary {
-        int lane, i;            ///< ring vertex i
-        vcg::Point3f half_way;  ///< half the vector from where the winner stood to its other neighbour there
+        int lane;
+        /// Half the vectors from where the winner stood to their other neighbours there.
+        vcg::Point3f half_way_of_first, half_way_of_last;
     };
 
     struct Kernels;
@@ -69,7 +70,7 @@ private:
     EightVectors winner_now_;
     EightInts closed_;  ///< -1; 0 for a winner on a boundary, whose ring is open
     Star stars_[kMost];
-    AlongBoundary along_boundary_[2 * kLanes];
+    AlongBoundary along_boundary_[kLanes];
     int along_boundary_count_ = 0;
     EightVectors ring_before_[kMost];
     /// Entry i + 1 is ring vertex i; entries 0 and valence + 1 repeat the last and the first.

@@ -130,24 +130,24 @@ void Fitter::examine_layers(const Surface& surface, const PointsByFace& points) 
     stiff_rounds_ = 0;
     if (static_cast<float>(points.all().size()) < kFewPoints * static_cast<float>(network_.vertex_count()))
         return;
-    layering_ = layering(network_, surface, local_variances(network_, surface, points));
+    PerVertex<float> variances = local_variances(network_, surface, points);
+    layering_ = layering(network_, surface, variances);
     if (!(layering_ > 0)) return;
     constexpr double kEdgesPerVertex = 3;
     double sum = 0;
-    for (const float s : stiffness_for_layers(surface, points)) sum += static_cast<double>(s);
+    for (const float s : stiffness_by(std::move(variances), surface, points)) sum += static_cast<double>(s);
     bending_error_ = kEdgesPerVertex * sum / network_.vertex_count();
     stiff_rounds_ = kStiffRounds;
 }
 
 /// By Bayes' rule, as the least weight, but with the variance around each vertex.
-PerVertex<float> Fitter::stiffness_for_layers(const Surface& surface, const PointsByFace& points) const {
-    if (!(layering_ > 0)) return {};
-    PerVertex<float> stiffness = local_variances(network_, surface, points);
+PerVertex<float> Fitter::stiffness_by(PerVertex<float> variances, const Surface& surface,
+                                      const PointsByFace& points) const {
     const float gap = kLikelyGap * mean_edge_length(surface);
     const float points_per_vertex =
         static_cast<float>(points.all().size()) / static_cast<float>(network_.vertex_count());
-    for (float& s : stiffness) s *= layering_ * kLayerStiffness / (gap * gap * points_per_vertex);
-    return stiffness;
+    for (float& s : variances) s *= layering_ * kLayerStiffness / (gap * gap * points_per_vertex);
+    return variances;
 }
 
 PointsByFace Fitter::assign_faces(const Surface& surface) {
@@ -197,7 +197,9 @@ double Fitter::solve(const PointsByFace& points, Surface& surface) {
     const std::vector<float> weights = choose_weights(surface, points);
     const Surface start = surface;
     const MoveLimits limits(network_, start);
-    const PointToPlaneSystem system(network_, surface, points, team_, stiffness_for_layers(surface, points));
+    PerVertex<float> stiffness;
+    if (layering_ > 0) stiffness = stiffness_by(local_variances(network_, surface, points), surface, points);
+    const PointToPlaneSystem system(network_, surface, points, team_, stiffness);
     std::vector<PerVertex<Vector3>> solutions(weights.size());
     for_chunks(weights.size(), 1, team_, [&](std::size_t i, std::size_t, std::size_t) {
         solutions[i] = limits.bounded(system.solve(weights[i]));

@@ -83,7 +83,8 @@ private:
     void weaken_outliers(const Surface& surface, PointsByFace& points) const;
     void silence_strays(const Surface& surface, PointsByFace& points);
     void examine_layers(const Surface& surface, const PointsByFace& points);
-    PerVertex<float> stiffness_for_layers(const Surface& surface, const PointsByFace& points) const;
+    PerVertex<float> stiffness_by(PerVertex<float> variances, const Surface& surface,
+                                  const PointsByFace& points) const;
     std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
     float least_split_gain(const Surface& surface) const;
     template <class Change>

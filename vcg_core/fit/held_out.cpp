@@ -16,13 +16,8 @@ constexpr std::size_t kChunk = 512;
 
 /// Vertex normals averaged twice over the rings, which takes out most of the noise.
 PerVertex<Vector3> smoothed_normals(const Network& network, const Surface& surface) {
-    constexpr int kSpreads = 2;
-    PerVertex<Vector3> normals(surface.positions.size(), Vector3::Zero());
-    for (int f = 0; f < surface.face_count(); ++f) {
-        const Vector3 area = area_vector(surface, f);
-        for (VertexId v : surface.faces[f]) normals[v] += area;
-    }
-    spread_over_rings(network, normals, kSpreads);
+    constexpr int kRings = 2;
+    PerVertex<Vector3> normals = area_vectors_around(network, surface, kRings);
     for (Vector3& n : normals) n.normalize();
     return normals;
 }

@@ -22,15 +22,6 @@ struct Spread {
     }
 };
 
-PerVertex<Vector3> smoothed_normals(const Network& network, const Surface& surface) {
-    constexpr int kSpreads = 2;
-    PerVertex<Vector3> normals(surface.positions.size(), Vector3::Zero());
-    for (int f = 0; f < surface.face_count(); ++f)
-        for (const VertexId v : surface.faces[f]) normals[v] += area_vector(surface, f);
-    spread_over_rings(network, normals, kSpreads);
-    return normals;
-}
-
 Spread spread_of(const Surface& surface, const PointsByFace& points, int face, const Vector3& normal) {
     float sum = 0;
     float squares = 0;
@@ -47,8 +38,9 @@ Spread spread_of(const Surface& surface, const PointsByFace& points, int face, c
 
 PerVertex<float> local_variances(const Network& network, const Surface& surface, const PointsByFace& points) {
     constexpr int kMinPoints = 3;
+    constexpr int kRingsOfNormals = 2;
     constexpr int kSpreads = 1;
-    const PerVertex<Vector3> normals = smoothed_normals(network, surface);
+    const PerVertex<Vector3> normals = area_vectors_around(network, surface, kRingsOfNormals);
     PerVertex<Spread> spreads(surface.positions.size());
     for (int f = 0; f < surface.face_count(); ++f) {
         if (points.of(f).size() < kMinPoints) continue;

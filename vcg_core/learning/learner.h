@@ -64,7 +64,7 @@ public:
     /// number of inactive vertices removed. O(n).
     int half_edge_collapse();
     /// Learns settling_signals(per_vertex, vertices) signals without splits and collapses, so that counters
-    /// describe the final connectivity.
+    /// describe the final connectivity. In the end mends faces along boundaries, which keeps all vertices.
     /// \param observe false: no crease measure. It needs fixed connectivity, so pass false before growth.
     /// \return false if \p progress, which gets the share of the signals done, asked to stop
     bool settle(int per_vertex, Progress& progress, bool observe = true);

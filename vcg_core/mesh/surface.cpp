@@ -53,4 +53,14 @@ float mean_edge_length(const Surface& surface) {
     return static_cast<float>(sum / (3 * static_cast<double>(surface.face_count())));
 }
 
+PerVertex<Vector3> area_vectors_around(const Network& network, const Surface& surface, int rings) {
+    PerVertex<Vector3> sums(surface.positions.size(), Vector3::Zero());
+    for (int f = 0; f < surface.face_count(); ++f) {
+        const Vector3 area = area_vector(surface, f);
+        for (VertexId v : surface.faces[f]) sums[v] += area;
+    }
+    spread_over_rings(network, sums, rings);
+    return sums;
+}
+
 }  // namespace neuralmesh

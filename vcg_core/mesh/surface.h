@@ -89,4 +89,8 @@ void spread_over_rings(const Network& network, PerVertex<Value>& values, int tim
     }
 }
 
+/// Around every vertex the area vectors of the faces, summed over \p rings rings as by spread_over_rings(): a
+/// normal from which most of the noise is gone, of any length. O(rings x vertices).
+PerVertex<Vector3> area_vectors_around(const Network& network, const Surface& surface, int rings);
+
 }  // namespace neuralmesh

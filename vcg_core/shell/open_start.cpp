@@ -231,13 +231,12 @@ void orient_convex_side_outward(Network& network) {
 }
 
 /// The points outside of the lattice, or of planes that were dropped.
-std::vector<std::uint8_t> outliers_of(const std::vector<Point3f>& points, const Box3f& box,
-                                      const TangentPlanes& planes, const std::vector<char>& kept) {
+std::vector<std::uint8_t> outliers_of(const TangentPlanes& planes, const std::vector<char>& kept) {
     std::vector<std::uint8_t> result;
-    const std::vector<int> cell_of = cells_of(points, box, planes);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (cell_of[i] >= 0 && kept[at(cell_of[i])] != 0) continue;
-        result.resize(points.size(), 0);
+    for (std::size_t i = 0; i < planes.cell_of.size(); ++i) {
+        const int cell = planes.cell_of[i];
+        if (cell >= 0 && kept[at(cell)] != 0) continue;
+        result.resize(planes.cell_of.size(), 0);
         result[i] = 1;
     }
     return result;
@@ -325,8 +324,8 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     write_mesh(network, result);
     result.thickness = static_cast<double>(planes.thickness);
     result.spacing = static_cast<double>(planes.step);
-    result.two_layers = median_kurtosis(points, box, planes) < kTwoLayers;
-    set_outliers(outliers_of(points, box, planes, kept), static_cast<long long>(points.size()), enough,
+    result.two_layers = median_kurtosis(points, planes) < kTwoLayers;
+    set_outliers(outliers_of(planes, kept), static_cast<long long>(points.size()), enough,
                  options.learn_outliers || target.has_faces(), result);
     warn_of_cuts(target, planes, result);
     progress(1.0, "Start mesh: done");

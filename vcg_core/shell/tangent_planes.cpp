@@ -14,6 +14,7 @@
 #include <tuple>
 #include <utility>
 
+#include "vcg_core/base/median.h"
 #include "vcg_core/shell/region.h"
 
 namespace neuralmesh {
@@ -106,8 +107,7 @@ std::vector<int> numbered_cells(const std::vector<Point3f>& points, const Lattic
     return cells;
 }
 
-std::vector<Moments> moments_of_cells(const std::vector<Point3f>& points, const Lattice& lattice) {
-    const std::vector<int> cell_of = numbered_cells(points, lattice);
+std::vector<Moments> moments_of_cells(const std::vector<Point3f>& points, const std::vector<int>& cell_of) {
     std::vector<Moments> cells;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (cell_of[i] < 0) continue;
@@ -229,9 +229,7 @@ void smooth_spacings(TangentPlanes& result) {
         values.assign(1, result.planes[i].spacing);
         for (const int j : result.around[i])
             if (j >= 0) values.push_back(result.planes[static_cast<std::size_t>(j)].spacing);
-        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-        std::nth_element(values.begin(), middle, values.end());
-        smoothed.push_back(*middle);
+        smoothed.push_back(median(values));
     }
     // Where a cell holds one point the planes lie less evenly than cells do.
     for (std::size_t i = 0; i < smoothed.size(); ++i)
@@ -339,9 +337,7 @@ void orient(TangentPlanes& result) {
 float median_thickness(const std::vector<TangentPlane>& planes) {
     std::vector<float> values;
     for (const TangentPlane& plane : planes) values.push_back(plane.thickness);
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return median(std::move(values));
 }
 
 }  // namespace
@@ -353,7 +349,8 @@ TangentPlanes tangent_planes(const std::vector<Point3f>& points, const Box3f& bo
     for (const float coarser : kCoarser) {
         TangentPlanes candidate;
         candidate.step = finest * coarser;
-        const std::vector<Moments> cells = moments_of_cells(points, Lattice(box, candidate.step, 0));
+        candidate.cell_of = numbered_cells(points, Lattice(box, candidate.step, 0));
+        const std::vector<Moments> cells = moments_of_cells(points, candidate.cell_of);
         if (cells.size() <= kPlanesAround) break;
         fit_planes(cells, candidate);
         candidate.thickness = median_thickness(candidate.planes);
@@ -365,10 +362,6 @@ TangentPlanes tangent_planes(const std::vector<Point3f>& points, const Box3f& bo
     smooth_spacings(result);
     orient(result);
     return result;
-}
-
-std::vector<int> cells_of(const std::vector<Point3f>& points, const Box3f& box, const TangentPlanes& planes) {
-    return numbered_cells(points, Lattice(box, planes.step, 0));
 }
 
 }  // namespace neuralmesh

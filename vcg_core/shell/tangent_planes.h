@@ -36,8 +36,9 @@ struct TangentPlanes {
     /// Places where planes that surely continue each other have opposite normals: the surface has one side
     /// only, as a Moebius strip, or comes too close to itself. In the frame of the points.
     std::vector<vcg::Point3f> contradictions;
-    float step = 0;       ///< of the lattice of cells
-    float thickness = 0;  ///< median of the planes
+    std::vector<int> cell_of;  ///< of each point: the plane of its cell; -1 outside of the lattice
+    float step = 0;            ///< of the lattice of cells
+    float thickness = 0;       ///< median of the planes
 };
 
 /// What the lattice of cells may cost, and how coarse it may get.
@@ -55,9 +56,5 @@ struct TangentPlaneOptions {
 /// O(cells log cells + points); 0.1 s for 100,000 points.
 TangentPlanes tangent_planes(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box,
                              const TangentPlaneOptions& options);
-
-/// For each of these points the number of the plane of its cell; -1 outside of the lattice. O(points).
-std::vector<int> cells_of(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box,
-                          const TangentPlanes& planes);
 
 }  // namespace neuralmesh

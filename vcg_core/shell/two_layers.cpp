@@ -19,12 +19,11 @@ constexpr double kThin = 0.02;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-std::vector<std::vector<Point3f>> points_by_cell(const std::vector<Point3f>& points, const vcg::Box3f& box,
+std::vector<std::vector<Point3f>> points_by_cell(const std::vector<Point3f>& points,
                                                  const TangentPlanes& planes) {
     std::vector<std::vector<Point3f>> cells(planes.planes.size());
-    const std::vector<int> cell_of = cells_of(points, box, planes);
     for (std::size_t i = 0; i < points.size(); ++i)
-        if (cell_of[i] >= 0) cells[at(cell_of[i])].push_back(points[i]);
+        if (planes.cell_of[i] >= 0) cells[at(planes.cell_of[i])].push_back(points[i]);
     return cells;
 }
 
@@ -46,9 +45,8 @@ double kurtosis(const std::vector<double>& heights, double spacing) {
 
 }  // namespace
 
-double median_kurtosis(const std::vector<Point3f>& points, const vcg::Box3f& box,
-                       const TangentPlanes& planes) {
-    const std::vector<std::vector<Point3f>> cells = points_by_cell(points, box, planes);
+double median_kurtosis(const std::vector<Point3f>& points, const TangentPlanes& planes) {
+    const std::vector<std::vector<Point3f>> cells = points_by_cell(points, planes);
     std::vector<double> values(1, kNormal);
     std::vector<double> heights;
     for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -4,7 +4,6 @@
 // Whether a sheet of points is one layer or the two sides of a thin wall.
 #pragma once
 
-#include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
 
 #include <vector>
@@ -21,8 +20,7 @@ constexpr double kTwoLayers = 1.75;
 /// The median over the planes of the kurtosis (fourth moment over the squared second one) of the heights
 /// above the plane of the points around it: 1 for two layers, 1.8 for an evenly bent one, 3 for normally
 /// distributed noise. 3 for planes with few points, or whose points lie on them. \p planes are those of \p
-/// points in \p box. O(points).
-double median_kurtosis(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box,
-                       const TangentPlanes& planes);
+/// points. O(points).
+double median_kurtosis(const std::vector<vcg::Point3f>& points, const TangentPlanes& planes);
 
 }  // namespace neuralmesh

@@ -9,6 +9,7 @@
 #include <cstddef>
 
 #include "vcg_core/base/logarithm.h"
+#include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/target/isolated_groups.h"
 
@@ -26,12 +27,6 @@ constexpr float kSparse = 2;   ///< suspects are sparser than usual by this fact
 constexpr Place kWindow = 64;  ///< places to each side that are looked at before a search
 constexpr std::size_t kChunk = 1024;
 constexpr float kMostRatio = 100;  ///< of spacings: neighbours may coincide
-
-float median(std::vector<float> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// The places of suspects and what is known of them.
 class Suspects {
@@ -117,7 +112,8 @@ void Suspects::note_spacings(const CloudSurvey& survey) {
         const std::size_t begin = i - std::min(i, kSamplesAround / 2);
         const std::size_t end = std::min(samples.size(), i + kSamplesAround / 2 + 1);
         const auto at = samples.begin();
-        around_[i] = median({at + static_cast<std::ptrdiff_t>(begin), at + static_cast<std::ptrdiff_t>(end)});
+        around_[i] =
+            median<float>({at + static_cast<std::ptrdiff_t>(begin), at + static_cast<std::ptrdiff_t>(end)});
     }
 }
 
@@ -231,7 +227,7 @@ double Suspects::evidence_alone(std::size_t suspect) const {
         return portable_log(
             static_cast<double>(std::min(kMostRatio, own / std::max(other, own / kMostRatio))));
     };
-    const float usual = median({spacings.begin(), spacings.begin() + kSpacingNeighbour});
+    const float usual = median<float>({spacings.begin(), spacings.begin() + kSpacingNeighbour});
     std::nth_element(spacings.begin(), spacings.begin() + kWide / 10, spacings.end());
     return kFill * std::min(narrow, wide) / count + kDensest * log_ratio(spacings[kWide / 10]) +
            kUsual * log_ratio(usual) + kInPlane * in_plane_[suspect] + kOffset;

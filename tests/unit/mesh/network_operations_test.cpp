@@ -204,46 +204,47 @@ TEST(Network, EveryFlipIsExactOrRefused) {
     EXPECT_GT(tally.refused, 1000);
 }
 
-// A notch is filled by one face: the boundary gets one edge less, the topology stays.
-TEST(Network, EveryFilledNotchIsExactOrRefused) {
+/// Tries the operation at every vertex of the starts. \p by_hand changes the faces and returns whether the
+/// vertices allow that; \p can and \p operation are the network's.
+template <class ByHand>
+void try_all_vertices(const ByHand& by_hand, bool (Network::*can)(VertexId) const,
+                      void (Network::*operation)(VertexId)) {
     Tally tally;
     for (const Start& start : starts()) {
         SCOPED_TRACE(start.name);
         const Network before = network_of(start.shape);
         for (const VertexId v : before.vertices()) {
-            const Ring& ring = before.ring(v);
-            std::vector<Triangle> expected = before.faces();
-            if (ring.open != 0) expected.push_back({v, ring[ring.valence - 1], ring[0]});
-            const bool legal = ring.open != 0 && ring.valence > 2 &&
+            std::vector<Triangle> expected = canonical(before.faces());
+            const bool legal = by_hand(before, v, expected) &&
                                acceptable(expected, census(before.faces()), before.vertex_count());
-            ASSERT_EQ(before.can_fill_notch(v), legal) << v;
-            attempt(before, legal, canonical(expected), tally, [&](Network& net) { net.fill_notch(v); });
+            ASSERT_EQ((before.*can)(v), legal) << v;
+            attempt(before, legal, canonical(expected), tally, [&](Network& net) { (net.*operation)(v); });
         }
     }
     EXPECT_GT(tally.done, 20);
     EXPECT_GT(tally.refused, 20);
 }
 
+// A notch is filled by one face: the boundary gets one edge less, the topology stays.
+TEST(Network, EveryFilledNotchIsExactOrRefused) {
+    const auto by_hand = [](const Network& network, VertexId v, std::vector<Triangle>& faces) {
+        const Ring& ring = network.ring(v);
+        if (ring.open != 0) faces.push_back({v, ring[ring.valence - 1], ring[0]});
+        return ring.open != 0 && ring.valence > 2;
+    };
+    try_all_vertices(by_hand, &Network::can_fill_notch, &Network::fill_notch);
+}
+
 // An opened face makes its inner corner a boundary vertex: the boundary gets one edge more, the topology
 // stays.
 TEST(Network, EveryOpenedFaceIsExactOrRefused) {
-    Tally tally;
-    for (const Start& start : starts()) {
-        SCOPED_TRACE(start.name);
-        const Network before = network_of(start.shape);
-        for (const VertexId v : before.vertices()) {
-            const Ring& ring = before.ring(v);
-            std::vector<Triangle> expected = canonical(before.faces());
-            const Triangle gone = canonical({{v, ring[0], ring[1]}}).front();
-            expected.erase(std::remove(expected.begin(), expected.end(), gone), expected.end());
-            const bool legal = ring.open != 0 && before.ring(ring[1]).open == 0 &&
-                               acceptable(expected, census(before.faces()), before.vertex_count());
-            ASSERT_EQ(before.can_open_face(v), legal) << v;
-            attempt(before, legal, canonical(expected), tally, [&](Network& net) { net.open_face(v); });
-        }
-    }
-    EXPECT_GT(tally.done, 20);
-    EXPECT_GT(tally.refused, 20);
+    const auto by_hand = [](const Network& network, VertexId v, std::vector<Triangle>& faces) {
+        const Ring& ring = network.ring(v);
+        const Triangle gone = canonical({{v, ring[0], ring[1]}}).front();
+        faces.erase(std::remove(faces.begin(), faces.end(), gone), faces.end());
+        return ring.open != 0 && network.ring(ring[1]).open == 0;
+    };
+    try_all_vertices(by_hand, &Network::can_open_face, &Network::open_face);
 }
 
 TEST(Network, OperationsOnASphereKeepItsVolume) {

@@ -30,7 +30,7 @@ double kurtosis_of_sheet(float bend, float apart, float across) {
         points.emplace_back(x, y, bend * x * x + (i % 2 == 0 ? apart : 0) + across * noise(random));
         box.Add(points.back());
     }
-    return median_kurtosis(points, box, tangent_planes(points, box, TangentPlaneOptions()));
+    return median_kurtosis(points, tangent_planes(points, box, TangentPlaneOptions()));
 }
 
 TEST(TwoLayers, AreSeenOnBothSidesOfAThinWall) {
