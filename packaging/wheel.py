@@ -11,7 +11,8 @@ import time
 import zipfile
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
+ROOT = Path(__file__).resolve().parents[1]
+MODULE = ROOT / "filter_neuralmesh/python/neural_mesh"
 # Zip files cannot name an earlier time.
 EARLIEST = 315532800  # 1980-01-01
 
@@ -44,12 +45,12 @@ def write(out, plugin, version, date, glibc, maintainer):
     `maintainer`: (name, address)."""
     tag = f"py3-none-manylinux_{glibc.replace('.', '_')}_x86_64"
     info = f"neural_mesh-{version}.dist-info"
-    files = {f"neural_mesh/{path.name}": path.read_bytes() for path in sorted((HERE / "neural_mesh").glob("*.py"))}
+    files = {f"neural_mesh/{path.name}": path.read_bytes() for path in sorted(MODULE.glob("*.py"))}
     files[f"neural_mesh/{plugin.name}"] = plugin.read_bytes()
     files[f"{info}/METADATA"] = METADATA.format(version=version, maintainer=maintainer).encode()
     files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: neural-mesh\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
     files[f"{info}/entry_points.txt"] = b"[console_scripts]\nneural-mesh = neural_mesh.__main__:main\n"
-    files[f"{info}/licenses/LICENSE"] = (HERE.parent / "LICENSE").read_bytes()
+    files[f"{info}/licenses/LICENSE"] = (ROOT / "LICENSE").read_bytes()
     files[f"{info}/RECORD"] = record(files, f"{info}/RECORD").encode()
     path = out / f"neural_mesh-{version}-{tag}.whl"
     moment = time.gmtime(max(date, EARLIEST))[:6]
