@@ -54,8 +54,8 @@ struct OpenStart {
     int components = 0;
     int genus = 0;  ///< of all components together
     int loops = 0;  ///< boundary loops
-    double widest_loop =
-        0;  ///< of the smallest sphere around the widest hole, as share of the mesh's diagonal
+    /// of the smallest sphere around the widest hole, as share of the mesh's diagonal
+    double widest_loop = 0;
     double spacing = 0;        ///< of the points, in the core's frame: the step of the lattice of cells
     double widest_filled = 0;  ///< diameter of the widest hole that was filled
     double thickness = 0;      ///< median of that of the tangent planes (tangent_planes.h)
