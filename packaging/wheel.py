@@ -3,7 +3,8 @@
 
 """The wheel for pymeshlab: pure Python and the plugin, without Python's ABI, so one wheel serves all versions of it.
 
-It does not require pymeshlab, so that pip never replaces the one there is; the extra `pymeshlab` does."""
+It does not require pymeshlab, so that pip never replaces the one there is; the extra `pymeshlab` does. Other extras:
+`dask` for batches on many machines, `las` and `e57` for clouds in these formats."""
 
 import base64
 import hashlib
@@ -26,6 +27,12 @@ License: GPL-3.0-or-later
 Requires-Python: >=3.9
 Provides-Extra: pymeshlab
 Requires-Dist: pymeshlab ==2025.7.*; extra == "pymeshlab"
+Provides-Extra: dask
+Requires-Dist: distributed; extra == "dask"
+Provides-Extra: las
+Requires-Dist: laspy[lazrs]; extra == "las"
+Provides-Extra: e57
+Requires-Dist: pye57; extra == "e57"
 Description-Content-Type: text/markdown
 
 ```python
@@ -45,7 +52,7 @@ def write(out, plugin, version, date, glibc, maintainer):
     `maintainer`: (name, address)."""
     tag = f"py3-none-manylinux_{glibc.replace('.', '_')}_x86_64"
     info = f"neural_mesh-{version}.dist-info"
-    files = {f"neural_mesh/{path.name}": path.read_bytes() for path in sorted(MODULE.glob("*.py"))}
+    files = {f"neural_mesh/{path.name}": path.read_bytes() for path in sorted(MODULE.iterdir()) if path.is_file()}
     files[f"neural_mesh/{plugin.name}"] = plugin.read_bytes()
     files[f"{info}/METADATA"] = METADATA.format(version=version, maintainer=maintainer).encode()
     files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: neural-mesh\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()

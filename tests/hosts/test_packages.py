@@ -22,6 +22,7 @@ sys.path.insert(0, str(ROOT / "packaging"))
 
 import package as packaging  # noqa: E402
 
+MODULE = ROOT / "filter_neuralmesh/python/neural_mesh"
 PLUGIN = "libfilter_neuralmesh.so"
 NAME = "meshlab-plugin-neuralmesh"
 
@@ -133,9 +134,12 @@ def test_what_the_wheel_contains(dist):
         assert archive.testzip() is None
         info = f"neural_mesh-{version}.dist-info"
         assert set(archive.namelist()) == {
-            "neural_mesh/__init__.py", "neural_mesh/__main__.py", f"neural_mesh/{PLUGIN}",
+            *(f"neural_mesh/{path.name}" for path in MODULE.iterdir() if path.is_file()), f"neural_mesh/{PLUGIN}",
             *(f"{info}/{file}" for file in ("METADATA", "WHEEL", "RECORD", "entry_points.txt", "licenses/LICENSE"))}
+        assert {"neural_mesh/__init__.py", "neural_mesh/__main__.py", "neural_mesh/py.typed"} <= set(archive.namelist())
         metadata = archive.read(f"{info}/METADATA").decode()
+    assert {line.split()[1] for line in metadata.splitlines() if line.startswith("Provides-Extra: ")} == {
+        "pymeshlab", "dask", "las", "e57"}
     assert f"Version: {version}" in metadata and 'Requires-Dist: pymeshlab ==2025.7.*; extra == "pymeshlab"' in metadata
 
 
@@ -192,15 +196,35 @@ def test_the_command_makes_a_mesh(build, installed, model, tmp_path):
     assert found["vertices"] == 200 and found["watertight"] and found["oriented"]
 
 
-@pytest.mark.parametrize("words, sentence", [
-    (["nowhere.ply", "mesh.ply"], "nowhere.ply"),
-    (["{cloud}", "mesh.ply", "5000"], "neural-mesh: '5000' is not of the form name=value"),
-    (["{cloud}", "mesh.ply", "target_vertices=1"], "Target vertices"),
+@pytest.mark.parametrize("words, status, sentence", [
+    (["nowhere.ply", "mesh.ply"], 1, "nowhere.ply"),
+    (["{cloud}"], 2, "required: mesh"),
+    (["{cloud}", "mesh.ply", "5000"], 2, "neural-mesh: '5000' is not of the form name=value"),
+    (["{cloud}", "mesh.ply", "vertices=5000"], 2, "There is no parameter vertices. The parameters are target_"),
+    (["{cloud}", "mesh.ply", "target_vertices=1"], 2, "Target vertices) is 1: choose a value from 4 to"),
+    (["{cloud}", "mesh.ply", "target_vertices=2.5"], 2, "target_vertices is '2.5': give a whole number."),
+    (["{cloud}", "mesh.ply", "target_vertices=many"], 2, "target_vertices is 'many': give a whole number"),
+    (["{cloud}", "mesh.ply", "target_vertices=99999999999"], 2, "is '99999999999': give a whole number of at most nine"),
+    (["{cloud}", "mesh.ply", "target_vertices=5", "target_vertices=6"], 2, "target_vertices is given twice."),
+    (["{cloud}", "mesh.ply", "learning_rate=nan"], 2, "Learning rate) is nan: choose a value from"),
+    (["{cloud}", "mesh.ply", "learning_rate=fast"], 2, "learning_rate is 'fast': give a number."),
+    (["{cloud}", "mesh.ply", "fit_to_points=2"], 2, "fit_to_points is '2': give true or false."),
+    (["{cloud}", "mesh.ply", "surface=7"], 2, "The parameter surface is '7': Enum 7 not valid."),
+    (["{cloud}", "mesh.ply", "surface=Shut"], 2, "Possible values are 'Automatic'; 'Closed'; 'Open'."),
+    (["{cloud}", "mesh.ply", "close_holes_up_to=wide"], 2, "close_holes_up_to is 'wide': give a length, such as"),
+    (["{cloud}", "mesh.ply", "close_holes_up_to=500%"], 2, "from 0 to 100, such as close_holes_up_to=5%."),
 ])
-def test_the_command_says_what_is_wrong(installed, model, words, sentence):
+def test_the_command_says_what_is_wrong(installed, model, words, status, sentence):
     words = [word.format(cloud=model("sphere")[0]) for word in words]
     done = python(installed, "-m", "neural_mesh", *words)
-    assert done.returncode == 1 and sentence in done.stderr and "Traceback" not in done.stderr
+    assert done.returncode == status and sentence in done.stderr and "Traceback" not in done.stderr, done.stderr
+
+
+@pytest.mark.parametrize("words", [["close_holes_up_to=5%"], ["close_holes_up_to=0.5", "surface=Open"]])
+def test_the_command_takes_lengths_percentages_and_names(installed, model, tmp_path, words):
+    done = python(installed, "-m", "neural_mesh", model("sphere")[0], tmp_path / "mesh.obj", "target_vertices=200",
+                  *words)
+    assert done.returncode == 0 and "vertices=200 " in done.stdout, done.stderr
 
 
 @pytest.mark.parametrize("other, words", [("2023.12", "pymeshlab 2023.12 is installed"),

@@ -1,56 +1,67 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The command neural-mesh: a cloud in, a mesh out."""
+"""The command neural-mesh: a cloud in, a mesh out, and its subcommands."""
 
 import argparse
+import importlib
 import sys
+from typing import List, Optional
+
+import pymeshlab
+
+from neural_mesh import FILTER
+from neural_mesh.parameters import WrongUsage, check, for_pymeshlab, sentence_of, settings_of
+
+# A subcommand is the module of that name, with add_arguments(parser) and run(given), which returns the exit status.
+SUBCOMMANDS = {
+}
 
 
-def value_of(text):
-    """A parameter's value: true or false, an integer, a number, else the text."""
-    if text.lower() in ("true", "false"):
-        return text.lower() == "true"
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            pass
-    return text
+def learn_one(given: argparse.Namespace) -> int:
+    settings = settings_of(given.settings)
+    meshes = pymeshlab.MeshSet(verbose=False)
+    check(settings, meshes)
+    meshes.load_new_mesh(given.cloud)
+    result = meshes.apply_filter(FILTER, **for_pymeshlab(settings))
+    can_keep_quality = given.mesh.lower().endswith(".ply")
+    meshes.save_current_mesh(given.mesh, **({"save_vertex_quality": True} if can_keep_quality else {}))
+    print(" ".join(f"{key}={value:.6g}" for key, value in result.items()))
+    return 0
 
 
-def settings_of(words):
-    settings = {}
-    for word in words:
-        name, equals, value = word.partition("=")
-        if not equals:
-            raise SystemExit(f"neural-mesh: '{word}' is not of the form name=value, such as target_vertices=5000.")
-        settings[name] = value_of(value)
-    return settings
-
-
-def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="neural-mesh", description="Reconstructs the surface of a point cloud.")
+def arguments_of_one(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("cloud", help="a file of points or a mesh, in any format of pymeshlab")
     parser.add_argument("mesh", help="the file to write, such as mesh.ply")
     parser.add_argument("settings", nargs="*", metavar="name=value", help="parameters of the filter, such as "
                         "target_vertices=5000")
-    given = parser.parse_args(arguments)
-    settings = settings_of(given.settings)
-    try:
-        import pymeshlab
+    if SUBCOMMANDS:
+        parser.formatter_class = argparse.RawDescriptionHelpFormatter
+        parser.epilog = "\n".join(["other forms, which explain themselves with --help:", *(
+            f"  neural-mesh {name:8}{what}" for name, what in SUBCOMMANDS.items())])
 
-        import neural_mesh
-        meshes = pymeshlab.MeshSet(verbose=False)
-        meshes.load_new_mesh(given.cloud)
-        result = getattr(meshes, neural_mesh.FILTER)(**settings)
-        can_keep_quality = given.mesh.lower().endswith(".ply")
-        meshes.save_current_mesh(given.mesh, **({"save_vertex_quality": True} if can_keep_quality else {}))
-    except ImportError as error:
-        raise SystemExit(f"neural-mesh: {error}") from None
+
+def main(arguments: Optional[List[str]] = None) -> int:
+    words = sys.argv[1:] if arguments is None else arguments
+    name = words[0] if words and words[0] in SUBCOMMANDS else ""
+    if name:
+        module = importlib.import_module(f"neural_mesh.{name}")
+        parser = argparse.ArgumentParser(prog=f"neural-mesh {name}", description=module.__doc__)
+        module.add_arguments(parser)
+        run = module.run
+    else:
+        parser = argparse.ArgumentParser(prog="neural-mesh", description="Reconstructs the surface of a point cloud.")
+        arguments_of_one(parser)
+        run = learn_one
+    given = parser.parse_intermixed_args(words[1:] if name else words)
+    try:
+        return run(given)
+    except WrongUsage as error:
+        print(f"neural-mesh: {error}", file=sys.stderr)
+        return 2
     except pymeshlab.PyMeshLabException as error:
-        raise SystemExit(f"neural-mesh: {error}") from None
-    print(" ".join(f"{key}={value:.6g}" for key, value in result.items()))
+        print(f"neural-mesh: {sentence_of(error)}", file=sys.stderr)
+        return 1
 
 
 if __name__ == "__main__":
