@@ -82,14 +82,15 @@ private:
     std::chrono::steady_clock::time_point last_call_{};
 };
 
-/// Learns \p layer, the host's mesh, in the world coordinates that the layer's matrix \p transform gives.
-/// \throws what target_space_of() and reconstruct() throw
+/// Learns \p layer, the host's mesh, in the world coordinates that the layer's matrix \p transform gives. \p
+/// colored: its vertices have colours that the settings ask for. \throws what target_space_of() and
+/// reconstruct() throw
 template <class MeshType, class Matrix>
-NeuralMesh run(const MeshType& layer, const Matrix& transform, const Settings& settings,
+NeuralMesh run(const MeshType& layer, const Matrix& transform, const Settings& settings, bool colored,
                HostProgress::CallBack* call_back) {
     settings.check();
     HostProgress progress(call_back);
-    return reconstruct(target_space_of(layer, transform, settings), settings, progress);
+    return reconstruct(target_space_of(layer, transform, settings, colored), settings, progress);
 }
 
 }  // namespace neuralmesh

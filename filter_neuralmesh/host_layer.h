@@ -16,7 +16,7 @@ namespace neuralmesh {
 /// The attributes of the result besides coordinates and faces, as bits of MeshModel.
 inline int result_mask(const Settings& settings) {
     int mask = MeshModel::MM_VERTQUALITY;
-    if (settings.color_by_counter) mask |= MeshModel::MM_VERTCOLOR;
+    if (settings.vertex_color != kNoColors) mask |= MeshModel::MM_VERTCOLOR;
     if (settings.select_features) mask |= MeshModel::MM_VERTFLAGSELECT;
     return mask;
 }
@@ -47,7 +47,8 @@ Report learn_current_layer(MeshDocument& document, const Settings& settings, vcg
     // The window handles events during a run, so the layer may be gone after it.
     const auto current = static_cast<int>(layer->id());
     const Matrix44m transform = layer->cm.Tr;
-    NeuralMesh result = run(layer->cm, transform, settings, call_back);
+    const bool colored = settings.vertex_color == kCloudColors && layer->hasDataMask(MeshModel::MM_VERTCOLOR);
+    NeuralMesh result = run(layer->cm, transform, settings, colored, call_back);
 
     MeshModel* const added = document.addNewMesh("", kLayerLabel, true);
     try {
@@ -67,6 +68,7 @@ template <class Log>
 void log_run(const Report& report, const Log& log) {
     try {
         for (const std::string& line : log_lines(report)) log(GLLogStream::FILTER, line);
+        for (const std::string& note : report.notes) log(GLLogStream::FILTER, note);
         for (const std::string& warning : report.warnings) log(GLLogStream::WARNING, warning);
     } catch (const std::bad_alloc&) {
         // The rest of the log is lost.

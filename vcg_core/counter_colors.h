@@ -4,12 +4,11 @@
 // Vertex colours that show the feature measure.
 #pragma once
 
-#include <array>
 #include <vector>
 
-namespace neuralmesh {
+#include "vcg_core/base/color.h"
 
-using Color = std::array<unsigned char, 3>;  ///< red, green, blue
+namespace neuralmesh {
 
 /// One colour per counter from the light two thirds of the map "magma" (van der Walt and Smith, 2015), which
 /// is perceptually uniform and readable without colour vision: light yellow at the 2nd percentile and below,

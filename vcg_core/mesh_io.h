@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "vcg_core/counter_colors.h"
+#include "vcg_core/base/color.h"
 #include "vcg_core/neural_mesh.h"
 #include "vcg_core/settings.h"
 #include "vcg_core/target/target_space.h"
@@ -25,13 +25,14 @@
 namespace neuralmesh {
 
 /// The target space of \p mesh in world coordinates; \p transform is the layer's matrix. Deleted elements are
-/// skipped. If settings.draw_from_faces and the mesh has faces, it is sampled over their area, else its
-/// vertices are the cloud; settings.selected_only restricts either to the selected ones.
-/// \throws InputError as TargetSpace does, if selected_only finds no selection, and if coordinates are not
-/// finite in the mesh or after the transform
+/// skipped. If \p colored, its points have the colours of the mesh's vertices. If settings.draw_from_faces
+/// and the mesh has faces, it is sampled over their area, else its vertices are the cloud;
+/// settings.selected_only restricts either to the selected ones. \throws InputError as TargetSpace does, if
+/// selected_only finds no selection, and if coordinates are not finite in the mesh or after the transform
 /// O(elements); 8 bytes of temporary memory per element besides the target space.
 template <class MeshType, class Matrix>
-TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const Settings& settings);
+TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const Settings& settings,
+                            bool colored = false);
 
 using Coordinates = std::array<double, 3>;
 
@@ -44,8 +45,8 @@ template <class MeshType, class Matrix>
 Coordinates origin_of(const NeuralMesh& result, const Matrix& transform);
 
 /// Writes \p result into the empty mesh \p out: coordinates relative to \p origin, faces, the counter as
-/// vertex quality and, if the settings ask for them, vertex colour and vertex selection. Skips vertex
-/// attributes that MeshType lacks. O(vertices + faces).
+/// vertex quality and, if there are any, vertex colours and, if the settings ask for it, vertex selection.
+/// Skips vertex attributes that MeshType lacks. O(vertices + faces).
 template <class MeshType>
 void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& out,
                 const Coordinates& origin = {});
@@ -99,10 +100,22 @@ std::vector<const typename Container::value_type*> elements_of(const Container& 
     return elements;
 }
 
+/// \p color_at(i), i in [0, count), returns a vcg colour.
+template <class ColorAt>
+std::vector<Color> colors_of(std::size_t count, const ColorAt& color_at) {
+    std::vector<Color> colors(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto& c = color_at(i);
+        colors[i] = {c[0], c[1], c[2]};
+    }
+    return colors;
+}
+
 }  // namespace detail
 
 template <class MeshType, class Matrix>
-TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const Settings& settings) {
+TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const Settings& settings,
+                            bool colored) {
     vcg::Matrix44d to_world;
     to_world.Import(transform);
     const auto in_world = [&to_world](const auto& p) {
@@ -115,16 +128,25 @@ TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const
             3 * faces.size(), static_cast<std::size_t>(mesh.vn),
             [&](std::size_t i) -> const auto& { return *faces[i / 3]->cV(static_cast<int>(i % 3)); },
             in_world);
-        return detail::target_of_triangles(faces.size(),
-                                           [&](std::size_t i, int k) { return in_world(faces[i]->cP(k)); });
+        TargetSpace target = detail::target_of_triangles(
+            faces.size(), [&](std::size_t i, int k) { return in_world(faces[i]->cP(k)); });
+        if (colored)
+            target.set_colors(detail::colors_of(3 * faces.size(), [&](std::size_t i) {
+                return faces[i / 3]->cV(static_cast<int>(i % 3))->cC();
+            }));
+        return target;
     }
     const auto vertices = detail::elements_of(mesh.vert, settings.selected_only && mesh.vn > 0, "vertices");
     detail::check_finite(
         vertices.size(),
         static_cast<std::size_t>(mesh.vn), [&](std::size_t i) -> const auto& { return *vertices[i]; },
         in_world);
-    return detail::target_of_points(vertices.size(),
-                                    [&](std::size_t i) { return in_world(vertices[i]->cP()); });
+    TargetSpace target =
+        detail::target_of_points(vertices.size(), [&](std::size_t i) { return in_world(vertices[i]->cP()); });
+    if (colored)
+        target.set_colors(
+            detail::colors_of(vertices.size(), [&](std::size_t i) { return vertices[i]->cC(); }));
+    return target;
 }
 
 template <class MeshType, class Matrix>
@@ -146,13 +168,13 @@ void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& ou
     using Coord = typename MeshType::CoordType;
     const vcg::Point3d from(origin[0], origin[1], origin[2]);
     auto vertex = vcg::tri::Allocator<MeshType>::AddVertices(out, result.positions.size());
-    const std::vector<Color> colors =
-        settings.color_by_counter ? counter_colors(result.counters) : std::vector<Color>();
     for (std::size_t i = 0; i < result.positions.size(); ++i, ++vertex) {
         vertex->P() = Coord::Construct(result.positions[i] - from);
         if (vcg::tri::HasPerVertexQuality(out)) vertex->Q() = result.counters[i];
-        if (settings.color_by_counter && vcg::tri::HasPerVertexColor(out))
-            vertex->C() = vcg::Color4b(colors[i][0], colors[i][1], colors[i][2], 255);
+        if (!result.colors.empty() && vcg::tri::HasPerVertexColor(out)) {
+            const Color& c = result.colors[i];
+            vertex->C() = vcg::Color4b(c[0], c[1], c[2], 255);
+        }
         if (settings.select_features && result.features[i] != 0) vertex->SetS();
     }
     auto face = vcg::tri::Allocator<MeshType>::AddFaces(out, result.faces.size());

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "vcg_core/base/color.h"
 #include "vcg_core/learning/stop_reason.h"
 
 namespace neuralmesh {
@@ -37,6 +38,7 @@ struct Report {
     double seconds = 0;       ///< wall-clock time of reconstruct()
     StopReason stop_reason = StopReason::target_reached;
     std::vector<std::string> warnings;  ///< full sentences for the log
+    std::vector<std::string> notes;     ///< the same, of what is no reason for doubt
 };
 
 /// An indexed triangle mesh, counter-clockwise seen from outside, with one number per vertex.
@@ -45,6 +47,7 @@ struct NeuralMesh {
     std::vector<std::array<int, 3>> faces;
     std::vector<float> counters;  ///< per vertex, >= 0: the measure that settings.feature_measure names
     std::vector<char> features;   ///< per vertex: 1 if the counter is above the threshold (eq 7)
+    std::vector<Color> colors;    ///< per vertex; empty if settings.vertex_color is kNoColors
     Report report;
 };
 

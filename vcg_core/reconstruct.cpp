@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <string>
 
+#include "vcg_core/cloud_colors.h"
+#include "vcg_core/counter_colors.h"
 #include "vcg_core/fit/rms_error.h"
 #include "vcg_core/learn_and_fit.h"
 #include "vcg_core/learning/feature_counter.h"
@@ -46,6 +48,21 @@ void write_counters(const LearnedNetwork& learned, const Settings& settings, Neu
         mesh.report.feature_vertices += mesh.features.back();
     }
     mesh.report.mean_counter = mean;
+}
+
+void write_colors(const TargetSpace& target, const Network& network, const Settings& settings,
+                  Progress& progress, NeuralMesh& mesh) {
+    if (settings.vertex_color == kNoColors) return;
+    if (settings.vertex_color == kCloudColors && target.has_colors()) {
+        Random random(stream_seed(settings.random_seed, Stream::colors));
+        const PerVertex<Color> colors = cloud_colors(target, network, settings.threads, random, progress);
+        for (const VertexId v : network.vertices()) mesh.colors.push_back(colors[v]);
+        return;
+    }
+    if (settings.vertex_color == kCloudColors)
+        mesh.report.notes.emplace_back(
+            "The layer has no colours: those of the vertices show the feature measure.");
+    mesh.colors = counter_colors(mesh.counters);
 }
 
 void write_figures(const LearnedNetwork& learned, Report& report) {
@@ -91,6 +108,7 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     mesh.report.outliers = task.outliers;
     write_geometry(learned.network, task.target().frame(), mesh);
     write_counters(learned, settings, mesh);
+    write_colors(task.target(), learned.network, settings, monotone, mesh);
     write_figures(learned, mesh.report);
     warn_of_growth(learned, mesh.report);
     Random random(stream_seed(settings.random_seed, Stream::rms_error));

@@ -114,10 +114,11 @@ std::vector<SettingInfo> mesh_rows() {
 std::vector<SettingInfo> feature_rows() {
     using S = Settings;
     return {
-        row(&S::color_by_counter, "color_by_counter", "Colour by counter",
-            "Colour the vertices by the feature measure, from light yellow where the surface is smooth over "
-            "red to purple at features. The vertex quality holds the measure itself, whether this is on or "
-            "off."),
+        row(&S::vertex_color, "vertex_color", "Vertex colour", {"Counter", "Cloud", "None"},
+            "What the vertex colours show. Counter: the feature measure, from light yellow where the surface "
+            "is smooth over red to purple at features. Cloud: the colours of the layer's vertices, each "
+            "computed from all points near the vertex; if the layer has none, the colours of Counter. The "
+            "vertex quality holds the feature measure in any case."),
         row(&S::select_features, "select_features", "Select features",
             "Select the vertices whose feature measure is above the feature threshold."),
         row(&S::feature_measure, "feature_measure", "Feature measure", {"Normal counter", "Crease measure"},

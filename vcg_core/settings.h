@@ -25,6 +25,13 @@ enum FeatureMeasure : int {
     kCreaseMeasure = 1,   ///< angle between the planes at a vertex, see learning/crease_measure.h
 };
 
+/// What the vertex colours of the result show.
+enum VertexColor : int {
+    kCounterColors = 0,  ///< the feature measure, see counter_colors.h
+    kCloudColors = 1,    ///< the colours of the cloud, see cloud_colors.h; without any: the feature measure
+    kNoColors = 2,
+};
+
 /// The mesh that learning starts from.
 enum StartShape : int {
     kShell = 0,        ///< a coarse mesh around the cloud that already has its components and handles
@@ -50,7 +57,7 @@ struct Settings {
     bool selected_only = false;
     bool remove_outliers = true;  ///< only of points; see target/outlier_removal.h
     bool even_sampling = true;    ///< only of points; see target/point_areas.h
-    bool color_by_counter = true;
+    int vertex_color = kCloudColors;
     bool select_features = false;
     int feature_measure = kFeatureCounter;
     double feature_threshold = 1.0;  ///< C_nc, eq 7

@@ -20,7 +20,7 @@ FOLDER = Path(__file__).resolve().parents[2] / "filter_neuralmesh" / "scripts"
 EXAMPLES = {
     "reconstruct": {},
     "preview": {"target_vertices": 2000},
-    "features": {"target_vertices": 5000, "select_features": True},
+    "features": {"target_vertices": 5000, "select_features": True, "vertex_color": 0},
     "evenly_spaced": {"target_vertices": 5000, "utility_counter": 1},
     "vertices_of_a_mesh": {"target_vertices": 2000, "draw_from_faces": False},
 }

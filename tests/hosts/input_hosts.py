@@ -83,7 +83,7 @@ def in_server(build, server, layer, folder):
     project = folder / "learned.mlp"
     moved = not (layer.matrix == np.eye(4)).all()
     code, text = meshlabserver.run(server, *_server_input(layer, folder), *(("-w", project) if moved else ()),
-                                   "-o", out, "-m", "vq",
+                                   "-o", out, "-m", "vq", "vc",
                                    "-o", copy, "-l", 0, "-m", *ALL_ATTRIBUTES, "-o", kept, "-l", 1, "-m", *ALL_ATTRIBUTES,
                                    "-s", script)
     assert code in (0, 255), f"ended with code {code}: {text[-2000:]}"

@@ -27,6 +27,7 @@ class Input:
     deleted: np.ndarray = None  # points that are marked as deleted but still stored
     matrix: np.ndarray = field(default_factory=lambda: np.eye(4))
     textured: bool = False
+    paint: np.ndarray = None  # the points' colours, RGB from 0 to 255; None: a pattern
     outliers: int = 0  # the number of last points, which the mesh must not follow
     parameters: dict = field(default_factory=dict)
     target: int = 250
@@ -56,6 +57,8 @@ class Input:
 
     def colors(self):
         """The colours that the layer has before the filter runs, RGBA from 0 to 255."""
+        if self.paint is not None:
+            return np.column_stack([self.paint, np.full(len(self.points), 255)]).astype("u1")
         steps = np.arange(len(self.points))
         return np.column_stack([steps % 251, steps % 13 * 19, steps % 7 * 36, steps * 0 + 255]).astype("u1")
 

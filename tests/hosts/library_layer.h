@@ -126,8 +126,9 @@ inline std::string words_of(const Matrix44m& matrix) {
 
 inline void write_off(const CMeshO& mesh, std::ostream& out) {
     out.precision(17);
-    out << "OFF\n" << mesh.vn << ' ' << mesh.fn << " 0\n";
-    for (const auto& v : mesh.vert) out << v.cP()[0] << ' ' << v.cP()[1] << ' ' << v.cP()[2] << '\n';
+    out << "COFF\n" << mesh.vn << ' ' << mesh.fn << " 0\n";
+    for (const auto& v : mesh.vert) out << v.cP()[0] << ' ' << v.cP()[1] << ' ' << v.cP()[2] << ' ' << int{v.cC()[0]} << ' '
+            << int{v.cC()[1]} << ' ' << int{v.cC()[2]} << " 255\n";
     for (const auto& f : mesh.face) {
         out << 3;
         for (int k = 0; k < 3; ++k) out << ' ' << vcg::tri::Index(mesh, f.cV(k));

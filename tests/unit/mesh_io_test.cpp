@@ -109,5 +109,39 @@ TEST(MeshIo, KeepsTheGeometryRelativeToAnOrigin) {
     }
 }
 
+TEST_P(OfFaces, TakesTheColoursOfWhatIsLearned) {
+    Mesh mesh;
+    fill(mesh, shapes::cube(), GetParam());
+    for (std::size_t i = 0; i < mesh.vert.size(); ++i)
+        mesh.vert[i].C() = vcg::Color4b(static_cast<unsigned char>(i), 7, 9, 255);
+    Settings settings;
+    EXPECT_FALSE(target_space_of(mesh, moved(0, 0, 0), settings).has_colors());
+    settings.selected_only = true;
+    if (GetParam()) {
+        for (std::size_t i = 2; i < mesh.face.size(); ++i) mesh.face[i].SetS();
+    } else {
+        for (std::size_t i = 1; i < mesh.vert.size(); ++i) mesh.vert[i].SetS();
+    }
+    const TargetSpace target = target_space_of(mesh, moved(0, 0, 0), settings, true);
+    ASSERT_EQ(target.colors().size(), target.positions().size());
+    for (std::size_t i = 0; i < target.colors().size(); ++i) {
+        const Color& color = target.colors()[i];
+        const vcg::Point3f here = target.frame().inside(vcg::Point3d::Construct(mesh.vert[color[0]].cP()));
+        EXPECT_EQ(target.positions()[i], here) << i;
+        EXPECT_EQ(color[1] + color[2], 16);
+    }
+}
+
+TEST(MeshIo, WritesTheColoursOfTheResult) {
+    NeuralMesh result = cube_at({0, 0, 0});
+    Mesh plain;
+    write_mesh(result, Settings(), plain);
+    EXPECT_EQ(plain.vert[3].cC(), Mesh::VertexType().cC());
+    result.colors.assign(result.positions.size(), Color{1, 2, 3});
+    Mesh out;
+    write_mesh(result, Settings(), out);
+    for (const auto& v : out.vert) EXPECT_EQ(v.cC(), vcg::Color4b(1, 2, 3, 255));
+}
+
 }  // namespace
 }  // namespace neuralmesh

@@ -15,10 +15,11 @@ enum class Stream {
     rms_error = 1,  ///< the points at which the result is measured
     shell = 2,      ///< the points for the start mesh
     fit = 3,        ///< the points for the fit
+    colors = 4,     ///< the points that give faces their colours
 };
 
 /// The seed of the generator for one purpose in a run with the given seed, at least 0. Runs whose seeds
-/// differ by less than 4 share sequences, for different purposes.
+/// differ by less than 5 share sequences, for different purposes.
 constexpr std::uint64_t stream_seed(int seed, Stream purpose) {
     return static_cast<std::uint64_t>(seed) + static_cast<std::uint64_t>(purpose);
 }

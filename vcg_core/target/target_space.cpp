@@ -66,6 +66,11 @@ double estimated_share_of_duplicates(const std::vector<vcg::Point3f>& points) {
                     share_of_duplicates(std::move(random_points)));
 }
 
+vcg::Point3f interpolated(const vcg::Point3f& a, const vcg::Point3f& b, const vcg::Point3f& c, float u,
+                          float v) {
+    return a + (b - a) * u + (c - a) * v;
+}
+
 }  // namespace
 
 vcg::Point3f Frame::inside(const vcg::Point3d& p) const {
@@ -144,8 +149,11 @@ void TargetSpace::accumulate_areas() {
 std::optional<TargetSpace> TargetSpace::without(const std::vector<std::uint8_t>& left_out) const {
     TargetSpace rest;
     rest.positions_.reserve(static_cast<std::size_t>(std::count(left_out.begin(), left_out.end(), 0)));
-    for (std::size_t i = 0; i < positions_.size(); ++i)
-        if (left_out[i] == 0) rest.positions_.push_back(positions_[i]);
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+        if (left_out[i] != 0) continue;
+        rest.positions_.push_back(positions_[i]);
+        if (has_colors()) rest.colors_.push_back(colors_[i]);
+    }
     vcg::Box3d box;
     for (const vcg::Point3f& p : rest.positions_) box.Add(vcg::Point3d::Construct(p));
     if (box.IsNull() || box.min == box.max) return std::nullopt;
@@ -162,6 +170,13 @@ std::optional<TargetSpace> TargetSpace::each_place_once() const {
     once.frame_ = frame_;
     once.positions_ = positions_;
     remove_duplicates(once.positions_);
+    if (!has_colors()) return once;
+    const auto begin = once.positions_.begin();
+    once.colors_.resize(once.positions_.size());
+    for (std::size_t i = positions_.size(); i-- > 0;) {
+        const auto place = std::lower_bound(begin, once.positions_.end(), positions_[i], by_coordinates);
+        once.colors_[static_cast<std::size_t>(place - begin)] = colors_[i];
+    }
     return once;
 }
 
@@ -172,6 +187,9 @@ std::optional<TargetSpace> TargetSpace::evenly(const CloudSurvey& survey) const 
     even.frame_ = frame_;
     even.positions_ = std::move(areas->points);
     even.weights_ = std::move(areas->of_run);
+    if (has_colors())
+        for (NearestPoints::Place p = 0; p < survey.cloud.size(); ++p)
+            even.colors_.push_back(colors_[survey.cloud.index(p)]);
     std::vector<double> of_runs;
     for (std::size_t i = 0; i < even.positions_.size(); i += PointAreas::kRun) {
         const std::size_t points = std::min(PointAreas::kRun, even.positions_.size() - i);
@@ -188,6 +206,23 @@ vcg::Point3f TargetSpace::sample(Random& random) const {
         return positions_[first + random.below(static_cast<std::uint32_t>(points))];
     }
     if (!has_faces()) return positions_[random.below(static_cast<std::uint32_t>(positions_.size()))];
+    const FacePoint at = draw_from_faces(random);
+    return interpolated(positions_[at.corner], positions_[at.corner + 1], positions_[at.corner + 2], at.u,
+                        at.v);
+}
+
+TargetSpace::ColoredPoint TargetSpace::sample_colored(Random& random) const {
+    const FacePoint at = draw_from_faces(random);
+    const auto color = [&](std::size_t k) {
+        const Color& c = colors_[at.corner + k];
+        return vcg::Point3f(c[0], c[1], c[2]);
+    };
+    return {
+        interpolated(positions_[at.corner], positions_[at.corner + 1], positions_[at.corner + 2], at.u, at.v),
+        interpolated(color(0), color(1), color(2), at.u, at.v)};
+}
+
+TargetSpace::FacePoint TargetSpace::draw_from_faces(Random& random) const {
     const double fraction = (random.bits() + 0.5) * 0x1p-32;
     const auto it = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end(),
                                      fraction * cumulative_area_.back());
@@ -199,8 +234,7 @@ vcg::Point3f TargetSpace::sample(Random& random) const {
         u = 1 - u;
         v = 1 - v;
     }
-    const vcg::Point3f& a = positions_[3 * face];
-    return a + (positions_[3 * face + 1] - a) * u + (positions_[3 * face + 2] - a) * v;
+    return {3 * face, u, v};
 }
 
 }  // namespace neuralmesh

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "vcg_core/base/color.h"
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/target/alias_table.h"
@@ -35,7 +36,8 @@ struct Frame {
     vcg::Point3d outside(const vcg::Point3f& p) const;
 };
 
-/// Points, or triangles weighted by area. Memory: 12 bytes per point, or 44 bytes per triangle.
+/// Points, or triangles weighted by area. Memory: 12 bytes per point, or 44 bytes per triangle; with colours
+/// 3 more per position.
 class TargetSpace {
 public:
     /// A cloud. \p point_at(i), i in [0, count), returns point i as vcg::Point3d; it is called more than once
@@ -49,9 +51,20 @@ public:
     template <class CornerAt>
     static TargetSpace triangles(std::size_t count, const CornerAt& corner_at);
 
+    /// Gives every one of positions() a colour. The targets made of this one keep them; of repeated points
+    /// the first given counts. \pre there are as many as positions()
+    void set_colors(std::vector<Color> colors) { colors_ = std::move(colors); }
+
     /// A random point, in the frame of the core: uniform over the points, in proportion to their weights, or
     /// uniform over the area of the triangles. O(1) for points, O(log n) for n triangles.
     vcg::Point3f sample(Random& random) const;
+
+    struct ColoredPoint {
+        vcg::Point3f position;
+        vcg::Point3f color;  ///< 0 to 255; of faces interpolated between their corners
+    };
+    /// A random point of the faces with its colour. O(log faces). \pre has_faces() and has_colors()
+    ColoredPoint sample_colored(Random& random) const;
 
     /// The cloud without the points i with left_out[i] != 0, in a frame of its own; nothing if the remaining
     /// points span no surface. O(points). \pre !has_faces()
@@ -74,6 +87,9 @@ public:
     bool has_faces() const { return !cumulative_area_.empty(); }
     /// The points, or three corners per triangle, in the frame of the core.
     const std::vector<vcg::Point3f>& positions() const { return positions_; }
+    bool has_colors() const { return !colors_.empty(); }
+    /// Of positions(); empty if there are none.
+    const std::vector<Color>& colors() const { return colors_; }
 
 private:
     template <class PointAt>
@@ -86,6 +102,12 @@ private:
     std::string lack_of_spread() const;
     void check_spread() const;
     void accumulate_areas();
+    /// A point of a face: its first corner, and coordinates along the two edges from there.
+    struct FacePoint {
+        std::size_t corner;
+        float u, v;
+    };
+    FacePoint draw_from_faces(Random& random) const;
 
     Frame frame_;
     bool off_centre_ = false;  ///< the origin is the centre of most points, not of the box
@@ -93,6 +115,7 @@ private:
     std::vector<double> cumulative_area_;
     std::vector<float> weights_;  ///< of the runs of points; empty: all points weigh 1
     AliasTable runs_;             ///< draws runs
+    std::vector<Color> colors_;   ///< of the positions; may be empty
 };
 
 template <class PointAt>

@@ -26,19 +26,22 @@ class PlyVertex : public vcg::Vertex<PlyTypes, vcg::vertex::Coord3d, vcg::vertex
 class PlyFace : public vcg::Face<PlyTypes, vcg::face::VertexRef, vcg::face::Normal3d, vcg::face::BitFlags> {};
 class PlyMesh : public vcg::tri::TriMesh<std::vector<PlyVertex>, std::vector<PlyFace>> {};
 
-/// Reads the PLY file \p path into the empty \p mesh. \throws InputError if that fails
-inline void read_ply(const std::string& path, PlyMesh& mesh) {
-    if (vcg::tri::io::ImporterPLY<PlyMesh>::Open(mesh, path.c_str()) != 0)
+/// Reads the PLY file \p path into the empty \p mesh. \return the attributes in it, as bits of
+/// vcg::tri::io::Mask. \throws InputError if that fails
+inline int read_ply(const std::string& path, PlyMesh& mesh) {
+    int attributes = 0;
+    if (vcg::tri::io::ImporterPLY<PlyMesh>::Open(mesh, path.c_str(), attributes) != 0)
         throw InputError("Cannot read " + path + " as PLY.");
+    return attributes;
 }
 
 /// The target space of the PLY file \p path. \throws InputError as read_ply and target_space_of do
 inline TargetSpace target_of_ply(const std::string& path, const Settings& settings) {
     PlyMesh mesh;
-    read_ply(path, mesh);
+    const int attributes = read_ply(path, mesh);
     vcg::Matrix44d identity;
     identity.SetIdentity();
-    return target_space_of(mesh, identity, settings);
+    return target_space_of(mesh, identity, settings, (attributes & vcg::tri::io::Mask::IOM_VERTCOLOR) != 0);
 }
 
 /// Sets \p value to the number in \p text. For a boolean parameter, \p text may also be "true" or "false".

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""Vertex colours: those of the layer, the same in all hosts, and what the filter does if there are none."""
+
+import input_hosts
+import inputs
+import meshlabserver
+import numpy as np
+import pytest
+from conftest import write_points
+
+WAVE = 1.0  # the period of waves() over a unit ball, ten edges of its mesh of 1,500 vertices
+OUTLIERS = 20
+
+
+def waves(points):
+    """A smooth texture with the full range of codes."""
+    phases = 2 * np.pi * np.asarray(points, dtype=float) / WAVE + [0, 1, 2]
+    return np.round(127.5 * (1 + np.sin(phases)))
+
+
+def painted_ball(**parameters):
+    """Black outliers lie off the surface."""
+    points = np.vstack([inputs.ball(20000), inputs.ball(OUTLIERS, radius=1.5)])
+    colors = waves(points)
+    colors[-OUTLIERS:] = 0
+    return inputs.Input(points, paint=colors, outliers=OUTLIERS, target=1500, parameters=parameters)
+
+
+def result_in(pymeshlab, outcome):
+    """(vertices, colours from 0 to 255) of the result."""
+    meshes = input_hosts.new_mesh_set(pymeshlab)
+    meshes.load_new_mesh(str(outcome.mesh))
+    mesh = meshes.current_mesh()
+    return mesh.vertex_matrix(), np.round(255 * mesh.vertex_color_matrix()[:, :3]).astype(int)
+
+
+@pytest.fixture(scope="module")
+def first():
+    """The colours in the first host."""
+    return {}
+
+
+@pytest.mark.parametrize("host", input_hosts.HOSTS)
+def test_the_mesh_has_the_colours_of_the_layer(build, server, pymeshlab, first, tmp_path, host):
+    outcome = input_hosts.try_out(build, server, pymeshlab, host, painted_ball(), tmp_path)
+    assert outcome.unchanged and outcome.report["outliers"] == OUTLIERS
+    vertices, colors = result_in(pymeshlab, outcome)
+    assert np.abs(colors - waves(vertices)).mean() < 3
+    assert np.array_equal(colors, first.setdefault("colors", colors))
+
+
+def assert_counter_colors(mesh):
+    """Lighter where the counter is low."""
+    colors, counters = mesh.vertex_color_matrix()[:, :3], mesh.vertex_scalar_array()
+    low, high = np.percentile(counters, [25, 75])
+    assert colors[counters < low].mean() > colors[counters > high].mean() + .1
+
+
+def test_a_layer_without_colours_gets_those_of_the_counter(build, server, pymeshlab, tmp_path):
+    cloud = write_points(tmp_path / "cloud.ply", inputs.ball(2000))
+    script = meshlabserver.write_script(build, tmp_path / "script.mlx", target_vertices=200)
+    code, text = meshlabserver.run(server, "-i", cloud, "-o", tmp_path / "out.ply", "-m", "vq", "vc", "-s", script)
+    assert code == 0 and "The layer has no colours" in text
+    assert meshlabserver.figures(text)["warnings"] == 0
+    meshes = input_hosts.new_mesh_set(pymeshlab)
+    meshes.load_new_mesh(str(tmp_path / "out.ply"))
+    assert_counter_colors(meshes.current_mesh())
+
+
+def test_the_colours_can_be_chosen(pymeshlab, meshes, tmp_path):
+    cloud = inputs.write_ply(painted_ball(), tmp_path / "cloud.ply")
+    for choice, there in ((0, True), (2, False)):
+        meshes.load_new_mesh(str(cloud))
+        meshes.apply_filter(input_hosts.PYTHON_NAME, target_vertices=200, vertex_color=choice)
+        assert meshes.current_mesh().has_vertex_color() == there
+        if there:
+            assert_counter_colors(meshes.current_mesh())

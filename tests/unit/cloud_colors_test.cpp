@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Vertex colours from those of a cloud: accuracy, the plain slow computation, places without points, and what
+// a whole run does with them.
+#include "vcg_core/cloud_colors.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/soundness.h"
+#include "vcg_core/mesh/surface.h"
+#include "vcg_core/reconstruct.h"
+
+namespace neuralmesh {
+namespace {
+
+using shapes::Cloud;
+
+constexpr Color kRed{255, 0, 0}, kBlue{0, 0, 255};
+
+unsigned char code(double value) {
+    return static_cast<unsigned char>(std::lround(std::clamp(value, 0.0, 255.0)));
+}
+
+/// Waves of the full range of codes, with the given period along each axis.
+Color wavy(const vcg::Point3d& p, double period) {
+    const auto wave = [&](int k) {
+        return code(127.5 * (1 + std::sin(6.283185307179586 * p[k] / period + k)));
+    };
+    return {wave(0), wave(1), wave(2)};
+}
+
+template <class ColorAt>
+TargetSpace colored(const Cloud& cloud, const ColorAt& color_at) {
+    TargetSpace target = targets::target_of(cloud);
+    std::vector<Color> colors;
+    for (const vcg::Point3d& p : cloud) colors.push_back(color_at(p));
+    target.set_colors(colors);
+    return target;
+}
+
+PerVertex<Color> colors_of(const TargetSpace& target, const Network& network, int threads = 2) {
+    NoProgress progress;
+    Random random(1);
+    return cloud_colors(target, network, threads, random, progress);
+}
+
+double mean_error(const PerVertex<Color>& found, const std::vector<vcg::Point3d>& places, double period) {
+    double sum = 0;
+    for (int v = 0; v < found.size(); ++v) {
+        const Color truth = wavy(places[static_cast<std::size_t>(v)], period);
+        for (std::size_t k = 0; k < 3; ++k) sum += std::abs(int{found[v][k]} - int{truth[k]});
+    }
+    return sum / (3 * found.size());
+}
+
+double mean_edge(const shapes::Shape& shape) {
+    return static_cast<double>(mean_edge_length(Surface(referee::network_of(shape))));
+}
+
+/// 10,242 vertices, and waves ten edges long.
+TEST(CloudColors, AreWithinThreeCodesOfASmoothTexture) {
+    const shapes::Shape sphere = shapes::icosphere(5);
+    const double period = 10 * mean_edge(sphere);
+    const TargetSpace target =
+        colored(shapes::sphere_cloud(100000), [&](const vcg::Point3d& p) { return wavy(p, period); });
+    const auto found = colors_of(target, targets::network_in_frame(target, sphere));
+    EXPECT_LT(mean_error(found, sphere.positions, period), 3);
+}
+
+TEST(CloudColors, DoNotDependOnTheThreads) {
+    const shapes::Shape sphere = shapes::icosphere(3);
+    const TargetSpace target =
+        colored(shapes::sphere_cloud(50000), [](const vcg::Point3d& p) { return wavy(p, 1); });
+    const Network network = targets::network_in_frame(target, sphere);
+    EXPECT_EQ(colors_of(target, network, 1), colors_of(target, network, 3));
+}
+
+/// Every point with its barycentric coordinates on the nearest of all faces.
+struct Attached {
+    Triangle face;
+    std::array<float, 3> weights;
+    Color color;
+};
+
+std::vector<Attached> attached(const TargetSpace& target, const Surface& surface) {
+    std::vector<Attached> result;
+    for (std::size_t i = 0; i < target.positions().size(); ++i) {
+        Foot nearest{1e30F, {}};
+        int face = -1;
+        for (int f = 0; f < surface.face_count(); ++f) {
+            const Foot foot = foot_on_triangle(to_eigen(target.positions()[i]), surface.corner(f, 0),
+                                               surface.corner(f, 1), surface.corner(f, 2));
+            if (foot.squared_distance >= nearest.squared_distance) continue;
+            nearest = foot;
+            face = f;
+        }
+        result.push_back({surface.faces[face], nearest.weights, target.colors()[i]});
+    }
+    return result;
+}
+
+/// Adds to the values the weighted mean of what is left of the points' colours without them.
+std::vector<double> improved(const std::vector<double>& values, const std::vector<Attached>& points,
+                             std::size_t channel) {
+    std::vector<double> sums(values.size()), weights(values.size());
+    for (const Attached& p : points) {
+        double left = p.color[channel];
+        for (std::size_t k = 0; k < 3; ++k)
+            left -= static_cast<double>(p.weights[k]) * values[static_cast<std::size_t>(p.face[k])];
+        for (std::size_t k = 0; k < 3; ++k) {
+            sums[static_cast<std::size_t>(p.face[k])] += static_cast<double>(p.weights[k]) * left;
+            weights[static_cast<std::size_t>(p.face[k])] += static_cast<double>(p.weights[k]);
+        }
+    }
+    for (std::size_t v = 0; v < values.size(); ++v) sums[v] = values[v] + sums[v] / weights[v];
+    return sums;
+}
+
+TEST(CloudColors, AreThoseOfThePlainComputation) {
+    const shapes::Shape sphere = shapes::icosphere(1);
+    const TargetSpace target =
+        colored(shapes::sphere_cloud(1000, 0.05), [](const vcg::Point3d& p) { return wavy(p, 1); });
+    const Network network = targets::network_in_frame(target, sphere);
+    const auto found = colors_of(target, network);
+    const std::vector<Attached> points = attached(target, Surface(network));
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        std::vector<double> values(sphere.positions.size(), 0);
+        for (int time = 0; time < 2; ++time) values = improved(values, points, channel);
+        for (std::size_t v = 0; v < values.size(); ++v)
+            EXPECT_NEAR(found[static_cast<int>(v)][channel], code(values[v]), 1) << v;
+    }
+}
+
+/// Points over the lower half of a sphere only, and beside it a second sphere without any.
+TEST(CloudColors, SpreadToVerticesWithoutPoints) {
+    Cloud cloud;
+    for (const vcg::Point3d& p : shapes::sphere_cloud(20000))
+        if (p[2] < 0) cloud.push_back(p);
+    const TargetSpace target = colored(cloud, [](const vcg::Point3d& p) { return p[0] < 0 ? kRed : kBlue; });
+    shapes::Shape both = shapes::icosphere(3);
+    const int vertices = static_cast<int>(both.positions.size());
+    shapes::append(both, shapes::icosphere(1), {9, 0, 0});
+    const auto found = colors_of(target, targets::network_in_frame(target, both));
+    for (int v = 0; v < found.size(); ++v) {
+        const double x = both.positions[static_cast<std::size_t>(v)][0];
+        if (v >= vertices) {
+            EXPECT_EQ(found[v], (Color{255, 255, 255})) << v;
+        } else if (std::abs(x) > 0.5) {
+            EXPECT_EQ(found[v], x < 0 ? kRed : kBlue) << v;
+        }
+    }
+}
+
+TEST(CloudColors, OfFacesAreInterpolatedBetweenTheirCorners) {
+    const shapes::Shape box = shapes::cube();
+    TargetSpace target = targets::target_of(box);
+    std::vector<Color> colors;
+    const auto shade = [](double x) { return code(128 + 100 * x); };
+    for (const auto& face : box.faces)
+        for (const int v : face) {
+            const vcg::Point3d& p = box.positions[static_cast<std::size_t>(v)];
+            colors.push_back({shade(p[0]), shade(p[1]), shade(p[2])});
+        }
+    target.set_colors(colors);
+    shapes::Shape finer = shapes::icosphere(4);
+    for (vcg::Point3d& p : finer.positions)
+        p /= 2 * std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+    const auto found = colors_of(target, targets::network_in_frame(target, finer));
+    for (int v = 0; v < found.size(); ++v)
+        for (int k = 0; k < 3; ++k)
+            EXPECT_NEAR(found[v][static_cast<std::size_t>(k)],
+                        shade(finer.positions[static_cast<std::size_t>(v)][k]), 6);
+}
+
+/// Asks to stop at once.
+class Stop : public Progress {
+public:
+    bool operator()(double /*fraction*/, const char* /*text*/) override { return false; }
+};
+
+TEST(CloudColors, AreWholeIfStopped) {
+    const shapes::Shape sphere = shapes::icosphere(3);
+    const TargetSpace target = colored(shapes::sphere_cloud(70000), [](const auto&) { return kBlue; });
+    Stop stop;
+    Random random(1);
+    const auto found = cloud_colors(target, targets::network_in_frame(target, sphere), 1, random, stop);
+    for (const Color& color : found) EXPECT_EQ(color, kBlue);
+}
+
+NeuralMesh learn(const TargetSpace& target, int vertex_color) {
+    Settings settings;
+    settings.target_vertices = 300;
+    settings.vertex_color = vertex_color;
+    NoProgress progress;
+    return reconstruct(target, settings, progress);
+}
+
+/// Red points on a sphere whose density varies; some are given twice, and then blue; blue outliers.
+TargetSpace red_ball_in_blue_dust() {
+    Cloud cloud = shapes::uneven_sphere_cloud(6000, 10, 0.01);
+    const std::size_t red = cloud.size();
+    cloud.insert(cloud.end(), cloud.begin(), cloud.begin() + 1500);
+    Random random(2);
+    for (int i = 0; i < 60; ++i) cloud.push_back(shapes::in_ball(random).Normalize() * 1.5);
+    TargetSpace target = targets::target_of(cloud);
+    std::vector<Color> colors(cloud.size(), kBlue);
+    std::fill_n(colors.begin(), red, kRed);
+    target.set_colors(colors);
+    return target;
+}
+
+TEST(CloudColors, OfOutliersDoNotCount) {
+    const NeuralMesh mesh = learn(red_ball_in_blue_dust(), kCloudColors);
+    EXPECT_TRUE(soundness::has_warning(mesh, "repeat others"));
+    EXPECT_GT(mesh.report.outliers, 20);
+    ASSERT_EQ(mesh.colors.size(), mesh.positions.size());
+    for (const Color& color : mesh.colors) {
+        EXPECT_GT(color[0], 250);
+        EXPECT_LT(color[2], 5);
+    }
+    EXPECT_TRUE(mesh.report.notes.empty());
+}
+
+TEST(CloudColors, GiveWayToTheCounterOrToNone) {
+    const TargetSpace red = red_ball_in_blue_dust();
+    const NeuralMesh counter = learn(red, kCounterColors);
+    const Cloud plain = shapes::sphere_cloud(2000);
+    const NeuralMesh without = learn(targets::target_of(plain), kCloudColors);
+    ASSERT_EQ(without.report.notes.size(), 1U);
+    EXPECT_EQ(without.report.notes.front().find("The layer has no colours"), 0U);
+    EXPECT_EQ(without.colors, learn(targets::target_of(plain), kCounterColors).colors);
+    EXPECT_EQ(counter.colors.size(), counter.positions.size());
+    EXPECT_NE(counter.colors, std::vector<Color>(counter.colors.size(), counter.colors.front()));
+    EXPECT_TRUE(learn(red, kNoColors).colors.empty());
+}
+
+}  // namespace
+}  // namespace neuralmesh
