@@ -79,16 +79,17 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
                          stream_seed(settings.random_seed, Stream::fit), progress);
 }
 
-/// The counters of \p network's vertices. \p source: the learner's vertex that each takes its counter from;
-/// empty: itself.
-PerVertex<float> counters_of(const Learner& learner, const Network& network,
-                             const PerVertex<VertexId>& source, const Settings& settings) {
-    if (settings.feature_measure == kCreaseMeasure)
-        return learner.crease_measure().values(learner.network(), network, source);
-    PerVertex<float> counters(network.slot_count());
+/// Writes the measures of the vertices of \p learned that the settings use. \p source: the learner's vertex
+/// that each takes its values from; empty: itself.
+void write_measures(const Learner& learner, const PerVertex<VertexId>& source, const Settings& settings,
+                    LearnedNetwork& learned) {
+    const Network& network = learned.network;
+    if (settings.uses(kCreaseMeasure))
+        learned.creases = learner.crease_measure().values(learner.network(), network, source);
+    if (!settings.uses(kFeatureCounter)) return;
+    learned.normal_counters.resize(network.slot_count());
     for (const VertexId v : network.vertices())
-        counters[v] = learner.feature_counters().value(source.empty() ? v : source[v]);
-    return counters;
+        learned.normal_counters[v] = learner.feature_counters().value(source.empty() ? v : source[v]);
 }
 
 LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, int grow_to, int carried,
@@ -115,8 +116,7 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
     result.network.orient_outward();
     const bool moved = report.improved || report.inserted > 0;
     // If the rounds of the fit were discarded, no vertex has moved to the place of another.
-    result.counters =
-        counters_of(learner, result.network, moved ? report.sources : PerVertex<VertexId>(), settings);
+    write_measures(learner, moved ? report.sources : PerVertex<VertexId>(), settings, result);
     if (carried < settings.target_vertices)
         result.carried = static_cast<int>(task.target().positions().size() / kPointsPerCarried);
     return result;
@@ -154,7 +154,7 @@ LearnerOptions learner_options_from(const Settings& settings) {
     options.grow_to = settings.target_vertices;
     options.min_wins_per_split = settings.min_wins_per_split;
     options.settling_signals_per_vertex = settings.settling_signals_per_vertex;
-    options.observe_creases = settings.feature_measure == kCreaseMeasure;
+    options.observe_creases = settings.uses(kCreaseMeasure);
     options.random_seed = settings.random_seed;
     options.threads = settings.threads;
     return options;

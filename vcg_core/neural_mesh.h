@@ -34,7 +34,7 @@ struct Report {
     /// Learned points to mesh, % of the diagonal of their bounding box; weighted by area if the cloud was
     /// sampled evenly (settings.even_sampling).
     double rms_error = 0;
-    double mean_counter = 0;  ///< Mean(n_c) of eq 7
+    double mean_counter = 0;  ///< mean of NeuralMesh::counters; of the normal counter, Mean(n_c) of eq 7
     double seconds = 0;       ///< wall-clock time of reconstruct()
     StopReason stop_reason = StopReason::target_reached;
     std::vector<std::string> warnings;  ///< full sentences for the log
@@ -46,8 +46,9 @@ struct NeuralMesh {
     std::vector<vcg::Point3d> positions;  ///< in the coordinates of the input
     std::vector<std::array<int, 3>> faces;
     std::vector<float> counters;  ///< per vertex, >= 0: the measure that settings.feature_measure names
-    std::vector<char> features;   ///< per vertex: 1 if the counter is above the threshold (eq 7)
-    std::vector<Color> colors;    ///< per vertex; empty if settings.vertex_color is kNoColors
+    /// Per vertex: 1 if the measure that settings.select_by names is above settings.feature_threshold.
+    std::vector<char> features;
+    std::vector<Color> colors;  ///< per vertex; empty if settings.vertex_color is kNoColors
     Report report;
 };
 

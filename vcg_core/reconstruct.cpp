@@ -31,23 +31,30 @@ void write_geometry(const Network& network, const Frame& frame, NeuralMesh& mesh
         for (VertexId& v : f) v = index[v];
 }
 
-/// Writes the counters and marks as features those above the threshold of eq 7.
-void write_counters(const LearnedNetwork& learned, const Settings& settings, NeuralMesh& mesh) {
+double mean(const PerVertex<float>& values, const Network& network) {
     double sum = 0;
-    for (const VertexId v : learned.network.vertices()) {
-        mesh.counters.push_back(learned.counters[v]);
-        sum += static_cast<double>(mesh.counters.back());
-    }
-    const double mean = sum / static_cast<double>(mesh.counters.size());
+    for (const VertexId v : network.vertices()) sum += static_cast<double>(values[v]);
+    return sum / static_cast<double>(network.vertex_count());
+}
+
+void write_counters(const LearnedNetwork& learned, const Settings& settings, NeuralMesh& mesh) {
+    const PerVertex<float>& shown = learned.values(settings.feature_measure);
+    for (const VertexId v : learned.network.vertices()) mesh.counters.push_back(shown[v]);
+    mesh.report.mean_counter = mean(shown, learned.network);
+}
+
+/// Marks the vertices whose measure is above the threshold.
+void write_features(const LearnedNetwork& learned, const Settings& settings, NeuralMesh& mesh) {
+    const PerVertex<float>& measure = learned.values(settings.select_by);
     // The crease measure is an angle: dividing it by its mean would make models less comparable.
-    const double threshold = settings.feature_measure == kCreaseMeasure
-                                 ? settings.feature_threshold
-                                 : feature_threshold(settings.feature_threshold, mean);
-    for (const float n_c : mesh.counters) {
-        mesh.features.push_back(static_cast<double>(n_c) > threshold ? 1 : 0);
+    const double threshold =
+        settings.select_by == kCreaseMeasure
+            ? settings.feature_threshold
+            : feature_threshold(settings.feature_threshold, mean(measure, learned.network));
+    for (const VertexId v : learned.network.vertices()) {
+        mesh.features.push_back(static_cast<double>(measure[v]) > threshold ? 1 : 0);
         mesh.report.feature_vertices += mesh.features.back();
     }
-    mesh.report.mean_counter = mean;
 }
 
 void write_colors(const TargetSpace& target, const Network& network, const Settings& settings,
@@ -108,8 +115,10 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     mesh.report.outliers = task.outliers;
     write_geometry(learned.network, task.target().frame(), mesh);
     write_counters(learned, settings, mesh);
+    write_features(learned, settings, mesh);
     write_colors(task.target(), learned.network, settings, monotone, mesh);
     write_figures(learned, mesh.report);
+    if (monotone.stopped()) mesh.report.stop_reason = StopReason::cancelled;
     warn_of_growth(learned, mesh.report);
     Random random(stream_seed(settings.random_seed, Stream::rms_error));
     mesh.report.rms_error = 100 * rms_distance(task.target(), learned.network, kDistanceSamples, random);

@@ -120,16 +120,21 @@ std::vector<SettingInfo> feature_rows() {
             "computed from all points near the vertex; if the layer has none, the colours of Counter. The "
             "vertex quality holds the feature measure in any case."),
         row(&S::select_features, "select_features", "Select features",
-            "Select the vertices whose feature measure is above the feature threshold."),
+            "Select the vertices whose measure, of the two the one that 'Select by' names, is above the feature "
+            "threshold."),
         row(&S::feature_measure, "feature_measure", "Feature measure", {"Normal counter", "Crease measure"},
             "What the vertex quality holds. Normal counter: how much the normal of the vertex varied while "
             "it learned (eq 6 of the paper), about 1 on average, larger where the surface bends. Crease "
             "measure: the angle between the two planes that meet near the vertex, averaged over many moments "
             "of the learning; above 1 on sharp edges, about 2 on right angles. It is robust against noise "
             "and comparable between models."),
+        row(&S::select_by, "select_by", "Select by", {"Normal counter", "Crease measure"},
+            "Which measure decides what is a feature, whatever the vertex quality holds. The crease measure "
+            "finds creases with the same threshold on all models, also under noise; the normal counter is "
+            "the paper's."),
         row(&S::feature_threshold, "feature_threshold", "Feature threshold", 0, 1000,
-            "C_nc of the paper (eq 7). A vertex is a feature if its normal counter is above this number "
-            "times the mean counter or, with the crease measure, if its measure is above this number."),
+            "A vertex is a feature if its crease measure is above this number or, selected by the normal "
+            "counter, if its counter is above this number times the mean counter (C_nc of the paper, eq 7)."),
     };
 }
 

@@ -19,7 +19,7 @@ enum UtilityCounter : int {
     kSignalCount = 1,      ///< where signals arrive; the mesh is as dense as the cloud
 };
 
-/// What the vertex quality of the result holds and what selects features.
+/// How much of a feature a vertex is: what the vertex quality of the result holds, and what selects.
 enum FeatureMeasure : int {
     kFeatureCounter = 0,  ///< eq 6; "normal counter" in the dialog
     kCreaseMeasure = 1,   ///< angle between the planes at a vertex, see learning/crease_measure.h
@@ -60,7 +60,8 @@ struct Settings {
     int vertex_color = kCloudColors;
     bool select_features = false;
     int feature_measure = kFeatureCounter;
-    double feature_threshold = 1.0;  ///< C_nc, eq 7
+    int select_by = kCreaseMeasure;
+    double feature_threshold = 1.0;  ///< of select_by; of the counter C_nc, eq 7
     int random_seed = 1;
     int threads = 0;  ///< 0: one per core
 
@@ -77,6 +78,8 @@ struct Settings {
     int settling_signals_per_vertex = 60;  ///< signals per vertex learned after the last split
     double stop_below_mean_counter = 0.0;  ///< alpha_t, eq 8; 0: off
 
+    /// Whether the quality or the selection needs \p measure.
+    bool uses(FeatureMeasure measure) const { return feature_measure == measure || select_by == measure; }
     /// \throws SettingError for a value out of range, naming parameter, value and range
     void check() const;
 };

@@ -42,6 +42,7 @@ Settings settings_of(Bytes& bytes) {
     // Of the three ways and of the bound on holes by turns; the other bytes stay what they were.
     settings.surface = settings.target_vertices % 3;
     settings.close_holes_up_to = settings.target_vertices % 5 * 10 - 1;
+    settings.select_by = settings.target_vertices % 2;
     return settings;
 }
 

@@ -127,7 +127,8 @@ inline std::string words_of(const Matrix44m& matrix) {
 inline void write_off(const CMeshO& mesh, std::ostream& out) {
     out.precision(17);
     out << "COFF\n" << mesh.vn << ' ' << mesh.fn << " 0\n";
-    for (const auto& v : mesh.vert) out << v.cP()[0] << ' ' << v.cP()[1] << ' ' << v.cP()[2] << ' ' << int{v.cC()[0]} << ' '
+    for (const auto& v : mesh.vert)
+        out << v.cP()[0] << ' ' << v.cP()[1] << ' ' << v.cP()[2] << ' ' << int{v.cC()[0]} << ' '
             << int{v.cC()[1]} << ' ' << int{v.cC()[2]} << " 255\n";
     for (const auto& f : mesh.face) {
         out << 3;

@@ -76,7 +76,7 @@ def judge(report):
 
 
 # The defaults, and the options that they do not use.
-VARIANTS = ({}, {"start_mesh": 1, "feature_measure": 1, "select_features": True})
+VARIANTS = ({}, {"start_mesh": 1, "feature_measure": 1, "select_by": 0, "select_features": True})
 
 
 def check(build, parameters):

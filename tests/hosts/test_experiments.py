@@ -17,6 +17,7 @@ import paper_runs
 import paper_table1
 import paper_termination
 import scans
+import selection_table
 import shapes
 
 
@@ -185,6 +186,15 @@ def test_the_crease_measure_beats_every_analysis_of_the_final_mesh(feature_rows)
         ours = row["crease measure"]
         assert ours["default"] > features.best_of(row, features.MESH_MEASURES), row
         assert ours["best"] > row["eq 6 counter"]["best"] and ours["best"] <= row["oracle"]["best"], row
+
+
+def test_the_default_selects_better_than_the_final_mesh_at_any_one_threshold(learn, tmp_path):
+    selection_table.main(["--learn", str(learn), "--out", str(tmp_path), "--models", "chamfered-wedge,plate-with-bores",
+                          "--noise", ".3", "--vertices", "2500", "--samples", "50000"])
+    rows = json.loads((tmp_path / "selection.json").read_text())
+    mean = {name: np.mean([row["curves"][name] for row in rows], axis=0) for name in rows[0]["curves"]}
+    ours = mean.pop("crease measure")[selection_table.DEFAULT]
+    assert all(ours > curve.max() for curve in mean.values())
 
 
 def test_rounded_edges_are_no_creases(feature_rows):

@@ -68,6 +68,7 @@ std::vector<Settings> variants() {
     Settings to_the_paper = shell;
     to_the_paper.start_mesh = kTetrahedron;
     to_the_paper.feature_measure = kCreaseMeasure;
+    to_the_paper.select_by = kFeatureCounter;
     to_the_paper.draw_from_faces = false;
     return {shell, to_the_paper};
 }

@@ -72,10 +72,11 @@ def cup(wall=0.06):
     corners = [(0, 0), (1, 0), (1, 1.8)]
     rim = [(radius + wall / 2 * np.cos(a), 1.8 + wall / 2 * np.sin(a)) for a in arc[1:-1]]
     inside = [(1 - wall, 1.8), (1 - wall, wall), (0, wall)]
-    return revolved(_refined(corners, 60) + rim + _refined(inside, 60))
+    return revolved(refined(corners, 60) + rim + refined(inside, 60))
 
 
-def _refined(corners, pieces):
+def refined(corners, pieces):
+    """The corners of an open polygon, and between each two pieces - 1 more points."""
     points = [corners[0]]
     for a, b in zip(corners, corners[1:]):
         points += [tuple(np.add(np.multiply(a, 1 - t), np.multiply(b, t))) for t in np.linspace(0, 1, pieces + 1)[1:]]

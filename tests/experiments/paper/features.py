@@ -30,6 +30,7 @@ from scipy.spatial import cKDTree
 from scipy.stats import rankdata
 
 import import_paths  # noqa: F401
+import cad_parts
 import models
 import paper_runs
 from compare_accuracy import numbers, table
@@ -43,23 +44,8 @@ CURVATURES = ("Mean Curvature", "RMS Curvature", "ABS Curvature")
 NEIGHBOURS = (20, 40, 80)
 
 
-def half_filleted_cube(fillet=0.2):
-    """The cube [-1, 1]^3 with its four upright edges rounded with radius fillet, the others sharp."""
-    arc = np.linspace(0, np.pi / 2, 25)
-    corners = ((1, 1, 0), (-1, 1, np.pi / 2), (-1, -1, np.pi), (1, -1, 1.5 * np.pi))
-    outline = np.vstack([np.column_stack([x * (1 - fillet) + fillet * np.cos(arc + start),
-                                          y * (1 - fillet) + fillet * np.sin(arc + start)])
-                         for x, y, start in corners])
-    n = len(outline)
-    k, k1 = np.arange(n), (np.arange(n) + 1) % n
-    v = np.vstack([np.column_stack([outline, np.full(n, z)]) for z in (-1, 1)] + [[[0, 0, -1], [0, 0, 1]]])
-    f = [(k, k1, n + k1), (k, n + k1, n + k), (np.full(n, 2 * n), k1, k),
-         (np.full(n, 2 * n + 1), n + k, n + k1)]
-    return v, np.vstack([np.column_stack(part) for part in f])
-
-
 def load(name, data):
-    return half_filleted_cube() if name == "half-filleted-cube" else models.load_model(name, data)
+    return cad_parts.PARTS[name]() if name in cad_parts.PARTS else models.load_model(name, data)
 
 
 def unit_normals(vertices, faces):
@@ -257,15 +243,20 @@ class Case:
     def truth(self):
         return Creases(*self.surface), self.cloud, Oracle(*self.surface)
 
-    def row(self, utility, fit):
-        """Learns twice, once for each counter, and measures the results."""
-        truth = self.truth
+    def learned(self, utility, fit):
+        """The mesh, learned twice, once for each measure."""
+        assert len(self.cloud)  # writes the file
         paths = [self.folder / f"mesh{measure}.ply" for measure in (0, 1)]
         for measure, path in enumerate(paths):
             paper_runs.learn(self.options.learn, self.folder / "cloud.ply", path, feature_measure=measure,
                              target_vertices=self.options.vertices, utility_counter=UTILITY[utility],
-                             fit_to_points=int(STAGES[fit]))
-        return {"model": self.name, "noise": self.noise, "mesh": utility, "stage": fit, **judge(Mesh(paths), *truth)}
+                             fit_to_points=int(fit))
+        return Mesh(paths)
+
+    def row(self, utility, fit):
+        """The figures of one mesh."""
+        mesh = self.learned(utility, STAGES[fit])
+        return {"model": self.name, "noise": self.noise, "mesh": utility, "stage": fit, **judge(mesh, *self.truth)}
 
 
     def chamfer(self):

@@ -105,6 +105,7 @@ std::string line_for(const std::string& run, const NeuralMesh& mesh) {
 std::string runs_on_scans() {
     Settings settings;
     settings.target_vertices = 200;
+    settings.select_by = kFeatureCounter;
     shapes::Cloud bowl;
     for (const vcg::Point3d& p : shapes::sphere_cloud(4000, 0.01))
         if (p[2] < 0.25) bowl.push_back(p);
@@ -129,6 +130,7 @@ std::string recorded_runs() {
         int variant = 0;
         for (Settings settings : variants()) {
             settings.feature_measure = variant % 2 == 0 ? kCreaseMeasure : kFeatureCounter;
+            settings.select_by = settings.feature_measure;
             lines += line_for(name + (' ' + std::to_string(variant++)), learn(cloud, settings));
         }
     }

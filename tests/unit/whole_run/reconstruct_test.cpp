@@ -188,6 +188,7 @@ TEST(Reconstruct, RefusesSettingsOutOfRange) {
 TEST(Reconstruct, FeatureThresholdSelectsByTheMean) {
     Settings settings = with_target(300);
     settings.settling_signals_per_vertex = 10;
+    settings.select_by = kFeatureCounter;
     settings.feature_threshold = 0;
     const NeuralMesh all = learn(shapes::box_cloud(3000), settings);
     settings.feature_threshold = 1000;
@@ -197,6 +198,31 @@ TEST(Reconstruct, FeatureThresholdSelectsByTheMean) {
     double sum = 0;
     for (const float counter : all.counters) sum += static_cast<double>(counter);
     EXPECT_NEAR(sum / 300, all.report.mean_counter, 1e-4 * all.report.mean_counter);
+}
+
+/// A choice of one for what the quality holds and for what selects, in all four combinations.
+TEST(Reconstruct, SelectsByOneMeasureAndShowsTheOther) {
+    Settings settings = with_target(300);
+    const Cloud box = shapes::box_cloud(3000);
+    settings.feature_measure = settings.select_by = kFeatureCounter;
+    const NeuralMesh counter = learn(box, settings);
+    settings.feature_measure = settings.select_by = kCreaseMeasure;
+    const NeuralMesh crease = learn(box, settings);
+    EXPECT_NE(counter.counters, crease.counters);
+    EXPECT_NE(counter.features, crease.features);
+    for (std::size_t i = 0; i < crease.features.size(); ++i)
+        EXPECT_EQ(crease.features[i] != 0, crease.counters[i] > 1) << i;
+    for (const int shown : {kFeatureCounter, kCreaseMeasure}) {
+        for (const int selecting : {kFeatureCounter, kCreaseMeasure}) {
+            settings.feature_measure = shown;
+            settings.select_by = selecting;
+            const NeuralMesh mesh = learn(box, settings);
+            EXPECT_EQ(mesh.counters, (shown == kCreaseMeasure ? crease : counter).counters);
+            EXPECT_EQ(mesh.features, (selecting == kCreaseMeasure ? crease : counter).features);
+            EXPECT_EQ(mesh.positions, counter.positions);
+        }
+    }
+    EXPECT_EQ(learn(box, with_target(300)).features, crease.features) << "not the default";
 }
 
 std::vector<std::pair<const char*, Cloud>> hostile_clouds() {
