@@ -64,6 +64,36 @@ def pymeshlab(build):
     return module
 
 
+def make_packages(build, out, **environment):
+    """`package.py`, as run.sh calls it. Returns what it printed."""
+    return subprocess.run(["/usr/bin/python3", str(ROOT / "packaging/package.py"), "--plugins", str(build / "plugins"),
+                           "--out", str(out)], check=True, stdout=subprocess.PIPE, text=True,
+                          env=dict(os.environ, **environment)).stdout
+
+
+def the_file(folder, pattern):
+    found = list(folder.glob(pattern))
+    assert len(found) == 1, f"{pattern}: {found}"
+    return found[0]
+
+
+@pytest.fixture(scope="session")
+def dist(build, tmp_path_factory):
+    """The folder of all packages."""
+    folder = tmp_path_factory.mktemp("packages") / "dist"
+    print(make_packages(build, folder, SOURCE_DATE_EPOCH="1700000000"))
+    return folder
+
+
+@pytest.fixture(scope="session")
+def installed(dist, tmp_path_factory):
+    """The folder into which pip has installed the wheel, to be searched beside this environment's pymeshlab."""
+    folder = tmp_path_factory.mktemp("site")
+    subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target",
+                    str(folder), str(the_file(dist, "*.whl"))], check=True)
+    return folder
+
+
 @pytest.fixture
 def meshes(pymeshlab):
     """A new MeshSet."""

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import meshlabserver
 import pytest
+from conftest import make_packages, the_file
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "packaging"))
@@ -25,26 +26,6 @@ import package as packaging  # noqa: E402
 MODULE = ROOT / "filter_neuralmesh/python/neural_mesh"
 PLUGIN = "libfilter_neuralmesh.so"
 NAME = "meshlab-plugin-neuralmesh"
-
-
-def make(build, out, **environment):
-    """`package.py`, as run.sh calls it. Returns what it printed."""
-    return subprocess.run(["/usr/bin/python3", str(ROOT / "packaging/package.py"), "--plugins", str(build / "plugins"),
-                           "--out", str(out)], check=True, stdout=subprocess.PIPE, text=True,
-                          env=dict(os.environ, **environment)).stdout
-
-
-@pytest.fixture(scope="session")
-def dist(build, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("packages") / "dist"
-    print(make(build, folder, SOURCE_DATE_EPOCH="1700000000"))
-    return folder
-
-
-def the_file(dist, pattern):
-    found = list(dist.glob(pattern))
-    assert len(found) == 1, f"{pattern}: {found}"
-    return found[0]
 
 
 def test_all_packages_are_made_and_named_by_one_version(dist):
@@ -66,12 +47,12 @@ def test_checksums_are_of_the_files(dist):
 
 def test_the_same_plugins_give_the_same_packages(build, dist, tmp_path):
     for date, same in (("1700000000", True), ("1700000002", False)):
-        make(build, tmp_path / date, SOURCE_DATE_EPOCH=date, TZ="Asia/Tokyo", LC_ALL="C")
+        make_packages(build, tmp_path / date, SOURCE_DATE_EPOCH=date, TZ="Asia/Tokyo", LC_ALL="C")
         assert ((tmp_path / date / "SHA256SUMS").read_text() == (dist / "SHA256SUMS").read_text()) is same
 
 
 def test_all_packages_name_the_maintainer_of_the_environment(build, tmp_path):
-    make(build, tmp_path, SOURCE_DATE_EPOCH="1700000000", DEBFULLNAME="A Packager", DEBEMAIL="packager@example.org")
+    make_packages(build, tmp_path, SOURCE_DATE_EPOCH="1700000000", DEBFULLNAME="A Packager", DEBEMAIL="packager@example.org")
     for path in tmp_path.glob("*.deb"):
         found = subprocess.run(["dpkg-deb", "--field", str(path), "Maintainer"], check=True, stdout=subprocess.PIPE,
                                text=True)
@@ -141,15 +122,6 @@ def test_what_the_wheel_contains(dist):
     assert {line.split()[1] for line in metadata.splitlines() if line.startswith("Provides-Extra: ")} == {
         "pymeshlab", "dask", "las", "e57"}
     assert f"Version: {version}" in metadata and 'Requires-Dist: pymeshlab ==2025.7.*; extra == "pymeshlab"' in metadata
-
-
-@pytest.fixture(scope="session")
-def installed(dist, tmp_path_factory):
-    """The folder into which pip has installed the wheel, to be searched beside this environment's pymeshlab."""
-    folder = tmp_path_factory.mktemp("site")
-    subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target", str(folder),
-                    str(the_file(dist, "*.whl"))], check=True)
-    return folder
 
 
 def python(installed, *arguments):

@@ -72,9 +72,9 @@ def sentence_of(error: Exception) -> str:
     return str(error).rpartition("\nDetails: ")[2].strip() or type(error).__name__
 
 
-def check(settings: Settings, meshes: "pymeshlab.MeshSet") -> None:
-    """Throws WrongUsage if the filter has no such parameter or does not accept a value. Needs an empty MeshSet, and
-    leaves it empty."""
+def check(settings: Settings, meshes: "pymeshlab.MeshSet") -> Dict[str, Any]:
+    """Throws WrongUsage if the filter has no such parameter or does not accept a value. Returns the values of all
+    parameters. Needs an empty MeshSet, and leaves it empty."""
     import numpy
     import pymeshlab
 
@@ -91,7 +91,8 @@ def check(settings: Settings, meshes: "pymeshlab.MeshSet") -> None:
     meshes.add_mesh(pymeshlab.Mesh(numpy.zeros((1, 3))))
     try:
         accepted = refusal({})
-        _check_names_and_types(settings, meshes.filter_parameter_values(FILTER))
+        defaults = meshes.filter_parameter_values(FILTER)
+        _check_names_and_types(settings, defaults)
         sentence = accepted
         for name, argument in for_pymeshlab(settings).items():
             try:
@@ -105,6 +106,7 @@ def check(settings: Settings, meshes: "pymeshlab.MeshSet") -> None:
         sentence = refusal(for_pymeshlab(settings))
         if sentence != accepted:
             raise WrongUsage(sentence)
+        return {**defaults, **settings}
     finally:
         meshes.clear()
 

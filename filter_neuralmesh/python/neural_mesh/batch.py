@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""Learns many clouds. Results are written to DIR, with a line of DIR/manifest.jsonl for each cloud. The same command,
+given again, learns only what is missing, has failed, or has changed."""
+
+import argparse
+import os
+import shutil
+import signal
+import sys
+from pathlib import Path
+from typing import Any, Generator, List
+
+from neural_mesh.batch_files import Job, jobs_of, remove_asides
+from neural_mesh.manifest import Busy, Manifest, Record
+from neural_mesh.parameters import WrongUsage, check, files_and_settings
+
+# In a result: three coordinates and the quality of 8 bytes, a colour of 4, and two faces of 13.
+BYTES_PER_VERTEX = 62
+# Over 1,000 clouds the memory of a process grows by less than 1 % (tests/bench/batch.py). Formats other than PLY may
+# leak more.
+FILES_PER_PROCESS = 500
+UNITS = {"K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
+INTERRUPTED = 130  # as shells report Ctrl-C
+
+
+def positive(kind: Any) -> Any:
+    def parse(text: str) -> Any:
+        value = kind(text)
+        if not 0 < value < float("inf"):
+            raise ValueError
+        return value
+
+    parse.__name__ = f"positive {kind.__name__}"  # for argparse's sentence
+    return parse
+
+
+def memory_size(text: str) -> int:
+    """Bytes, or with a letter as in 500M or 4G."""
+    unit = UNITS.get(text[-1:].upper(), 1)
+    return positive(int)(int(float(text[:-1] if unit > 1 else text) * unit))
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("words", nargs="+", metavar="IN | name=value", help="files, folders and patterns; parameters "
+                        "of the filter, such as target_vertices=5000")
+    parser.add_argument("--out", required=True, metavar="DIR", type=Path, help="the folder of the results")
+    parser.add_argument("--workers", type=positive(int), metavar="N", help="processes at a time; default: one per core")
+    parser.add_argument("--files-per-process", type=positive(int), default=FILES_PER_PROCESS, metavar="N",
+                        help="a process is renewed after so many clouds; default: %(default)s")
+    parser.add_argument("--time-limit", type=positive(float), metavar="SECONDS", help="for each cloud")
+    parser.add_argument("--memory-limit", type=memory_size, metavar="SIZE", help="of each process, such as 4G")
+    parser.add_argument("--engine", choices=("local", "dask"), default="local", help="dask: dask.distributed")
+    parser.add_argument("--address", metavar="HOST:PORT", help="of dask's scheduler; default: workers on this machine")
+
+
+def run(given: argparse.Namespace) -> int:
+    import pymeshlab
+    inputs, settings = files_and_settings(given.words)
+    if not inputs:
+        raise WrongUsage("There is no input: give files, folders or patterns.")
+    if given.address and given.engine != "dask":
+        raise WrongUsage("--address is for --engine dask.")
+    if given.address and given.workers:
+        raise WrongUsage("--workers is for this machine: a cluster at an --address has its own workers.")
+    vertices = check(settings, pymeshlab.MeshSet(verbose=False))["target_vertices"]
+    jobs = jobs_of(inputs, given.out, settings)
+    manifest = opened(given.out)
+    try:
+        missing = [job for job in jobs if not manifest.has(job, given.out)]
+        check_space(given.out, len(missing) * vertices * BYTES_PER_VERTEX)
+        remove_asides(given.out, missing)
+        there = f", {len(jobs) - len(missing)} of them done before" if len(missing) < len(jobs) else ""
+        print(f"{len(jobs)} clouds{there}.", file=sys.stderr)
+        return learn_missing(missing, manifest, given) if missing else 0
+    finally:
+        manifest.close()
+
+
+def opened(out: Path) -> Manifest:
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        if not os.access(out, os.W_OK | os.X_OK):
+            raise PermissionError(0, "Permission denied")
+        return Manifest(out)
+    except Busy as error:
+        raise WrongUsage(str(error)) from None
+    except OSError as error:
+        raise WrongUsage(f"Results cannot be written to {out}: {error.strerror}.") from None
+
+
+def check_space(out: Path, needed: int) -> None:
+    free = shutil.disk_usage(out).free
+    if free < needed:
+        raise WrongUsage(f"The meshes need {needed / 1e9:.3g} GB, and {free / 1e9:.3g} GB are free in {out}.")
+
+
+def learn_missing(jobs: List[Job], manifest: Manifest, given: argparse.Namespace) -> int:
+    from neural_mesh.children import CannotStart
+    from neural_mesh.progress import Progress
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C
+    failures: List[Record] = []
+    progress = Progress(len(jobs))
+    records = started(jobs, given)
+    done = 0
+    try:
+        for record in records:
+            if "error" in record:
+                failures.append(record)
+                (given.out / record["output"]).unlink(missing_ok=True)  # of an earlier input or other parameters
+            manifest.append(record)
+            done += 1
+            progress.add("error" in record)
+    except KeyboardInterrupt:
+        print(f"\nStopped: {len(jobs) - done} clouds are left. The same command goes on with them.", file=sys.stderr)
+        return INTERRUPTED
+    except (CannotStart, OSError) as error:
+        print(f"\nneural-mesh: {error}", file=sys.stderr)
+        return 1
+    finally:
+        records.close()  # ends the processes
+        progress.close()
+    if failures:
+        print(f"{len(failures)} of {len(jobs)} clouds failed:", file=sys.stderr)
+        for record in sorted(failures, key=lambda record: record["input"]):
+            print(f"  {record['input']}: {record['error']}", file=sys.stderr)
+    return 1 if failures else 0
+
+
+def started(jobs: List[Job], given: argparse.Namespace) -> Generator[Record, None, None]:
+    """The records of the engine, as they come."""
+    from neural_mesh.children import Limits
+    out = given.out.absolute()
+    limits = Limits(given.files_per_process, given.time_limit, given.memory_limit)
+    cores = len(os.sched_getaffinity(0))
+    workers = given.workers or cores
+    if given.engine == "local":
+        from neural_mesh import local_engine
+        return local_engine.learn_all(jobs, out, limits, workers, max(1, cores // workers))
+    from neural_mesh import dask_engine
+    threads = 1 if given.address else max(1, cores // workers)
+    return dask_engine.learn_all(jobs, out, limits, workers, threads, given.address)

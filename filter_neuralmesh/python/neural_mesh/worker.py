@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""The process that learns clouds for a batch, one after another, so that a crash costs one cloud only.
+
+It reads jobs as lines of JSON and answers each with a line on what was its standard output. The driver's side is
+children.py."""
+
+import ctypes
+import json
+import os
+import resource
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import Any, Dict, List, Optional
+
+PR_SET_PDEATHSIG = 1  # of linux/prctl.h
+
+
+def end_with(parent: int) -> None:
+    """Lets the system end this process when its parent ends, however that happens."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:  # it has ended before the call
+        os._exit(1)
+
+
+class Log:
+    """What the process writes to its standard error, where pymeshlab's log goes."""
+
+    WARNING = "1 "  # the level
+
+    def __init__(self) -> None:
+        self._file = open(2, "r+", encoding="utf-8", errors="replace", closefd=False)
+
+    def clear(self) -> None:
+        os.lseek(2, 0, os.SEEK_SET)
+        os.ftruncate(2, 0)
+
+    def warnings(self) -> List[str]:
+        self._file.seek(0)
+        entries = ("\n" + self._file.read()).split("\nLOG: ")
+        return [" ".join(entry[2:].split()) for entry in entries if entry.startswith(self.WARNING)]
+
+
+def reset_peak_memory() -> None:
+    try:
+        Path("/proc/self/clear_refs").write_text("5")
+    except OSError:  # a system that does not let us: the peak is then that of all clouds so far
+        pass
+
+
+def peak_memory() -> int:
+    """The largest resident memory in bytes since reset_peak_memory()."""
+    for line in Path("/proc/self/status").read_text().splitlines():
+        if line.startswith("VmHWM:"):
+            return int(line.split()[1]) * 1024
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+
+
+def is_whole(mesh: Path) -> bool:
+    """Whether the file is as long as its header says. pymeshlab does not notice when no space is left."""
+    sizes = {"double": 8, "float": 4, "int": 4, "uint": 4, "uchar": 1}
+    expected = 0
+    count = 0
+    with mesh.open("rb") as file:
+        for line in file:
+            word, *rest = line.decode("ascii", "replace").split() or [""]
+            if word == "element":
+                count = int(rest[1])
+            elif word == "property" and rest[0] == "list":  # of three corners
+                expected += count * (sizes[rest[1]] + 3 * sizes[rest[2]])
+            elif word == "property":
+                expected += count * sizes[rest[0]]
+            elif word == "end_header":
+                return mesh.stat().st_size == file.tell() + expected
+    return False
+
+
+def learn(job: Dict[str, Any]) -> Dict[str, Any]:
+    """Makes the mesh of a job. Returns the filter's results, or an error, after which the process must end."""
+    import pymeshlab
+
+    from neural_mesh import FILTER
+    from neural_mesh.parameters import for_pymeshlab, sentence_of
+
+    # With one MeshSet for all clouds pymeshlab 2025.7 loses 20 kB each.
+    meshes = pymeshlab.MeshSet(verbose=True)
+    aside = Path(job["aside"])
+    try:
+        meshes.load_new_mesh(job["input"])
+        result = meshes.apply_filter(FILTER, **for_pymeshlab(job["settings"]))
+        meshes.save_current_mesh(str(aside), save_vertex_quality=True)
+        if not is_whole(aside):
+            raise OSError(f"The mesh could not be written whole to {aside.parent}: is there space left?")
+        size = aside.stat().st_size
+        os.replace(aside, job["result"])
+        return {"output_size": size, "result": result}
+    except MemoryError:
+        return {"error": "There was not enough memory."}
+    except (pymeshlab.PyMeshLabException, OSError) as error:
+        reason = str(error).partition("Error details: ")[2]  # of loading
+        return {"error": f"The file cannot be loaded: {reason}." if reason else " ".join(sentence_of(error).split())}
+
+
+def answer_jobs(answers: Any, memory_limit: Optional[int]) -> None:
+    import neural_mesh  # noqa: F401  so that the first cloud does not pay for it
+    log = Log()
+    if memory_limit:
+        # Memory that can be written to: not that of libraries, nor what is only reserved, unlike RLIMIT_AS.
+        resource.setrlimit(resource.RLIMIT_DATA, (memory_limit, memory_limit))
+    print("{}", file=answers, flush=True)
+    for line in sys.stdin:
+        job = json.loads(line)
+        log.clear()
+        reset_peak_memory()
+        start = time.monotonic()
+        answer = learn(job)
+        answer["seconds"] = round(time.monotonic() - start, 3)
+        answer["peak_memory"] = peak_memory()
+        answer["warnings"] = [words for words in log.warnings() if words != answer.get("error")]
+        print(json.dumps(answer), file=answers, flush=True)
+
+
+def main() -> None:
+    end_with(int(sys.argv[1]))
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # pymeshlab prints the parameters of each filter
+    answer_jobs(answers, int(sys.argv[2]) or None)
+    os._exit(0)  # without deleting what must not be deleted
+
+
+if __name__ == "__main__":
+    main()
