@@ -31,6 +31,8 @@ constexpr const char* kVendor = "The Neural Mesh authors";
 constexpr const char* kLayerLabel = "Neural Mesh";
 constexpr const char* kNoLayer =
     "There is no current layer to learn: open or create a point cloud or a mesh first.";
+constexpr const char* kNoStartLayer =
+    "The layer to start from does not exist: choose one as 'Start layer', or another 'Start mesh'.";
 
 /// All actions, in order of their ids, which count from 0.
 const std::vector<Action>& all_actions();
@@ -83,14 +85,14 @@ private:
 };
 
 /// Learns \p layer, the host's mesh, in the world coordinates that the layer's matrix \p transform gives. \p
-/// colored: its vertices have colours that the settings ask for. \throws what target_space_of() and
-/// reconstruct() throw
+/// colored: its vertices have colours that the settings ask for. \p start: the mesh to start from, if the
+/// settings ask for one. \throws what target_space_of() and reconstruct() throw
 template <class MeshType, class Matrix>
 NeuralMesh run(const MeshType& layer, const Matrix& transform, const Settings& settings, bool colored,
-               HostProgress::CallBack* call_back) {
+               const IndexedMesh<double>& start, HostProgress::CallBack* call_back) {
     settings.check();
     HostProgress progress(call_back);
-    return reconstruct(target_space_of(layer, transform, settings, colored), settings, progress);
+    return reconstruct(target_space_of(layer, transform, settings, colored), settings, progress, start);
 }
 
 }  // namespace neuralmesh

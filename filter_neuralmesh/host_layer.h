@@ -35,6 +35,15 @@ void fill_layer(NeuralMesh& result, const Settings& settings, const Matrix& tran
     result.report.warnings.push_back(sentence_on_origin(origin));
 }
 
+/// The mesh that the settings want learning to start from, in world coordinates; empty if that is none.
+/// \throws InputError if its layer does not exist, and what indexed_mesh_of() throws
+inline IndexedMesh<double> start_in(MeshDocument& document, const Settings& settings) {
+    if (settings.start_mesh != kGivenMesh) return {};
+    const MeshModel* const layer = document.getMesh(settings.start_layer);
+    if (layer == nullptr) throw InputError(kNoStartLayer);
+    return indexed_mesh_of(layer->cm, layer->cm.Tr);
+}
+
 /// Learns the current layer of \p document and adds the result as a new layer, which becomes the current one.
 /// The hosts differ in two steps: \p complete(added, report) updates box and normals of the new layer and
 /// makes what the host returns, \p remove(added) deletes the layer if complete() throws.
@@ -48,7 +57,7 @@ Report learn_current_layer(MeshDocument& document, const Settings& settings, vcg
     const auto current = static_cast<int>(layer->id());
     const Matrix44m transform = layer->cm.Tr;
     const bool colored = settings.vertex_color == kCloudColors && layer->hasDataMask(MeshModel::MM_VERTCOLOR);
-    NeuralMesh result = run(layer->cm, transform, settings, colored, call_back);
+    NeuralMesh result = run(layer->cm, transform, settings, colored, start_in(document, settings), call_back);
 
     MeshModel* const added = document.addNewMesh("", kLayerLabel, true);
     try {

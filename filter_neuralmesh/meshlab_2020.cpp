@@ -76,8 +76,7 @@ int FilterNeuralMeshPlugin::postCondition(QAction* /*action*/) const {
 
 void FilterNeuralMeshPlugin::initParameterSet(QAction* /*action*/, MeshDocument& document,
                                               RichParameterList& list) {
-    const double diagonal = diagonal_of_current_layer(document);
-    for (const SettingInfo& info : setting_table()) add_parameter(list, info, diagonal);
+    for (const SettingInfo& info : setting_table()) add_parameter(list, info, document);
 }
 
 bool FilterNeuralMeshPlugin::applyFilter(QAction* /*action*/, MeshDocument& document,
@@ -86,7 +85,7 @@ bool FilterNeuralMeshPlugin::applyFilter(QAction* /*action*/, MeshDocument& docu
         const std::string refusal = misfit();
         if (!refusal.empty()) throw Error(refusal);
         const Report report = learn_current_layer(
-            document, settings_from(list), call_back,
+            document, settings_from(list, document), call_back,
             [](MeshModel& added, const Report&) { added.UpdateBoxAndNormals(); },
             [&document](MeshModel& added) { document.delMesh(&added); });
         log_run(report, [this](auto level, const std::string& line) { Log(level, line); });

@@ -56,8 +56,7 @@ int FilterNeuralMeshPlugin::postCondition(const QAction* /*action*/) const {
 RichParameterList FilterNeuralMeshPlugin::initParameterList(const QAction* /*action*/,
                                                             const MeshDocument& document) {
     RichParameterList list;
-    const double diagonal = diagonal_of_current_layer(document);
-    for (const SettingInfo& info : setting_table()) add_parameter(list, info, diagonal, info.advanced);
+    for (const SettingInfo& info : setting_table()) add_parameter(list, info, document, info.advanced);
     return list;
 }
 
@@ -75,7 +74,8 @@ std::map<std::string, QVariant> FilterNeuralMeshPlugin::applyFilter(const QActio
                 results[figure.key] = figure.is_count ? QVariant(figure.count()) : QVariant(figure.value);
         };
         const auto remove = [&document](MeshModel& added) { document.delMesh(added.id()); };
-        const Report report = learn_current_layer(document, settings_from(list), call_back, complete, remove);
+        const Report report =
+            learn_current_layer(document, settings_from(list, document), call_back, complete, remove);
         log_run(report, [this](auto level, const std::string& line) { log(level, line); });
         return results;
     } catch (...) {

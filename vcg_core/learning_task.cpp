@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "vcg_core/base/text.h"
+#include "vcg_core/shell/given_start.h"
 #include "vcg_core/shell/open_start.h"
 #include "vcg_core/shell/shell.h"
 #include "vcg_core/target/outlier_removal.h"
@@ -213,8 +214,29 @@ void begin_closed(LearningTask& task, StartMesh shell, const Settings& settings)
             "learned with smoothing_steps 0, and its triangles are less even than usual.");
 }
 
+void begin_given(LearningTask& task, const IndexedMesh<double>& mesh, const Settings& settings) {
+    const IndexedMesh<float> start = given_start(mesh, task.target());
+    const std::size_t vertices = start.positions.size();
+    if (vertices > static_cast<std::size_t>(settings.target_vertices))
+        throw SettingError(
+            "The start layer needs " + std::to_string(vertices) + " vertices: raise target_vertices from " +
+            std::to_string(settings.target_vertices) +
+            ", or reduce a copy of the layer with the filter 'Simplification: Quadric Edge Collapse "
+            "Decimation'.");
+    task.network = Network(start.positions, start.faces);
+    const bool closed = task.network.boundary_loop_count() == 0;
+    if (settings.surface == (closed ? kOpenSurface : kClosedSurface))
+        task.warnings.push_back(std::string("The surface is ") + (closed ? "closed" : "open") +
+                                ", because the start layer is. Choose start_mesh 0 for another one.");
+}
+
 /// Makes the start mesh.
-void begin(LearningTask& task, const Settings& settings, Progress& progress) {
+void begin(LearningTask& task, const Settings& settings, const IndexedMesh<double>& given,
+           Progress& progress) {
+    if (settings.start_mesh == kGivenMesh) {
+        begin_given(task, given, settings);
+        return;
+    }
     if (settings.start_mesh == kTetrahedron) {
         if (settings.surface == kOpenSurface)
             task.warnings.push_back(
@@ -242,12 +264,13 @@ void begin(LearningTask& task, const Settings& settings, Progress& progress) {
 
 }  // namespace
 
-LearningTask prepare(const TargetSpace& given, const Settings& settings, Progress& progress) {
+LearningTask prepare(const TargetSpace& given, const Settings& settings, const IndexedMesh<double>& start,
+                     Progress& progress) {
     LearningTask task(given);
     remove_repeated_points(task);
     Survey survey(settings.threads);
     if (settings.remove_outliers && !given.has_faces()) remove_outliers(task, survey, settings.threads);
-    begin(task, settings, progress);
+    begin(task, settings, start, progress);
     if (settings.even_sampling && settings.utility_counter != kSignalCount && !given.has_faces())
         weigh_points(task, survey);
     return task;

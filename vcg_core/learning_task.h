@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vcg_core/base/progress.h"
+#include "vcg_core/mesh/indexed_mesh.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/settings.h"
 #include "vcg_core/target/target_space.h"
@@ -35,16 +36,18 @@ struct LearningTask {
 };
 
 /// Removes repeated points and, if settings.remove_outliers is on, outliers from \p given and makes the start
-/// mesh that \p settings asks for: the shell of the cloud, an open mesh of one layer, or a tetrahedron. If
-/// settings.even_sampling is on and settings.utility_counter does not follow the density of the points, those
-/// of an uneven cloud get weights.
+/// mesh that \p settings asks for: the shell of the cloud, an open mesh of one layer, a tetrahedron, or \p
+/// start. If settings.even_sampling is on and settings.utility_counter does not follow the density of the
+/// points, those of an uneven cloud get weights.
 ///
 /// A shell of more than settings.target_vertices vertices is replaced by a tetrahedron, with a warning; an
 /// open start mesh is not, because a tetrahedron would close it. If settings.surface is automatic and the
 /// cloud has no open surface, it is closed. A tetrahedron stays closed, with a warning if settings.surface is
 /// open. \p given must outlive the result. Fractions of \p progress run from 0 to 1. \throws what shell_of()
 /// throws; if settings.surface is open, what open_start() throws; SettingError if an open start mesh needs
-/// more than settings.target_vertices vertices
-LearningTask prepare(const TargetSpace& given, const Settings& settings, Progress& progress);
+/// more than settings.target_vertices vertices; what given_start() throws, and SettingError if \p start has
+/// more vertices than that
+LearningTask prepare(const TargetSpace& given, const Settings& settings, const IndexedMesh<double>& start,
+                     Progress& progress);
 
 }  // namespace neuralmesh

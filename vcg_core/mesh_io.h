@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "vcg_core/base/color.h"
+#include "vcg_core/mesh/indexed_mesh.h"
 #include "vcg_core/neural_mesh.h"
 #include "vcg_core/settings.h"
 #include "vcg_core/target/target_space.h"
@@ -33,6 +34,12 @@ namespace neuralmesh {
 template <class MeshType, class Matrix>
 TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const Settings& settings,
                             bool colored = false);
+
+/// The faces of \p mesh, and the vertices that they use or not, in world coordinates; deleted elements are
+/// skipped. \throws InputError if coordinates of the faces' corners are not finite in the mesh or after the
+/// transform. O(elements).
+template <class MeshType, class Matrix>
+IndexedMesh<double> indexed_mesh_of(const MeshType& mesh, const Matrix& transform);
 
 using Coordinates = std::array<double, 3>;
 
@@ -100,6 +107,12 @@ std::vector<const typename Container::value_type*> elements_of(const Container& 
     return elements;
 }
 
+template <class Point>
+Coordinates in_world(const vcg::Matrix44d& to_world, const Point& p) {
+    const vcg::Point3d q = to_world * vcg::Point3d::Construct(p);
+    return {q[0], q[1], q[2]};
+}
+
 /// \p color_at(i), i in [0, count), returns a vcg colour.
 template <class ColorAt>
 std::vector<Color> colors_of(std::size_t count, const ColorAt& color_at) {
@@ -118,10 +131,7 @@ TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const
                             bool colored) {
     vcg::Matrix44d to_world;
     to_world.Import(transform);
-    const auto in_world = [&to_world](const auto& p) {
-        const vcg::Point3d q = to_world * vcg::Point3d::Construct(p);
-        return Coordinates{q[0], q[1], q[2]};
-    };
+    const auto in_world = [&to_world](const auto& p) { return detail::in_world(to_world, p); };
     if (settings.draw_from_faces && mesh.fn > 0) {
         const auto faces = detail::elements_of(mesh.face, settings.selected_only, "faces");
         detail::check_finite(
@@ -147,6 +157,29 @@ TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const
         target.set_colors(
             detail::colors_of(vertices.size(), [&](std::size_t i) { return vertices[i]->cC(); }));
     return target;
+}
+
+template <class MeshType, class Matrix>
+IndexedMesh<double> indexed_mesh_of(const MeshType& mesh, const Matrix& transform) {
+    vcg::Matrix44d to_world;
+    to_world.Import(transform);
+    const auto faces = detail::elements_of(mesh.face, false, "faces");
+    detail::check_finite(
+        3 * faces.size(), static_cast<std::size_t>(mesh.vn),
+        [&](std::size_t i) -> const auto& { return *faces[i / 3]->cV(static_cast<int>(i % 3)); },
+        [&](const auto& p) { return detail::in_world(to_world, p); });
+    IndexedMesh<double> result;
+    for (const auto& v : mesh.vert) {
+        const Coordinates c = detail::in_world(to_world, v.cP());
+        result.positions.emplace_back(c[0], c[1], c[2]);
+    }
+    for (const auto* face : faces) {
+        result.faces.emplace_back();
+        for (int k = 0; k < 3; ++k)
+            result.faces.back()[static_cast<std::size_t>(k)] =
+                static_cast<int>(vcg::tri::Index(mesh, face->cV(k)));
+    }
+    return result;
 }
 
 template <class MeshType, class Matrix>

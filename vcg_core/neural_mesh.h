@@ -27,7 +27,7 @@ struct Report {
     int boundary_loops = 0;
     int components = 0;
     /// Confidence in genus and components: the share of the shell radii examined that agree, in [0, 1]. 0 if
-    /// learning started from a tetrahedron, whose topology does not depend on the cloud.
+    /// learning started from a tetrahedron or a given mesh, whose topology does not depend on the cloud.
     double topology_confidence = 0;
     int outliers = 0;          ///< points that were not learned because of settings.remove_outliers
     int feature_vertices = 0;  ///< number of ones in NeuralMesh::features

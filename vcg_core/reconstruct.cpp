@@ -101,12 +101,13 @@ void warn_of_growth(const LearnedNetwork& learned, Report& report) {
 
 }  // namespace
 
-NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progress& progress) {
+NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progress& progress,
+                       const IndexedMesh<double>& start) {
     const auto begin = std::chrono::steady_clock::now();
     settings.check();
     MonotoneProgress monotone(progress);
     PartOf preparing(monotone, 0, kPrepared);
-    LearningTask task = prepare(given, settings, preparing);
+    LearningTask task = prepare(given, settings, start, preparing);
     const LearnedNetwork learned = learn_and_fit(task, settings, monotone);
 
     NeuralMesh mesh;

@@ -52,6 +52,13 @@ SettingInfo length_row(double Settings::*member, const char* id, const char* lab
     return info;
 }
 
+/// A number of a layer; -1: none.
+SettingInfo layer_row(int Settings::*member, const char* id, const char* label, const char* help) {
+    SettingInfo info = row(member, id, label, -1, std::numeric_limits<int>::max(), help);
+    info.kind = Kind::layer;
+    return info;
+}
+
 SettingInfo advanced(SettingInfo info) {
     info.advanced = true;
     return info;
@@ -86,10 +93,14 @@ std::vector<SettingInfo> mesh_rows() {
             {"Where the normal varies", "Where signals arrive"},
             "Which vertices are split. Where the normal varies: the mesh is dense where the surface bends "
             "and sparse where it is flat. Where signals arrive: the mesh is as dense as the cloud."),
-        row(&S::start_mesh, "start_mesh", "Start mesh", {"Shell of the cloud", "Tetrahedron"},
+        row(&S::start_mesh, "start_mesh", "Start mesh", {"Shell of the cloud", "Tetrahedron", "Layer"},
             "The mesh that learning starts from. Shell of the cloud: a coarse mesh around the points that "
             "already has their components and handles. Tetrahedron: the paper's, for one component without "
-            "handles."),
+            "handles. Layer: the mesh in 'Start layer', for example an earlier result to refine, or one whose "
+            "webs were cut and gaps bridged by hand; the result has its components, handles and boundaries."),
+        layer_row(&S::start_layer, "start_layer", "Start layer",
+                  "The layer with the mesh that learning starts from if the start mesh is 'Layer'; else "
+                  "without effect. It is not changed."),
         row(&S::fit_to_points, "fit_to_points", "Fit to points",
             "After learning, fit the surface to the points by least squares. If off, the mesh stays as the "
             "paper's learning leaves it."),

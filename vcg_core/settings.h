@@ -36,6 +36,7 @@ enum VertexColor : int {
 enum StartShape : int {
     kShell = 0,        ///< a coarse mesh around the cloud that already has its components and handles
     kTetrahedron = 1,  ///< the paper's: one component without handles
+    kGivenMesh = 2,    ///< a mesh of the caller's, see shell/given_start.h
 };
 
 /// Whether the mesh has boundaries.
@@ -52,6 +53,8 @@ struct Settings {
     double close_holes_up_to = -1;  ///< a diameter in the units of the input; negative: chosen by the filter
     int utility_counter = kNormalVariation;
     int start_mesh = kShell;
+    /// For kGivenMesh: the host's number of the layer, which only the host reads; -1: none.
+    int start_layer = 0;
     bool fit_to_points = true;
     bool draw_from_faces = true;
     bool selected_only = false;
@@ -87,7 +90,8 @@ struct Settings {
 /// One parameter: its name, explanation, range, and the member of Settings that holds it.
 struct SettingInfo {
     /// A length is a real number in the units of the input. Dialogs show it as a share of the diagonal, too.
-    enum class Kind { boolean, integer, real, length, choice };
+    /// A layer is known by a number of the host's.
+    enum class Kind { boolean, integer, real, length, choice, layer };
 
     Kind kind;
     const char* id;                    ///< snake_case; API: scripts key on it
@@ -98,7 +102,7 @@ struct SettingInfo {
     std::vector<std::string> choices;  ///< names of a choice's values, in order from 0
 
     bool Settings::*boolean_member = nullptr;
-    int Settings::*integer_member = nullptr;  ///< integers and choices
+    int Settings::*integer_member = nullptr;  ///< integers, choices and layers
     double Settings::*real_member = nullptr;  ///< real numbers and lengths
 
     /// The parameter's value in \p settings, as a number.

@@ -227,6 +227,14 @@ def _meshes():
                                         selected_faces=np.arange(2 * len(faces)) >= len(faces)),
         "no face selected": Input(vertices, faces, refused="Only the selected faces", parameters={"selected_only": True}),
         "quads": Input(ring, ring_faces, genus=1, volume=3.0, rms=.2, far=7.5),
+        # A layer that is cloud and start mesh at once.
+        "start from itself": ball_of_faces(vertices, faces, target=1000, parameters={"start_mesh": 2}),
+        "start from an open mesh": Input(vertices, half, volume=None, loops=1, rms=1.2, far=4.8, target=700,
+                                         parameters={"start_mesh": 2}),
+        "start from too many vertices": Input(vertices, faces, refused="needs 642 vertices", parameters={"start_mesh": 2}),
+        "start from bad faces": Input(finned, faces + fin + faces[:20], refused="20 faces that repeat others",
+                                      target=1000, parameters={"start_mesh": 2}),
+        "start from points": Input(vertices, refused="The start layer has no faces", parameters={"start_mesh": 2}),
         "texture and attributes": ball_of_faces(vertices, faces, textured=True),
         "one triangle": Input([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [(0, 1, 2)], refused="3 distinct"),
     }

@@ -21,7 +21,25 @@ def assert_refused(code, text, words):
 
 def test_no_layer_at_all_is_refused(build, server, tmp_path):
     script = meshlabserver.write_script(build, tmp_path / "s.mlx", target_vertices=100)
-    assert_refused(*meshlabserver.run(server, "-s", script), "no current layer")
+    # The host itself counts the layers that the script names.
+    code, text = meshlabserver.run(server, "-s", script)
+    assert code == FAILED and "needs more meshes than you have loaded" in text
+
+
+def test_learning_goes_on_from_another_layer(build, server, model, tmp_path):
+    """The script names the start mesh by its position; the last layer is the current one."""
+    cloud, _ = model("bunny")
+    script = meshlabserver.write_script(build, tmp_path / "coarse.mlx", target_vertices=500)
+    meshlabserver.reconstruct(server, cloud, script, tmp_path / "coarse.ply")
+    script = meshlabserver.write_script(build, tmp_path / "fine.mlx", target_vertices=1500, start_mesh=2, start_layer=0)
+    out = tmp_path / "fine.ply"
+    code, text = meshlabserver.run(server, "-i", tmp_path / "coarse.ply", cloud, "-o", out, "-s", script)
+    assert code == 0 and out.exists(), text
+    report = meshlabserver.figures(text)
+    assert report["vertices"] == 1500 and report["topology_confidence"] == 0
+    script = meshlabserver.write_script(build, tmp_path / "wrong.mlx", target_vertices=1500, start_mesh=2, start_layer=1)
+    assert_refused(*meshlabserver.run(server, "-i", tmp_path / "coarse.ply", cloud, "-o", out, "-s", script),
+                   "The start layer has no faces")
 
 
 def test_every_parameter_out_of_range_is_refused(build, server, model, tmp_path):

@@ -138,6 +138,19 @@ def test_a_mesh_with_faces_is_drawn_over_its_area(pymeshlab, meshes):
     assert report["vertices"] == 500 and report["rms_error"] < 1
 
 
+def test_learning_goes_on_from_another_layer(pymeshlab, meshes, model):
+    meshes.load_new_mesh(str(model("bunny")[0]))
+    learn(meshes, target_vertices=500)
+    before = state(meshes)[0]
+    meshes.set_current_mesh(0)
+    report = learn(meshes, target_vertices=1500, start_mesh=2, start_layer=1)
+    assert report["vertices"] == 1500 and report["topology_confidence"] == 0
+    assert state(meshes)[0][:2] == before, "the cloud or the start layer has changed"
+    meshes.set_current_mesh(0)
+    assert_refused(pymeshlab, meshes, "does not exist", start_mesh=2, start_layer=7)
+    learn(meshes, target_vertices=100, start_layer=7)  # looked at only where it is needed
+
+
 LIST_PARAMETERS = """import pymeshlab, sys
 pymeshlab.load_plugin(sys.argv[1])
 pymeshlab.print_filter_parameter_list(sys.argv[2])
@@ -152,7 +165,7 @@ def test_parameters_and_defaults_are_those_of_the_table(build):
     for name, kind, _, _, default, _ in parameters(build):
         python_type, python_default = listed.pop(name).split(" = ")
         assert python_type == {"RichBool": "bool", "RichInt": "int", "RichFloat": "float", "RichEnum": "str",
-                               "RichAbsPerc": "PercentageValue"}[kind], name
+                               "RichAbsPerc": "PercentageValue", "RichMesh": "int"}[kind], name
         if kind != "RichEnum":
             assert python_default.lower().rstrip("%") == default, name
     assert not listed

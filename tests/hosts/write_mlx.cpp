@@ -24,6 +24,7 @@ const char* type_of(const SettingInfo& info) {
         case Kind::real: return "RichFloat";
         case Kind::length: return "RichAbsPerc";
         case Kind::choice: return "RichEnum";
+        case Kind::layer: return "RichMesh";
     }
     return "";
 }

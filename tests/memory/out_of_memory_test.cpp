@@ -49,7 +49,7 @@ vcg::Matrix44f identity() {
 /// none
 std::string filter(const Mesh& layer, const Settings& settings, Mesh& out) {
     try {
-        const NeuralMesh result = run(layer, identity(), settings, true, nullptr);
+        const NeuralMesh result = run(layer, identity(), settings, true, {}, nullptr);
         write_mesh(result, settings, out);
         log_lines(result.report);
         return {};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The core as a command, for experiments: learn IN.ply OUT.ply [parameter=value ...]
+// The core as a command, for experiments: learn IN.ply OUT.ply [START.ply] [parameter=value ...]
 // Reads and writes PLY through vcglib, takes every parameter of the settings table by its id, and prints
-// the report as one line of JSON.
+// the report as one line of JSON. START.ply is the mesh for start_mesh 2.
 #include <wrap/io_trimesh/export_ply.h>
 
 #include <cstdio>
@@ -25,10 +25,12 @@ void save(const neuralmesh::PlyMesh& mesh, const std::string& path, int mask) {
 
 int learn(int argc, char** argv) {
     neuralmesh::Settings settings;
-    for (int i = 3; i < argc; ++i) neuralmesh::set_parameter(settings, argv[i]);
+    const bool has_start = argc > 3 && std::string(argv[3]).find('=') == std::string::npos;
+    for (int i = has_start ? 4 : 3; i < argc; ++i) neuralmesh::set_parameter(settings, argv[i]);
+    const auto start = has_start ? neuralmesh::mesh_of_ply(argv[3]) : neuralmesh::IndexedMesh<double>();
     const auto target = neuralmesh::target_of_ply(argv[1], settings);
     neuralmesh::NoProgress progress;
-    const neuralmesh::NeuralMesh result = neuralmesh::reconstruct(target, settings, progress);
+    const neuralmesh::NeuralMesh result = neuralmesh::reconstruct(target, settings, progress, start);
     neuralmesh::PlyMesh out;
     neuralmesh::write_mesh(result, settings, out);
     using Mask = vcg::tri::io::Mask;
@@ -49,7 +51,7 @@ int learn(int argc, char** argv) {
 
 int main(int argc, char** argv) try {
     if (argc < 3) {
-        std::fprintf(stderr, "usage: %s IN.ply OUT.ply [parameter=value ...]\n", argv[0]);
+        std::fprintf(stderr, "usage: %s IN.ply OUT.ply [START.ply] [parameter=value ...]\n", argv[0]);
         return 2;
     }
     return learn(argc, argv);

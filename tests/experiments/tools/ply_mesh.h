@@ -44,6 +44,15 @@ inline TargetSpace target_of_ply(const std::string& path, const Settings& settin
     return target_space_of(mesh, identity, settings, (attributes & vcg::tri::io::Mask::IOM_VERTCOLOR) != 0);
 }
 
+/// The mesh in the PLY file \p path. \throws InputError as read_ply and indexed_mesh_of do
+inline IndexedMesh<double> mesh_of_ply(const std::string& path) {
+    PlyMesh mesh;
+    read_ply(path, mesh);
+    vcg::Matrix44d identity;
+    identity.SetIdentity();
+    return indexed_mesh_of(mesh, identity);
+}
+
 /// Sets \p value to the number in \p text. For a boolean parameter, \p text may also be "true" or "false".
 /// \return false if \p text is neither
 inline bool read_value(const std::string& text, SettingInfo::Kind kind, double& value) {

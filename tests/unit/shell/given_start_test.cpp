@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Learning that goes on from a mesh of the user's: what is refused, with which remedy, and what stays.
+#include "vcg_core/shell/given_start.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/unit/support/open_shapes.h"
+#include "tests/unit/support/soundness.h"
+
+namespace neuralmesh {
+namespace {
+
+using shapes::Shape;
+
+const TargetSpace& ball() {
+    static const TargetSpace target = targets::target_of(shapes::sphere_cloud(4000));
+    return target;
+}
+
+std::string complaint(const Shape& shape) {
+    try {
+        given_start(shape, ball());
+    } catch (const InputError& error) {
+        EXPECT_EQ(std::string(error.what()).back(), '.');
+        return error.what();
+    }
+    return {};
+}
+
+void expect_remedy(const Shape& shape, const std::string& breach, const std::string& filter) {
+    const std::string sentence = complaint(shape);
+    EXPECT_NE(sentence.find(breach), std::string::npos) << sentence;
+    EXPECT_NE(sentence.find("filter '" + filter), std::string::npos) << sentence;
+}
+
+TEST(GivenStart, NamesTheFirstBreachAndTheRemedy) {
+    EXPECT_EQ(complaint(shapes::icosphere(1)), "");
+    EXPECT_NE(complaint({shapes::icosphere(1).positions, {}}).find("has no faces"), std::string::npos);
+
+    Shape shape = shapes::icosphere(1);
+    shape.faces.push_back({3, 3, 4});
+    expect_remedy(shape, "1 faces with a corner twice", "Remove Zero Area Faces");
+
+    shape.faces.back() = {shape.faces[5][1], shape.faces[5][0], shape.faces[5][2]};
+    shape.faces.push_back(shape.faces[7]);
+    expect_remedy(shape, "2 faces that repeat others", "Remove Duplicate Faces");
+
+    shape = shapes::icosphere(1);
+    shape.positions.emplace_back(0, 0, 1.5);
+    shape.faces.push_back({shape.faces[0][0], shape.faces[0][1], 42});
+    expect_remedy(shape, "1 edges with more than two faces", "Repair non Manifold Edges");
+
+    shape = shapes::icosphere(1);
+    std::swap(shape.faces[0][0], shape.faces[0][1]);
+    expect_remedy(shape, "3 edges whose two faces have opposite", "Re-Orient all faces coherently");
+
+    shape = shapes::tetrahedron();
+    shape.positions.insert(shape.positions.end(), {{2, 0, 0}, {2, 1, 0}, {2, 0, 1}});
+    shape.faces.insert(shape.faces.end(), {{0, 4, 5}, {0, 5, 6}, {0, 6, 4}, {4, 6, 5}});
+    expect_remedy(shape, "1 vertices where parts", "Repair non Manifold Vertices by splitting");
+}
+
+/// Two fans of one face each are open, which must not hide that they only touch.
+TEST(GivenStart, FindsVerticesWhereOpenPartsTouch) {
+    Shape shape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}};
+    expect_remedy(shape, "1 vertices where parts", "Repair non Manifold Vertices by splitting");
+}
+
+/// As an STL file is read: every face has vertices of its own.
+TEST(GivenStart, FindsVerticesThatAreNotMerged) {
+    const Shape sphere = shapes::icosphere(1);
+    Shape soup;
+    for (const auto& face : sphere.faces) {
+        for (const int v : face) soup.positions.push_back(sphere.positions[static_cast<std::size_t>(v)]);
+        const int n = static_cast<int>(soup.positions.size());
+        soup.faces.push_back({n - 3, n - 2, n - 1});
+    }
+    expect_remedy(soup, "of which no two share a vertex", "Merge Close Vertices");
+}
+
+TEST(GivenStart, RefusesAMeshApartFromThePoints) {
+    Shape far = shapes::icosphere(1);
+    for (vcg::Point3d& p : far.positions) p += vcg::Point3d(5, 0, 0);
+    EXPECT_NE(complaint(far).find("lies apart from the points"), std::string::npos);
+}
+
+/// Two poles of a hundred neighbours, and the middle of an open fan of sixty faces.
+TEST(GivenStart, SplitsVerticesWithTooManyNeighbours) {
+    for (const Shape& shape : {shapes::bipyramid(100), shapes::fan(60)}) {
+        const auto before = referee::census(shape.faces);
+        const IndexedMesh<float> start = given_start(shape, ball());
+        const auto after = referee::census(start.faces);
+        EXPECT_EQ(after.breach, "");
+        EXPECT_LE(after.greatest_valence(), Ring::kMaxValence);
+        EXPECT_EQ(after.euler(), before.euler());
+        EXPECT_EQ(after.loops, before.loops);
+        EXPECT_LT(after.vertices, 2 * before.vertices);
+        EXPECT_EQ(Network(start.positions, start.faces).validate(), "");
+    }
+}
+
+Settings going_on(int vertices) {
+    Settings settings;
+    settings.start_mesh = kGivenMesh;
+    settings.target_vertices = vertices;
+    return settings;
+}
+
+NeuralMesh learn(const TargetSpace& target, const Settings& settings, const Shape& start) {
+    NoProgress progress;
+    return reconstruct(target, settings, progress, start);
+}
+
+/// A coarse result as the start of a finer one: as good as a new run, with fewer splits.
+TEST(GivenStart, RefinesAnEarlierResult) {
+    const TargetSpace torus = targets::target_of(shapes::torus_cloud(20000));
+    Settings settings;
+    settings.target_vertices = 2500;
+    NoProgress progress;
+    const NeuralMesh coarse = reconstruct(torus, settings, progress);
+    const NeuralMesh fine = learn(torus, going_on(5000), {coarse.positions, coarse.faces});
+    soundness::expect_exact(fine, going_on(5000));
+    EXPECT_EQ(fine.report.genus, 1);
+    settings.target_vertices = 5000;
+    const NeuralMesh anew = reconstruct(torus, settings, progress);
+    EXPECT_LT(fine.report.splits, 0.7 * static_cast<double>(anew.report.splits));
+    EXPECT_LT(fine.report.rms_error, 1.05 * anew.report.rms_error);
+    const NeuralMesh same = learn(torus, going_on(2500), {coarse.positions, coarse.faces});
+    soundness::expect_exact(same, going_on(2500));
+    EXPECT_LT(same.report.rms_error, 1.1 * coarse.report.rms_error);
+}
+
+/// A ring without its two discs: the boundaries stay though the points enclose space there.
+TEST(GivenStart, KeepsBoundariesHandlesAndComponents) {
+    Shape start = shapes::torus_grid(16, 8);
+    start.faces.resize(start.faces.size() - 2);
+    const auto census = referee::census(start.faces);
+    const TargetSpace torus = targets::target_of(shapes::torus_cloud(20000));
+    const NeuralMesh mesh = learn(torus, going_on(600), start);
+    soundness::expect_exact(mesh, going_on(600));
+    EXPECT_EQ(mesh.report.boundary_loops, census.loops);
+    EXPECT_EQ(mesh.report.components, 1);
+    EXPECT_EQ(mesh.report.genus, 1);
+    EXPECT_EQ(mesh.report.topology_confidence, 0);
+    Settings closed = going_on(600);
+    closed.surface = kClosedSurface;
+    EXPECT_TRUE(soundness::has_warning(learn(torus, closed, start), "because the start layer is"));
+}
+
+TEST(GivenStart, MayNotHaveMoreVerticesThanTheTarget) {
+    try {
+        learn(ball(), going_on(100), shapes::icosphere(3));
+        FAIL() << "learned";
+    } catch (const SettingError& error) {
+        EXPECT_NE(std::string(error.what()).find("642 vertices: raise target_vertices from 100"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace neuralmesh
