@@ -239,6 +239,9 @@ bench() {
     say "In pymeshlab, compared with common methods"
     "$venv/bin/python" tests/bench/in_host.py --out "$build/in_host.json" --cgal "$build/tests/cgal_peers" \
         --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
+    say "A cloud larger than memory"
+    "$venv/bin/python" tests/bench/stream.py --out "$build/stream.json" --points 20 --memory 500MB --all 10 \
+        --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
 }
 
 figures() {

@@ -16,6 +16,7 @@ from neural_mesh.parameters import WrongUsage, check, for_pymeshlab, sentence_of
 # A subcommand is the module of that name, with add_arguments(parser) and run(given), which returns the exit status.
 SUBCOMMANDS = {
     "batch": "many clouds, with a manifest of what became of each",
+    "stream": "a cloud that does not fit into memory",
 }
 
 

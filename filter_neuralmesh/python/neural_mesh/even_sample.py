@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""An even sample of a cloud that passes by once, in bounded memory.
+
+Space is divided into cubes. Of each cube the points of least priority are held; a priority is a hash of the point's
+number in the file. When more points are held than allowed, the cubes double. The least of a large cube are among the
+least of its eight parts, so what is held depends on the file only, not on the chunks in which it came (bottom-k
+sampling: Cohen and Kaplan, PODC 2007). At the end each cube is thinned by a rate that its surroundings give: as many
+points of each part of the surface, and of noise across it the share that it had."""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+from typing import Optional
+
+import numpy as np
+
+# Points held of a cube, of which some 8 to 16 are taken. The last priority says how many the cube had, within 18 %.
+MOST = 32
+# The sample's density is this power of the cloud's: 1 would keep the cloud's, 0 makes all parts alike, and noise across
+# the surface as dense far off as on it. 1/2 comes closest to learning all points; the filter evens out the rest
+# (tests/bench/stream_sampling.py).
+POWER = .5
+# A part that is so many times sparser than the median is not told from outliers. The filter itself evens out 100:1.
+SPARSEST = 300
+# Cubes along the widest side of the cloud at most: finer than any scanner, and far within the range of int64.
+FINEST = 2.0**40
+# Odd numbers of 64 bits: the golden ratio and the factors of splitmix64 (Steele, Lea, Flood, OOPSLA 2014).
+FACTORS = np.array([0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB], dtype=np.uint64)
+HASHES = 2**32  # priorities are less
+HOLD_BYTES = 110  # for each point of the capacity, with room for new points and what a choice needs
+CHUNK_BYTES = 150  # for each point of a chunk while it is added
+
+
+def priorities(numbers: np.ndarray) -> np.ndarray:
+    """A hash of each number: the upper half of splitmix64."""
+    x = (numbers + np.uint64(1)) * FACTORS[0]
+    x ^= x >> np.uint64(30)
+    x *= FACTORS[1]
+    x ^= x >> np.uint64(27)
+    x *= FACTORS[2]
+    x ^= x >> np.uint64(31)
+    return (x >> np.uint64(32)).astype(np.uint32)
+
+
+class _Cubes:
+    """The cubes of some points, in the order of their keys."""
+
+    def __init__(self, keys: np.ndarray, priority: np.ndarray) -> None:
+        self._order = np.argsort(keys)
+        keys = keys[self._order]
+        new = np.ones(len(keys), dtype=bool)
+        np.not_equal(keys[1:], keys[:-1], out=new[1:])
+        starts = np.flatnonzero(new)
+        self.keys = keys[starts]
+        del keys
+        self._sizes = np.diff(starts, append=len(new))
+        # Sorted by cube, then by priority, to find the k-th of each.
+        ranked = np.cumsum(new, dtype=np.uint64) << np.uint64(32)
+        ranked |= priority[self._order]
+        ranked.sort()
+        self.full = self._sizes >= MOST
+        # Points of higher priority than `last` are not held.
+        self.last = np.full(len(starts), HASHES - 1, dtype=np.uint32)
+        self.last[self.full] = (ranked[starts[self.full] + MOST - 1]).astype(np.uint32)  # the lower half
+        self.held = np.minimum(self._sizes, MOST)
+
+    def up_to(self, highest: np.ndarray, priority: np.ndarray) -> np.ndarray:
+        """Which points have at most the priority given for their cube."""
+        mask = np.empty(len(priority), dtype=bool)
+        mask[self._order] = priority[self._order] <= np.repeat(highest, self._sizes)
+        return mask
+
+    def counts(self) -> np.ndarray:
+        """How many points each cube had: as many as are held, or an unbiased estimate from the last of them."""
+        return np.where(self.full, (MOST - 1) * (HASHES / (self.last + 1.0)), self.held)
+
+    def around(self, counts: np.ndarray) -> np.ndarray:
+        """The sum of the counts of each cube and its 26 neighbours."""
+        sums = np.zeros(len(counts))
+        for step in product((-1, 0, 1), repeat=3):
+            wanted = self.keys + _joined(np.array(step, dtype=np.int64)[:, None])
+            found = np.minimum(np.searchsorted(self.keys, wanted), len(counts) - 1)
+            sums += np.where(self.keys[found] == wanted, counts[found], 0)
+        return sums
+
+
+def _joined(indices: np.ndarray) -> np.ndarray:
+    """One number of three, modulo 2**64; that of a sum of indices is the sum of the numbers."""
+    return sum(axis.view(np.uint64) * factor for axis, factor in zip(indices, FACTORS))
+
+
+class EvenSample:
+    """add() all points, then take() the sample."""
+
+    def __init__(self, limit: int, capacity: int, chunk: int) -> None:
+        """Samples about `limit` points at most, from `capacity`, better twice to four times as many, that are held
+        between chunks of at most `chunk` points."""
+        self._limit = limit
+        self._capacity = capacity
+        # The more room for new points, the fewer choices.
+        self._points = np.empty((capacity + max(chunk, capacity // 4), 3))
+        self._numbers = np.empty(len(self._points), dtype=np.uint64)  # in the file
+        self._held = 0
+        self._level: Optional[int] = None  # cubes have the sides 2**((level + axis) // 3); None: all points are held
+        self._full_keys, self._full_last = np.empty(0, np.uint64), np.empty(0, np.uint32)
+        self._origin = np.zeros(3)
+        self.low, self.high = np.full(3, np.inf), np.full(3, -np.inf)  # the box of all points
+        self.seen = 0
+        self.skipped = 0  # points with NaN or infinite coordinates
+
+    def add(self, points: np.ndarray) -> None:
+        """Adds the next points of the file, an (n, 3) array."""
+        numbers = np.arange(self.seen, self.seen + len(points), dtype=np.uint64)
+        self.seen += len(points)
+        finite = np.isfinite(points).all(axis=1)
+        if not finite.all():
+            points, numbers = points[finite], numbers[finite]
+            self.skipped += len(finite) - len(points)
+        if not len(points):
+            return
+        if self.seen - self.skipped == len(points):  # the first
+            self._origin = points[0].copy()
+        self.low = np.minimum(self.low, points.min(axis=0))
+        self.high = np.maximum(self.high, points.max(axis=0))
+        if self._level is not None:
+            wanted = self._may_be_held(points, numbers)
+            points, numbers = points[wanted], numbers[wanted]
+        if self._held + len(points) > len(self._points):
+            self._choose(self._capacity)
+        end = self._held + len(points)
+        self._points[self._held:end] = points
+        self._numbers[self._held:end] = numbers
+        self._held = end
+
+    def take(self) -> np.ndarray:
+        """The sample in the order of the file: all points, if they are no more than the limit. Of the points that lie
+        apart from others the same share is taken as of all points, so that outliers gain no weight. Ends the sample."""
+        if self._level is not None or self._held > self._limit:
+            # A cloud that could be held whole needs cubes of several points, too.
+            cubes = self._choose(min(self._capacity, .9 * (self.seen - self.skipped)))
+            highest = np.minimum(self._rates(cubes) * HASHES, HASHES - 1).astype(np.uint32)
+            self._keep(cubes.up_to(highest, priorities(self._numbers[:self._held])))
+        points = self._points[:self._held][np.argsort(self._numbers[:self._held])]
+        self._points, self._numbers = np.empty((0, 3)), np.empty(0, np.uint64)
+        return points
+
+    def _rates(self, cubes: _Cubes) -> np.ndarray:
+        """The share of points to take of each cube: by a power of the number around it, scaled to meet the limit."""
+        counts = cubes.counts()
+        around = cubes.around(counts)
+        order = np.argsort(around)
+        half_of_points = np.searchsorted(np.cumsum(counts[order]), counts.sum() / 2)
+        apart = around * SPARSEST < around[order[half_of_points]]
+        share = self._limit / (self.seen - self.skipped)
+        low, high = 0.0, float((around**(1 - POWER)).max())
+        for _ in range(50):  # bisection; more would not change the number of points
+            middle = (low + high) / 2
+            rates = np.where(apart, share, np.minimum(1, middle / around**(1 - POWER)))
+            too_many = np.minimum(counts * rates, cubes.held).sum() > self._limit
+            low, high = (low, middle) if too_many else (middle, high)
+        return rates
+
+    def _may_be_held(self, points: np.ndarray, numbers: np.ndarray) -> np.ndarray:
+        """The indices of the points that are not above the last of a full cube."""
+        keys = self._keys(points, self._level)
+        order = np.argsort(keys)  # sorted queries find their places much faster
+        if not len(self._full_keys):
+            return order
+        keys = keys[order]
+        place = np.minimum(np.searchsorted(self._full_keys, keys), len(self._full_keys) - 1)
+        above = priorities(numbers[order]) > self._full_last[place]
+        return order[~(above & (self._full_keys[place] == keys))]
+
+    def _choose(self, bound: float) -> _Cubes:
+        """Doubles the cubes as often as the bound asks, and drops the points above the last of each cube. Returns the
+        cubes of those held."""
+        priority = priorities(self._numbers[:self._held])
+        cubes = self._smallest_cubes(priority, bound)
+        self._full_keys, self._full_last = cubes.keys[cubes.full], cubes.last[cubes.full]
+        mask = cubes.up_to(cubes.last, priority)
+        del cubes  # those below need the room
+        self._keep(mask)
+        return self._cubes(self._level, priority[mask])
+
+    def _smallest_cubes(self, priority: np.ndarray, bound: float) -> _Cubes:
+        """Sets the level to the least, not below the present one, with which at most `bound` points are held. A level
+        that suffices for all points suffices for the first of them, so the last level is the same for any chunks."""
+        widest = max((self.high - self.low).max(), 1e-300)
+        finest = 3 * math.ceil(math.log2(widest / FINEST))
+        if self._level is None:
+            # Near the level found, if the points are of a surface.
+            level = max(finest, 3 * math.ceil(math.log2(widest / math.sqrt(self._capacity / MOST))))
+        else:
+            level = finest = max(finest, self._level)
+        cubes = self._cubes(level, priority)
+        while cubes.held.sum() > bound:
+            level += 1
+            finest = level  # finer ones hold too many
+            cubes = self._cubes(level, priority)
+        while level > finest:
+            finer = self._cubes(level - 1, priority)
+            if finer.held.sum() > bound:
+                break
+            level, cubes = level - 1, finer
+        self._level = level
+        return cubes
+
+    def _cubes(self, level: int, priority: np.ndarray) -> _Cubes:
+        return _Cubes(self._keys(self._points[:self._held], level), priority)
+
+    def _keys(self, points: np.ndarray, level: int) -> np.ndarray:
+        keys = np.zeros(len(points), dtype=np.uint64)
+        for axis, factor in enumerate(FACTORS):
+            index = np.floor((points[:, axis] - self._origin[axis]) * 2.0**-((level + axis) // 3)).astype(np.int64)
+            keys += index.view(np.uint64) * factor
+        return keys
+
+    def _keep(self, mask: np.ndarray) -> None:
+        """Moves the points of the mask together, a part at a time, because a copy of all would double the memory."""
+        end, part = 0, 1 << 20
+        for first in range(0, self._held, part):
+            chosen = np.flatnonzero(mask[first:first + part]) + first
+            self._points[end:end + len(chosen)] = self._points[chosen]
+            self._numbers[end:end + len(chosen)] = self._numbers[chosen]
+            end += len(chosen)
+        self._held = end

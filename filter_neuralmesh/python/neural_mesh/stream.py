@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""Reconstructs the surface of a cloud that need not fit into memory: learns from an even sample of its points, then
+measures the distances of all its points to the mesh."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Dict, Optional
+
+import numpy as np
+import pymeshlab
+
+from neural_mesh import FILTER
+from neural_mesh.clouds import FORMATS, Cloud, CloudError, open_cloud
+from neural_mesh.distances import POINT_BYTES, VERTEX_BYTES, Unmeasured, measure
+from neural_mesh.even_sample import CHUNK_BYTES, HOLD_BYTES, EvenSample
+from neural_mesh.parameters import Settings, WrongUsage, check, for_pymeshlab, settings_of
+from neural_mesh.sizes import check_space, gigabytes, memory_size
+
+PER_VERTEX = 100  # points of the sample for each vertex wanted
+FEWEST_PER_VERTEX = 10  # with fewer the mesh suffers
+HELD = 4  # points held while reading for each of the sample, at most
+KEEPS_COORDINATES = (".ply", ".obj", ".off")  # files for which pymeshlab writes doubles; georeferenced clouds need them
+# Bytes, measured with 1 to 10 million points and 10,000 to 100,000 vertices (tests/bench/stream.py), rounded up.
+PROCESS = 110e6  # Python with numpy and pymeshlab
+LEARNED_POINT = 220
+LEARNED_VERTEX = 1500
+SAVED_VERTEX = 200  # of a file, with its two faces
+CHUNK, SMALL_CHUNK = 500_000, 50_000  # points; in smaller ones pymeshlab's grid takes longer than the distances
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("cloud", type=Path, help=f"a file of points: {' '.join(FORMATS)}")
+    parser.add_argument("mesh", type=Path, help=f"the file to write: {' '.join(KEEPS_COORDINATES)}")
+    parser.add_argument("settings", nargs="*", metavar="name=value", help="parameters of the filter, such as "
+                        "target_vertices=100000")
+    parser.add_argument("--memory", type=memory_size, default="2GB", metavar="SIZE", help="what all processes together "
+                        "may take, such as 500MB or 16GB; default: %(default)s")
+
+
+def run(given: argparse.Namespace) -> int:
+    settings = settings_of(given.settings)
+    meshes = pymeshlab.MeshSet(verbose=False)
+    values = check(settings, meshes)
+    if given.mesh.suffix.lower() not in KEEPS_COORDINATES:
+        raise WrongUsage(f"{given.mesh} cannot be written: stream writes {', '.join(KEEPS_COORDINATES)}, which keep "
+                         "coordinates in double precision.")
+    if given.mesh.exists() and given.cloud.exists() and given.mesh.samefile(given.cloud):
+        raise WrongUsage(f"The mesh {given.mesh} would replace its cloud: give another name.")
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # removes what is written aside
+    try:
+        cloud = open_cloud(given.cloud)
+        processors = values["threads"] or len(os.sched_getaffinity(0))
+        plan = plan_for(given.memory, values["target_vertices"], cloud.count, processors)
+        with _folder_beside(given.mesh) as folder:
+            check_space(given.mesh.parent, plan.file_bytes())
+            print(plan.sentence(), flush=True)
+            _Stream(cloud, plan, meshes, Path(folder)).run(settings, given.mesh)
+    except (CloudError, Unmeasured) as error:
+        sentence = str(error)
+    except OSError as error:
+        sentence = f"{error.filename or given.mesh} cannot be written: {error.strerror}."
+    except MemoryError:
+        sentence = "There is not enough memory: close other programs, or give a smaller --memory."
+    else:
+        return 0
+    print(f"neural-mesh: {sentence}", file=sys.stderr)
+    return 1
+
+
+@dataclass
+class Plan:
+    """What is held at a time, in points, and by how many processes."""
+
+    target: int
+    sample: int
+    held: int
+    chunk: int
+    workers: int
+    memory: float
+
+    def reading_bytes(self) -> float:
+        return PROCESS + HOLD_BYTES * self.held + CHUNK_BYTES * self.chunk
+
+    def learning_bytes(self) -> float:
+        return PROCESS + LEARNED_POINT * self.sample + LEARNED_VERTEX * self.target
+
+    def measuring_bytes(self) -> float:
+        worker = PROCESS + VERTEX_BYTES * self.target + POINT_BYTES * self.chunk
+        return PROCESS + CHUNK_BYTES * self.chunk + self.workers * worker
+
+    def file_bytes(self) -> float:
+        return 24 * self.sample + SAVED_VERTEX * self.target
+
+    def bytes(self) -> float:
+        return max(self.reading_bytes(), self.learning_bytes(), self.measuring_bytes())
+
+    def sentence(self) -> str:
+        return (f"This will take up to {gigabytes(self.bytes())} of the {gigabytes(self.memory)} allowed: a sample of "
+                f"up to {self.sample:,} points ({self.sample / self.target:.0f} per vertex), chunks of {self.chunk:,} "
+                f"points, {self.workers} process{'es' * (self.workers > 1)} for distances.")
+
+
+def plan_for(memory: float, target: int, count: Optional[int], processors: int) -> Plan:
+    """The largest sample and the most processes that memory allows. `count`: of the cloud's points, None if not known.
+    Throws WrongUsage if memory is too small for the vertices."""
+    smallest = Plan(target, 0, 0, 0, 1, memory)
+    chunk = int(min(max((memory - smallest.measuring_bytes()) / 2000, SMALL_CHUNK), CHUNK))
+    known = float("inf") if count is None else count
+    learnable = (memory - PROCESS - LEARNED_VERTEX * target) / LEARNED_POINT
+    holdable = (memory - PROCESS - CHUNK_BYTES * chunk) / HOLD_BYTES
+    sample = int(min(PER_VERTEX * target, known, learnable, holdable))
+    plan = Plan(target, sample, int(min(HELD * max(sample, 1), known, holdable)), chunk, processors, memory)
+    while plan.workers > 1 and plan.measuring_bytes() > memory:
+        plan.workers -= 1
+    fewest = int(min(FEWEST_PER_VERTEX * target, known))
+    if sample < fewest or plan.measuring_bytes() > memory:
+        least = Plan(target, fewest, fewest, SMALL_CHUNK, 1, 0)
+        raise WrongUsage(f"{target:,} vertices need {gigabytes(least.bytes() * 1.01)} of memory, and "
+                         f"{gigabytes(memory)} are allowed: give a larger --memory or a smaller target_vertices.")
+    return plan
+
+
+def _folder_beside(mesh: Path) -> "tempfile.TemporaryDirectory[str]":
+    """A folder for files that are not whole yet, on the disk of the mesh. Throws WrongUsage."""
+    if mesh.is_dir():
+        raise WrongUsage(f"{mesh} is a folder: give the name of a file.")
+    parent = mesh.parent
+    try:
+        return tempfile.TemporaryDirectory(prefix=f".{mesh.stem}-", dir=parent)
+    except OSError as error:
+        raise WrongUsage(f"Nothing can be written into the folder {parent}: {error.strerror}.") from error
+
+
+class _Stream:
+    """The two passes over a cloud, and learning between them."""
+
+    def __init__(self, cloud: Cloud, plan: Plan, meshes: pymeshlab.MeshSet, folder: Path) -> None:
+        self._cloud, self._plan, self._meshes, self._folder = cloud, plan, meshes, folder
+        self._started = time.monotonic()
+
+    def run(self, settings: Settings, out: Path) -> None:
+        """Writes the mesh to `out` when it is whole, then measures the distances. Prints what was done."""
+        sample = self._read()
+        diagonal = float(np.linalg.norm(sample.high - sample.low))
+        result = self._learn(sample, settings, out)
+        found = measure(out, self._cloud.chunks(self._plan.chunk), diagonal * 2, self._plan.workers,
+                        lambda: self._show("Measuring"))
+        percent = 100 / diagonal if diagonal else 0
+        print(f"Measured the distances of all {found.points:,} points in {self._seconds():.1f} s: RMS {found.rms:.6g} "
+              f"({found.rms * percent:.4f} % of the diagonal), mean {found.mean:.6g} ({found.mean * percent:.4f} %), "
+              f"maximum {found.maximum:.6g} ({found.maximum * percent:.4f} %).")
+        result.update(points=sample.seen, skipped=sample.skipped, points_rms=found.rms, points_mean=found.mean,
+                      points_maximum=found.maximum, diagonal=diagonal)
+        print(" ".join(f"{key}={value:.6g}" for key, value in result.items()))
+
+    def _read(self) -> EvenSample:
+        sample = EvenSample(self._plan.sample, self._plan.held, self._plan.chunk)
+        for points in self._cloud.chunks(self._plan.chunk):
+            sample.add(points)
+            self._show("Reading")
+        if sample.seen == sample.skipped:
+            raise CloudError(f"{self._cloud.path} holds no point with finite coordinates.")
+        return sample
+
+    def _learn(self, sample: EvenSample, settings: Settings, out: Path) -> Dict[str, Any]:
+        """Learns from the sample, writes the mesh, returns the filter's results."""
+        points = sample.take()
+        skipped = f" {sample.skipped:,} of them are left out: they are not finite." if sample.skipped else ""
+        print(f"Read {sample.seen:,} points in {self._seconds():.1f} s.{skipped} The sample has {len(points):,}.",
+              flush=True)
+        _write_ply(self._folder / "sample.ply", points)
+        taken = len(points)
+        del points  # pymeshlab needs the room
+        self._meshes.load_new_mesh(str(self._folder / "sample.ply"))
+        (self._folder / "sample.ply").unlink()
+        result = self._meshes.apply_filter(FILTER, **for_pymeshlab(settings))
+        aside = self._folder / out.name
+        has_quality = out.suffix.lower() == ".ply"
+        try:
+            self._meshes.save_current_mesh(str(aside), **({"save_vertex_quality": True} if has_quality else {}))
+        except pymeshlab.PyMeshLabException as error:
+            raise OSError(0, str(error).splitlines()[-1], str(out)) from error
+        self._meshes.clear()
+        os.replace(aside, out)
+        print(f"Learned {result['vertices']:,} vertices in {self._seconds():.1f} s and wrote {out}.", flush=True)
+        return {**result, "sample": taken}
+
+    def _seconds(self) -> float:
+        """Since the last call. Ends the line of the progress."""
+        if sys.stderr.isatty():
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
+        last, self._started = self._started, time.monotonic()
+        return self._started - last
+
+    def _show(self, what: str) -> None:
+        if sys.stderr.isatty():
+            print(f"\r{what}: {100 * self._cloud.done:.0f} %", end="", file=sys.stderr, flush=True)
+
+
+def _write_ply(path: Path, points: np.ndarray) -> None:
+    header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}",
+              *(f"property double {axis}" for axis in "xyz"), "end_header", ""]
+    with path.open("wb") as file:
+        file.write("\n".join(header).encode())
+        points.astype("<f8", copy=False).tofile(file)
