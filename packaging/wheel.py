@@ -29,6 +29,7 @@ Provides-Extra: pymeshlab
 Requires-Dist: pymeshlab ==2025.7.*; extra == "pymeshlab"
 Provides-Extra: dask
 Requires-Dist: distributed; extra == "dask"
+Requires-Dist: bokeh; extra == "dask"
 Provides-Extra: las
 Requires-Dist: laspy[lazrs]; extra == "las"
 Provides-Extra: e57
@@ -43,7 +44,8 @@ result = ms.generate_surface_reconstruction_neural_mesh(target_vertices=5000)
 ms.save_current_mesh("mesh.ply", save_vertex_quality=True)
 ```
 
-Or as a command: `neural-mesh cloud.ply mesh.ply target_vertices=5000`.
+Or as a command: `neural-mesh cloud.ply mesh.ply target_vertices=5000`, and for a folder of clouds
+`neural-mesh batch clouds --out meshes target_vertices=5000`.
 """
 
 

@@ -70,6 +70,7 @@ class Measure:
                 time.sleep(self.random.uniform(*SECONDS_BETWEEN_KILLS))
                 if len(records(out)) > stop_at:
                     driver.kill()
+                    driver.wait()
                     killed_drivers += 1
                 elif kill_a_worker(driver.pid, self.random):
                     killed_workers += 1
@@ -80,8 +81,8 @@ class Measure:
                 break
         times = collections.Counter(record["output"] for record in records(out) if "result" in record)
         print(f"kills: {killed_drivers} of the driver, {killed_workers} of workers, {starts} starts; {len(times)} "
-              f"meshes, {len(failed)} named, {failed == corrupt and 'all' or 'not all'} of the corrupt; {max(times.values())} "
-              "line at most for each mesh", flush=True)
+              f"meshes, {len(failed)} named, of them {len(failed & corrupt)} of {len(corrupt)} corrupt; at most "
+              f"{max(times.values())} line for a mesh", flush=True)
 
     def memory(self, clouds):
         """Growth of a process over the second to the last but one of the clouds, all good."""

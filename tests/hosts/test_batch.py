@@ -145,7 +145,7 @@ def test_interrupted_it_ends_and_the_next_start_goes_on(command, batch, few, tmp
     children = learners(psutil.Process(driver.pid))
     driver.send_signal(number)
     _, text = driver.communicate(timeout=TIMEOUT)
-    assert driver.returncode == 130 and "The same command goes on with them." in text and "Traceback" not in text
+    assert driver.returncode == 130 and "left. The same command goes on." in text and "Traceback" not in text
     assert children and not psutil.wait_procs(children, timeout=10)[1] and not hidden(tmp_path)
     before = len(records(tmp_path))
     status, text = batch(*words)

@@ -5,6 +5,7 @@
 given again, learns only what is missing, has failed, or has changed."""
 
 import argparse
+import errno
 import os
 import shutil
 import signal
@@ -12,7 +13,7 @@ import sys
 from pathlib import Path
 from typing import Any, Generator, List
 
-from neural_mesh.batch_files import Job, jobs_of, remove_asides
+from neural_mesh.batch_files import Job, jobs_of, remove, remove_asides
 from neural_mesh.manifest import Busy, Manifest, Record
 from neural_mesh.parameters import WrongUsage, check, files_and_settings
 
@@ -72,17 +73,21 @@ def run(given: argparse.Namespace) -> int:
         check_space(given.out, len(missing) * vertices * BYTES_PER_VERTEX)
         remove_asides(given.out, missing)
         there = f", {len(jobs) - len(missing)} of them done before" if len(missing) < len(jobs) else ""
-        print(f"{len(jobs)} clouds{there}.", file=sys.stderr)
+        print(f"{counted(len(jobs))}{there}.", file=sys.stderr)
         return learn_missing(missing, manifest, given) if missing else 0
     finally:
         manifest.close()
+
+
+def counted(clouds: int) -> str:
+    return "1 cloud" if clouds == 1 else f"{clouds} clouds"
 
 
 def opened(out: Path) -> Manifest:
     try:
         out.mkdir(parents=True, exist_ok=True)
         if not os.access(out, os.W_OK | os.X_OK):
-            raise PermissionError(0, "Permission denied")
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
         return Manifest(out)
     except Busy as error:
         raise WrongUsage(str(error)) from None
@@ -108,12 +113,12 @@ def learn_missing(jobs: List[Job], manifest: Manifest, given: argparse.Namespace
         for record in records:
             if "error" in record:
                 failures.append(record)
-                (given.out / record["output"]).unlink(missing_ok=True)  # of an earlier input or other parameters
+                remove(given.out / record["output"])  # of an earlier input or other parameters
             manifest.append(record)
             done += 1
             progress.add("error" in record)
     except KeyboardInterrupt:
-        print(f"\nStopped: {len(jobs) - done} clouds are left. The same command goes on with them.", file=sys.stderr)
+        print(f"\nStopped with {counted(len(jobs) - done)} left. The same command goes on.", file=sys.stderr)
         return INTERRUPTED
     except (CannotStart, OSError) as error:
         print(f"\nneural-mesh: {error}", file=sys.stderr)
@@ -122,7 +127,7 @@ def learn_missing(jobs: List[Job], manifest: Manifest, given: argparse.Namespace
         records.close()  # ends the processes
         progress.close()
     if failures:
-        print(f"{len(failures)} of {len(jobs)} clouds failed:", file=sys.stderr)
+        print(f"{len(failures)} of {counted(len(jobs))} failed:", file=sys.stderr)
         for record in sorted(failures, key=lambda record: record["input"]):
             print(f"  {record['input']}: {record['error']}", file=sys.stderr)
     return 1 if failures else 0

@@ -3,6 +3,7 @@
 
 """Which clouds a batch learns, and where each result is written."""
 
+import contextlib
 import glob
 import os
 import socket
@@ -40,6 +41,12 @@ def aside_of(result: Path, process: int) -> Path:
     return result.with_name(f".{result.stem}.{machine}-{process}{ASIDE}")
 
 
+def remove(path: Path) -> None:
+    """Removes a file if it is there and that is allowed."""
+    with contextlib.suppress(OSError):
+        path.unlink()
+
+
 def remove_asides(out: Path, jobs: Iterable[Job]) -> None:
     """Removes what killed processes have left of the jobs' results."""
     results = {out / job.output for job in jobs}
@@ -47,7 +54,7 @@ def remove_asides(out: Path, jobs: Iterable[Job]) -> None:
         for aside in folder.glob(f".*{ASIDE}"):
             stem = aside.name[1:-len(ASIDE)].rpartition(".")[0]
             if folder / f"{stem}.ply" in results:
-                aside.unlink()
+                remove(aside)
 
 
 def jobs_of(inputs: List[str], out: Path, settings: Settings) -> List[Job]:

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import IO, Any, Dict, Optional
 
 from neural_mesh import __version__
-from neural_mesh.batch_files import Job, aside_of
+from neural_mesh.batch_files import Job, aside_of, remove
 from neural_mesh.manifest import Record
 
 START_SECONDS = 300  # for the libraries to load from a slow network disk
@@ -82,7 +82,7 @@ class Child:
         if "error" in answer:
             # pymeshlab 2025.7 crashes if it loads a file after a MeshSet was deleted in which a filter has failed.
             self._end()
-            aside.unlink(missing_ok=True)
+            remove(aside)
         return {**described(job), **answer}
 
     def stop(self) -> None:

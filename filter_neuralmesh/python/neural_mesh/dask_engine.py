@@ -5,6 +5,7 @@
 
 The folders must be the same on all machines, and neural-mesh must be installed on all."""
 
+import contextlib
 import sys
 import threading
 from pathlib import Path
@@ -38,7 +39,7 @@ def learn_all(jobs: List[Job], out: Path, limits: Limits, workers: int, threads:
               address: Optional[str]) -> Generator[Record, None, None]:
     """Yields the records as they come, in any order. Throws WrongUsage if the cluster cannot be reached."""
     try:
-        from dask.distributed import Client, LocalCluster, as_completed
+        from dask.distributed import CancelledError, Client, LocalCluster, as_completed
     except ImportError:
         raise WrongUsage("The engine dask is not installed: run 'pip install neural_mesh-*.whl[dask]', or 'pip install "
                          "distributed'.") from None
@@ -60,9 +61,12 @@ def learn_all(jobs: List[Job], out: Path, limits: Limits, workers: int, threads:
         for task in finished:
             problem = task.exception()
             yield failed(job_of[task.key], f"dask: {' '.join(str(problem).split())}") if problem else task.result()
+    except CancelledError:
+        raise OSError(f"dask's scheduler at {client.scheduler.address} has gone. The same command goes on.") from None
     finally:
-        client.cancel(list(finished.futures))
-        client.run(end_children, out, on_error="ignore")
+        with contextlib.suppress(OSError):  # the scheduler may have gone
+            client.cancel(list(finished.futures))
+            client.run(end_children, out, on_error="ignore")
         client.close()
         if cluster is not None:
             cluster.close()

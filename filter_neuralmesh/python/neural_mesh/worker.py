@@ -61,7 +61,7 @@ def peak_memory() -> int:
 
 def is_whole(mesh: Path) -> bool:
     """Whether the file is as long as its header says. pymeshlab does not notice when no space is left."""
-    sizes = {"double": 8, "float": 4, "int": 4, "uint": 4, "uchar": 1}
+    sizes = {"double": 8, "float": 4, "int": 4, "uint": 4, "short": 2, "ushort": 2, "char": 1, "uchar": 1}
     expected = 0
     count = 0
     with mesh.open("rb") as file:
@@ -104,13 +104,20 @@ def learn(job: Dict[str, Any]) -> Dict[str, Any]:
         return {"error": f"The file cannot be loaded: {reason}." if reason else " ".join(sentence_of(error).split())}
 
 
+def return_free_memory() -> None:
+    """Gives the system what the last cloud has left free: else the process grows by 6 % over 1,000 clouds."""
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # of glibc
+    if trim is not None:
+        trim(0)
+
+
 def answer_jobs(answers: Any, memory_limit: Optional[int]) -> None:
     import neural_mesh  # noqa: F401  so that the first cloud does not pay for it
     log = Log()
     if memory_limit:
         # Memory that can be written to: not that of libraries, nor what is only reserved, unlike RLIMIT_AS.
         resource.setrlimit(resource.RLIMIT_DATA, (memory_limit, memory_limit))
-    print("{}", file=answers, flush=True)
+    print("{}", file=answers, flush=True)  # ready
     for line in sys.stdin:
         job = json.loads(line)
         log.clear()
@@ -121,6 +128,7 @@ def answer_jobs(answers: Any, memory_limit: Optional[int]) -> None:
         answer["peak_memory"] = peak_memory()
         answer["warnings"] = [words for words in log.warnings() if words != answer.get("error")]
         print(json.dumps(answer), file=answers, flush=True)
+        return_free_memory()
 
 
 def main() -> None:
@@ -128,7 +136,6 @@ def main() -> None:
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # pymeshlab prints the parameters of each filter
     answer_jobs(answers, int(sys.argv[2]) or None)
-    os._exit(0)  # without deleting what must not be deleted
 
 
 if __name__ == "__main__":
