@@ -77,6 +77,10 @@ def jobs_of(inputs: List[str], out: Path, settings: Settings) -> List[Job]:
 
 
 def _job(path: Path, output: str, settings: Settings) -> Job:
+    try:
+        os.path.abspath(path).encode()
+    except UnicodeEncodeError:
+        raise WrongUsage(f"pymeshlab cannot load {str(path)!r}, whose name is not UTF-8: rename it.") from None
     state = path.stat()
     return Job(os.path.abspath(path), output, state.st_size, state.st_mtime_ns, settings)
 

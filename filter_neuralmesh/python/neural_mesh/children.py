@@ -97,8 +97,8 @@ class Child:
 
     def _start(self) -> None:
         self._log = tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace")
-        # BLAS would start a thread per core, and is not used.
-        environment = {"OPENBLAS_NUM_THREADS": "1", **os.environ}
+        # BLAS would start a thread per core, and is not used. Qt takes names of files for those of the locale.
+        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "LC_ALL": "C.UTF-8"}
         with self._lock:
             if self._stopped:
                 raise CannotStart("stopped")
