@@ -105,7 +105,8 @@ def learn(job: Dict[str, Any]) -> Dict[str, Any]:
 
 
 def return_free_memory() -> None:
-    """Gives the system what the last cloud has left free: else the process grows by 6 % over 1,000 clouds."""
+    """Gives the system what the last cloud has left free: else the process grows by 6 % over 1,000 clouds, not .5 %
+    (tests/bench/batch.py)."""
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # of glibc
     if trim is not None:
         trim(0)
