@@ -269,9 +269,9 @@ LearningTask prepare(const TargetSpace& given, const Settings& settings, const I
     LearningTask task(given);
     remove_repeated_points(task);
     Survey survey(settings.threads);
-    if (settings.remove_outliers && !given.has_faces()) remove_outliers(task, survey, settings.threads);
+    if (settings.remove_outliers && !given.is_exact()) remove_outliers(task, survey, settings.threads);
     begin(task, settings, start, progress);
-    if (settings.even_sampling && settings.utility_counter != kSignalCount && !given.has_faces())
+    if (settings.even_sampling && settings.utility_counter != kSignalCount && !given.is_exact())
         weigh_points(task, survey);
     return task;
 }

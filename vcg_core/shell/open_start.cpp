@@ -326,7 +326,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     result.spacing = static_cast<double>(planes.step);
     result.two_layers = median_kurtosis(points, planes) < kTwoLayers;
     set_outliers(outliers_of(planes, kept), static_cast<long long>(points.size()), enough,
-                 options.learn_outliers || target.has_faces(), result);
+                 options.learn_outliers || target.is_exact(), result);
     warn_of_cuts(target, planes, result);
     progress(1.0, "Start mesh: done");
     return result;

@@ -70,7 +70,7 @@ void set_outliers(const TargetSpace& target, const std::vector<Point3f>& points,
     result.outliers = outliers_of(points, region, closed.solid, closed.level);
     result.ignored_points = std::count(result.outliers.begin(), result.outliers.end(), 1);
     const double most = ShellOptions::kMaxOutlierShare * static_cast<double>(points.size());
-    if (learn_outliers || target.has_faces() || static_cast<double>(result.ignored_points) > most)
+    if (learn_outliers || target.is_exact() || static_cast<double>(result.ignored_points) > most)
         result.outliers.clear();
 }
 

@@ -146,6 +146,15 @@ void TargetSpace::accumulate_areas() {
             "its vertices instead.");
 }
 
+TargetSpace TargetSpace::drawn_by(Sampler draw, std::size_t count) {
+    std::vector<vcg::Point3d> drawn(count);
+    Random random(0);
+    for (vcg::Point3d& p : drawn) p = draw(random);
+    TargetSpace target = points(count, [&](std::size_t i) { return drawn[i]; });
+    target.sampler_ = std::move(draw);
+    return target;
+}
+
 std::optional<TargetSpace> TargetSpace::without(const std::vector<std::uint8_t>& left_out) const {
     TargetSpace rest;
     rest.positions_.reserve(static_cast<std::size_t>(std::count(left_out.begin(), left_out.end(), 0)));
@@ -165,7 +174,7 @@ std::optional<TargetSpace> TargetSpace::without(const std::vector<std::uint8_t>&
 }
 
 std::optional<TargetSpace> TargetSpace::each_place_once() const {
-    if (has_faces() || estimated_share_of_duplicates(positions_) <= kMaxDuplicates) return std::nullopt;
+    if (is_exact() || estimated_share_of_duplicates(positions_) <= kMaxDuplicates) return std::nullopt;
     TargetSpace once;
     once.frame_ = frame_;
     once.positions_ = positions_;
@@ -205,7 +214,8 @@ vcg::Point3f TargetSpace::sample(Random& random) const {
         const std::size_t points = std::min(PointAreas::kRun, positions_.size() - first);
         return positions_[first + random.below(static_cast<std::uint32_t>(points))];
     }
-    if (!has_faces()) return positions_[random.below(static_cast<std::uint32_t>(positions_.size()))];
+    if (!is_exact()) return positions_[random.below(static_cast<std::uint32_t>(positions_.size()))];
+    if (!has_faces()) return frame_.inside(sampler_(random));
     const FacePoint at = draw_from_faces(random);
     return interpolated(positions_[at.corner], positions_[at.corner + 1], positions_[at.corner + 2], at.u,
                         at.v);

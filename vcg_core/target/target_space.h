@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,8 +37,8 @@ struct Frame {
     vcg::Point3d outside(const vcg::Point3f& p) const;
 };
 
-/// Points, or triangles weighted by area. Memory: 12 bytes per point, or 44 bytes per triangle; with colours
-/// 3 more per position.
+/// Points, triangles weighted by area, or what a sampler draws. Memory: 12 bytes per point, or 44 bytes per
+/// triangle; with colours 3 more per position.
 class TargetSpace {
 public:
     /// A cloud. \p point_at(i), i in [0, count), returns point i as vcg::Point3d; it is called more than once
@@ -51,12 +52,22 @@ public:
     template <class CornerAt>
     static TargetSpace triangles(std::size_t count, const CornerAt& corner_at);
 
+    using Sampler = std::function<vcg::Point3d(Random&)>;
+
+    /// What \p draw returns, such as random points of an implicit surface: every signal is a new one. The
+    /// start mesh, the fit and the error use \p count points that are drawn first, at least two for every
+    /// vertex asked for. They count as exact, like those of faces: none is left out or weighted. \p draw
+    /// must return finite points, must not throw, and must depend on its argument alone; it is called from
+    /// one thread at a time, but not always from the same one. \throws InputError as points(). O(count)
+    static TargetSpace drawn_by(Sampler draw, std::size_t count = 200000);
+
     /// Gives every one of positions() a colour. The targets made of this one keep them; of repeated points
     /// the first given counts. \pre there are as many as positions()
     void set_colors(std::vector<Color> colors) { colors_ = std::move(colors); }
 
-    /// A random point, in the frame of the core: uniform over the points, in proportion to their weights, or
-    /// uniform over the area of the triangles. O(1) for points, O(log n) for n triangles.
+    /// A random point, in the frame of the core: what the sampler draws, uniform over the points, in
+    /// proportion to their weights, or uniform over the area of the triangles. O(1) for points, O(log n) for
+    /// n triangles.
     vcg::Point3f sample(Random& random) const;
 
     struct ColoredPoint {
@@ -85,6 +96,8 @@ public:
 
     const Frame& frame() const { return frame_; }
     bool has_faces() const { return !cumulative_area_.empty(); }
+    /// Whether every point is one of the surface: it was drawn from faces or by a sampler.
+    bool is_exact() const { return has_faces() || sampler_ != nullptr; }
     /// The points, or three corners per triangle, in the frame of the core.
     const std::vector<vcg::Point3f>& positions() const { return positions_; }
     bool has_colors() const { return !colors_.empty(); }
@@ -116,6 +129,7 @@ private:
     std::vector<float> weights_;  ///< of the runs of points; empty: all points weigh 1
     AliasTable runs_;             ///< draws runs
     std::vector<Color> colors_;   ///< of the positions; may be empty
+    Sampler sampler_;             ///< may be empty
 };
 
 template <class PointAt>
