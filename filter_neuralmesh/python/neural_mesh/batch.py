@@ -7,7 +7,6 @@ given again, learns only what is missing, has failed, or has changed."""
 import argparse
 import errno
 import os
-import shutil
 import signal
 import sys
 from pathlib import Path
@@ -16,13 +15,13 @@ from typing import Any, Generator, List
 from neural_mesh.batch_files import Job, jobs_of, remove, remove_asides
 from neural_mesh.manifest import Busy, Manifest, Record
 from neural_mesh.parameters import WrongUsage, check, files_and_settings
+from neural_mesh.sizes import check_space, memory_size
 
 # In a result: three coordinates and the quality of 8 bytes, a colour of 4, and two faces of 13.
 BYTES_PER_VERTEX = 62
 # Over 1,000 clouds the memory of a process grows by less than 1 % (tests/bench/batch.py). Formats other than PLY may
 # leak more.
 FILES_PER_PROCESS = 500
-UNITS = {"K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
 INTERRUPTED = 130  # as shells report Ctrl-C
 
 
@@ -35,12 +34,6 @@ def positive(kind: Any) -> Any:
 
     parse.__name__ = f"positive {kind.__name__}"  # for argparse's sentence
     return parse
-
-
-def memory_size(text: str) -> int:
-    """Bytes, or with a letter as in 500M or 4G."""
-    unit = UNITS.get(text[-1:].upper(), 1)
-    return positive(int)(int(float(text[:-1] if unit > 1 else text) * unit))
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -93,12 +86,6 @@ def opened(out: Path) -> Manifest:
         raise WrongUsage(str(error)) from None
     except OSError as error:
         raise WrongUsage(f"Results cannot be written to {out}: {error.strerror}.") from None
-
-
-def check_space(out: Path, needed: int) -> None:
-    free = shutil.disk_usage(out).free
-    if free < needed:
-        raise WrongUsage(f"The meshes need {needed / 1e9:.3g} GB, and {free / 1e9:.3g} GB are free in {out}.")
 
 
 def learn_missing(jobs: List[Job], manifest: Manifest, given: argparse.Namespace) -> int:

@@ -176,7 +176,7 @@ class TextCloud(Cloud):
             for _ in range(self.HEADING):
                 self._start = file.tell()
                 line = file.readline(self.LINE)
-                words = line.lower().translate(_SEPARATORS).replace(b'"', b" ").replace(b"#", b" ").split()
+                words = line.lower().translate(_SEPARATORS).translate(None, b'"#/').split()
                 if not line:
                     break
                 if len(words) >= 3 and not line.lstrip().startswith(b"#") and all(map(_is_number, words[:3])):

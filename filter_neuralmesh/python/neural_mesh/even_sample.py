@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""An even sample of a cloud that passes by once, in bounded memory.
+"""A sample of a cloud that passes by once, in bounded memory, more even than the cloud.
 
 Space is divided into cubes. Of each cube the points of least priority are held; a priority is a hash of the point's
-number in the file. When more points are held than allowed, the cubes double. The least of a large cube are among the
-least of its eight parts, so what is held depends on the file only, not on the chunks in which it came (bottom-k
-sampling: Cohen and Kaplan, PODC 2007). At the end each cube is thinned by a rate that its surroundings give: as many
-points of each part of the surface, and of noise across it the share that it had."""
+number in the file. When more points are held than allowed, the cubes double, in one direction at a time. The least of
+two cubes are among the least of each, so what is held depends on the file only, not on the chunks in which it came
+(bottom-k sampling: Cohen and Kaplan, PODC 2007). At the end each cube is thinned at a rate that follows from the number
+of points in and around it."""
 
 from __future__ import annotations
 
