@@ -35,9 +35,9 @@ template <class MeshType, class Matrix>
 TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const Settings& settings,
                             bool colored = false);
 
-/// The faces of \p mesh, and the vertices that they use or not, in world coordinates; deleted elements are
-/// skipped. \throws InputError if coordinates of the faces' corners are not finite in the mesh or after the
-/// transform. O(elements).
+/// The faces of \p mesh that are not deleted, with all its vertices, also those that no face uses, in world
+/// coordinates. \throws InputError if coordinates of the faces' corners are not finite in the mesh or after
+/// the transform. O(elements).
 template <class MeshType, class Matrix>
 IndexedMesh<double> indexed_mesh_of(const MeshType& mesh, const Matrix& transform);
 

@@ -131,7 +131,7 @@ std::vector<SettingInfo> feature_rows() {
             "computed from all points near the vertex; if the layer has none, the colours of Counter. The "
             "vertex quality holds the feature measure in any case."),
         row(&S::select_features, "select_features", "Select features",
-            "Select the vertices whose measure, of the two the one that 'Select by' names, is above the feature "
+            "Select the features: the vertices whose measure, chosen by 'Select by', is above the feature "
             "threshold."),
         row(&S::feature_measure, "feature_measure", "Feature measure", {"Normal counter", "Crease measure"},
             "What the vertex quality holds. Normal counter: how much the normal of the vertex varied while "
