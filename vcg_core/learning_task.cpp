@@ -12,6 +12,7 @@
 #include "vcg_core/shell/given_start.h"
 #include "vcg_core/shell/open_start.h"
 #include "vcg_core/shell/shell.h"
+#include "vcg_core/target/cloud_noise.h"
 #include "vcg_core/target/outlier_removal.h"
 
 namespace neuralmesh {
@@ -113,6 +114,11 @@ void remove_outliers(LearningTask& task, Survey& survey, int threads) {
         sentence += " were left out as outliers.";
     }
     task.warnings.push_back(sentence);
+}
+
+void measure_noise(LearningTask& task, Survey& survey, int vertices) {
+    const std::vector<vcg::Point3f>& points = task.target().positions();
+    task.noise = noise_in_edges(survey.of(points), static_cast<double>(points.size()) / vertices);
 }
 
 /// Gives the points weights by which signals are even over the surface.
@@ -271,6 +277,7 @@ LearningTask prepare(const TargetSpace& given, const Settings& settings, const I
     Survey survey(settings.threads);
     if (settings.remove_outliers && !given.is_exact()) remove_outliers(task, survey, settings.threads);
     begin(task, settings, start, progress);
+    if (!given.has_faces()) measure_noise(task, survey, settings.target_vertices);
     if (settings.even_sampling && settings.utility_counter != kSignalCount && !given.is_exact())
         weigh_points(task, survey);
     return task;

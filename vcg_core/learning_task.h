@@ -4,6 +4,7 @@
 // Before learning: the points that are learned and the network that learning starts from.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,9 @@ struct LearningTask {
     int landing_signals = 0;  ///< per vertex, before growth, to bring a shell down to the points
     /// False for a sheet that is closed: its start mesh has two layers with nothing between them.
     bool encloses_space = true;
+    /// Noise of the points in mean edges of the mesh asked for (cloud_noise.h). Infinite for layers with
+    /// faces, where it is not known.
+    double noise = std::numeric_limits<double>::infinity();
     double topology_confidence = 0;  ///< as in Report
     std::vector<std::string> warnings;
 };

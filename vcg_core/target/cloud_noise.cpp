@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/target/cloud_noise.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "vcg_core/base/median.h"
+
+namespace neuralmesh {
+
+namespace {
+
+constexpr std::size_t kPlaces = 1000;
+/// Fewer neighbours than kFewest make an unsteady plane; more than kMost, of which any number shows the
+/// noise, cost time.
+constexpr double kFewest = 12;
+constexpr double kMost = 60;
+/// Area of an even mesh for each of its vertices, in squared edges: twice that of an equilateral triangle.
+constexpr double kAreaPerVertex = 0.8660254037844386;
+constexpr double kPi = 3.141592653589793;
+
+/// Squared spread about the best plane of the point at \p place and its neighbours.
+double variance_about_plane(const NearestPoints& cloud, NearestPoints::Place place,
+                            const std::vector<NearestPoints::Neighbour>& near) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+    for (const NearestPoints::Neighbour& n : near) {
+        const vcg::Point3f d = cloud.point(n.place) - cloud.point(place);
+        const Eigen::Vector3d p(static_cast<double>(d[0]), static_cast<double>(d[1]),
+                                static_cast<double>(d[2]));
+        sum += p;
+        squares += p * p.transpose();
+    }
+    const double count = static_cast<double>(near.size()) + 1;
+    squares -= sum * sum.transpose() / count;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares, Eigen::EigenvaluesOnly);
+    constexpr double kParametersOfAPlane = 3;
+    return std::max(0.0, solver.eigenvalues()[0]) / (count - kParametersOfAPlane);
+}
+
+}  // namespace
+
+double noise_in_edges(const CloudSurvey& survey, double points_per_vertex) {
+    const NearestPoints& cloud = survey.cloud;
+    const double neighbours = std::min(std::max(points_per_vertex, kFewest), kMost);
+    const std::size_t step = std::max<std::size_t>(1, cloud.size() / kPlaces);
+    std::vector<double> squared_ratios;
+    std::vector<NearestPoints::Neighbour> near;
+    for (std::size_t i = step / 2; i < cloud.size(); i += step) {
+        const auto place = static_cast<NearestPoints::Place>(i);
+        cloud.nearest(place, static_cast<int>(neighbours), near);
+        const double squared_radius = near.empty() ? 0 : static_cast<double>(near.back().squared_distance);
+        if (near.size() < static_cast<std::size_t>(kFewest) || !(squared_radius > 0)) continue;
+        squared_ratios.push_back(variance_about_plane(cloud, place, near) / squared_radius);
+    }
+    if (squared_ratios.empty()) return 0;
+    // The circle around a place holds its neighbours, a vertex its points; both in proportion to their areas.
+    const double squared_radius_in_edges = neighbours / points_per_vertex * kAreaPerVertex / kPi;
+    return std::sqrt(median(std::move(squared_ratios)) * squared_radius_in_edges);
+}
+
+}  // namespace neuralmesh
