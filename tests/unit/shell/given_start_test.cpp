@@ -127,7 +127,8 @@ TEST(GivenStart, RefinesAnEarlierResult) {
     EXPECT_EQ(fine.report.genus, 1);
     settings.target_vertices = 5000;
     const NeuralMesh anew = reconstruct(torus, settings, progress);
-    EXPECT_LT(fine.report.splits, 0.7 * static_cast<double>(anew.report.splits));
+    // Most of the splits that made the vertices of the earlier result are saved.
+    EXPECT_LT(static_cast<double>(fine.report.splits), static_cast<double>(anew.report.splits) - 0.7 * 2500);
     EXPECT_LT(fine.report.rms_error, 1.05 * anew.report.rms_error);
     const NeuralMesh same = learn(torus, going_on(2500), {coarse.positions, coarse.faces});
     soundness::expect_exact(same, going_on(2500));
