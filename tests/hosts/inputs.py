@@ -232,7 +232,7 @@ def _meshes():
         "start from an open mesh": Input(vertices, half, volume=None, loops=1, rms=1.2, far=4.8, target=700,
                                          parameters={"start_mesh": 2}),
         "start from too many vertices": Input(vertices, faces, refused="needs 642 vertices", parameters={"start_mesh": 2}),
-        "start from bad faces": Input(finned, faces + fin + faces[:20], refused="20 faces that repeat others",
+        "start from bad faces": Input(finned, faces + fin + faces[:20], refused="faces that repeat others (20)",
                                       target=1000, parameters={"start_mesh": 2}),
         "start from points": Input(vertices, refused="The start layer has no faces", parameters={"start_mesh": 2}),
         "texture and attributes": ball_of_faces(vertices, faces, textured=True),

@@ -24,8 +24,8 @@ constexpr float kTwinStep = 0.25F;
 
 [[noreturn]] void refuse(std::size_t count, const char* things, const char* breach, const char* filter) {
     throw InputError("The start layer is no manifold that learning can go on from: it has " +
-                     std::to_string(count) + ' ' + things + ' ' + breach + ". Mend it with the filter '" +
-                     filter + "', or choose another 'Start mesh'.");
+                     std::string(things) + ' ' + breach + " (" + std::to_string(count) +
+                     "). Mend it with the filter '" + filter + "', or choose another 'Start mesh'.");
 }
 
 /// How many elements of a sorted list equal the one before them.

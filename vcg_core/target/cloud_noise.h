@@ -12,7 +12,7 @@ namespace neuralmesh {
 /// one vertex for \p points_per_vertex points: the median of some 1000 places. A plane is about as wide as
 /// such an edge is long, so a surface that the mesh can follow adds little. More than the truth by the bends
 /// where a vertex has less than about ten points, and less where the noise is wider than the planes: from
-/// some .2 edges on. \p points_per_vertex > 0. O(1): some 5 ms.
+/// some .2 edges on. \p points_per_vertex > 0. O(1).
 double noise_in_edges(const CloudSurvey& survey, double points_per_vertex);
 
 }  // namespace neuralmesh

@@ -43,31 +43,34 @@ TEST(GivenStart, NamesTheFirstBreachAndTheRemedy) {
 
     Shape shape = shapes::icosphere(1);
     shape.faces.push_back({3, 3, 4});
-    expect_remedy(shape, "1 faces with a corner twice", "Remove Zero Area Faces");
+    expect_remedy(shape, "faces with a corner twice (1)", "Remove Zero Area Faces");
 
     shape.faces.back() = {shape.faces[5][1], shape.faces[5][0], shape.faces[5][2]};
     shape.faces.push_back(shape.faces[7]);
-    expect_remedy(shape, "2 faces that repeat others", "Remove Duplicate Faces");
+    expect_remedy(shape, "faces that repeat others (2)", "Remove Duplicate Faces");
 
     shape = shapes::icosphere(1);
     shape.positions.emplace_back(0, 0, 1.5);
     shape.faces.push_back({shape.faces[0][0], shape.faces[0][1], 42});
-    expect_remedy(shape, "1 edges with more than two faces", "Repair non Manifold Edges");
+    expect_remedy(shape, "edges with more than two faces (1)", "Repair non Manifold Edges");
 
     shape = shapes::icosphere(1);
     std::swap(shape.faces[0][0], shape.faces[0][1]);
-    expect_remedy(shape, "3 edges whose two faces have opposite", "Re-Orient all faces coherently");
+    expect_remedy(shape, "edges whose two faces have opposite orientations (3)",
+                  "Re-Orient all faces coherently");
 
     shape = shapes::tetrahedron();
     shape.positions.insert(shape.positions.end(), {{2, 0, 0}, {2, 1, 0}, {2, 0, 1}});
     shape.faces.insert(shape.faces.end(), {{0, 4, 5}, {0, 5, 6}, {0, 6, 4}, {4, 6, 5}});
-    expect_remedy(shape, "1 vertices where parts", "Repair non Manifold Vertices by splitting");
+    expect_remedy(shape, "vertices where parts of the surface only touch (1)",
+                  "Repair non Manifold Vertices by splitting");
 }
 
 /// Two fans of one face each are open, which must not hide that they only touch.
 TEST(GivenStart, FindsVerticesWhereOpenPartsTouch) {
     Shape shape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}};
-    expect_remedy(shape, "1 vertices where parts", "Repair non Manifold Vertices by splitting");
+    expect_remedy(shape, "vertices where parts of the surface only touch (1)",
+                  "Repair non Manifold Vertices by splitting");
 }
 
 /// As an STL file is read: every face has vertices of its own.
