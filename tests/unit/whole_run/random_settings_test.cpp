@@ -70,9 +70,18 @@ void expect_near_the_points(const NeuralMesh& mesh, const TargetSpace& target) {
     EXPECT_EQ(Network(positions, mesh.faces).validate(), "");
 }
 
+/// A tetrahedron in the middle of the points, for the settings that need a start mesh of the caller's.
+IndexedMesh<double> start_for(const TargetSpace& target) {
+    const shapes::Shape shape = shapes::tetrahedron();
+    IndexedMesh<double> start{{}, shape.faces};
+    for (const vcg::Point3d& p : shape.positions)
+        start.positions.push_back(target.frame().outside(vcg::Point3f::Construct(p) * 0.2F));
+    return start;
+}
+
 void expect_valid_result(const TargetSpace& target, const Settings& settings) {
     Patience patience(kPatience);
-    const NeuralMesh mesh = reconstruct(target, settings, patience);
+    const NeuralMesh mesh = reconstruct(target, settings, patience, start_for(target));
     soundness::expect_sound(mesh);
     expect_near_the_points(mesh, target);
     EXPECT_LE(mesh.report.signals, most_signals(target, settings));
