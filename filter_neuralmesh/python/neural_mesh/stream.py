@@ -212,4 +212,4 @@ def _write_ply(path: Path, points: np.ndarray) -> None:
               *(f"property double {axis}" for axis in "xyz"), "end_header", ""]
     with path.open("wb") as file:
         file.write("\n".join(header).encode())
-        points.astype("<f8", copy=False).tofile(file)
+        file.write(np.ascontiguousarray(points, "<f8"))  # unlike tofile(), it says what failed
