@@ -81,7 +81,10 @@ def _job(path: Path, output: str, settings: Settings) -> Job:
         os.path.abspath(path).encode()
     except UnicodeEncodeError:
         raise WrongUsage(f"pymeshlab cannot load {str(path)!r}, whose name is not UTF-8: rename it.") from None
-    state = path.stat()
+    try:
+        state = path.stat()
+    except OSError as error:  # such as a link to nothing
+        raise WrongUsage(f"{path} cannot be read: {error.strerror}.") from None
     return Job(os.path.abspath(path), output, state.st_size, state.st_mtime_ns, settings)
 
 
