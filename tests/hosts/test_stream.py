@@ -145,6 +145,11 @@ def test_lines_of_all_kinds(site, tmp_path):
     assert np.array_equal(points, [[1, 2, 3], [4, 5, 6], [8, np.nan, 10], [11, 12, 1000]], equal_nan=True)
     path.write_text("z,x,y\n3,1,2\n")
     assert np.array_equal(next(clouds.open_cloud(path).chunks(9)), [[1, 2, 3]])
+    faces = tmp_path / "a.ply"
+    faces.write_text("ply\nformat ascii 1.0\nelement vertex 1\nproperty uchar r\nproperty uchar g\nproperty uchar b\n"
+                     "property float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int "
+                     "vertex_indices\nend_header\n7 8 9 1 2 3\n3 0 0 0\n")
+    assert np.array_equal(next(clouds.open_cloud(faces).chunks(9)), [[1, 2, 3]])
     for text, words in (("1 2 3\n4 5\n", "has the line '4 5'"), ("1 2 3\n4 5 6\n7 8 9x\n", "has the line '7 8 9x'"),
                         ("1 2 3 4\n5 6 7\n8 9 1 2 3\nword\n", "has the line 'word'")):
         path.write_text(text)

@@ -221,14 +221,14 @@ class _Lines:
             rest = text[end:]
             if len(rest) > TextCloud.LINE:
                 raise CloudError(f"{self._path} is not a text of points: a line has more than {TextCloud.LINE} bytes.")
-            points = self._points(text[:end].translate(_SEPARATORS))[:left]
+            points = self._points(text[:end].translate(_SEPARATORS), left)[:left]
             for first in range(0, len(points), size):
                 yield points[first:first + size]
             left = None if left is None else left - len(points)
             if not block:
                 return
 
-    def _points(self, text: bytes) -> np.ndarray:
+    def _points(self, text: bytes, left: Optional[int]) -> np.ndarray:
         """The points of whole lines: by one call if all lines have as many words, else line by line."""
         width = len(text[:text.find(b"\n")].split())
         if width > max(self._columns) and _all_lines_have(text, width):
@@ -238,11 +238,13 @@ class _Lines:
                     return np.fromstring(text, sep=" ").reshape(-1, width)[:, self._columns]
                 except (ValueError, DeprecationWarning):
                     pass
-        return self._point_by_point(text)
+        return self._point_by_point(text, left)
 
-    def _point_by_point(self, text: bytes) -> np.ndarray:
-        points = []
+    def _point_by_point(self, text: bytes, left: Optional[int]) -> np.ndarray:
+        points: list[list[float]] = []
         for line in text.splitlines():
+            if len(points) == left:  # what follows, such as faces, may have fewer numbers
+                break
             words = line.split()
             if not words or words[0].startswith((b"#", b"//")):
                 continue
