@@ -64,6 +64,9 @@ def main(arguments: Optional[List[str]] = None) -> int:
     except pymeshlab.PyMeshLabException as error:
         print(f"neural-mesh: {sentence_of(error)}", file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        print("\nneural-mesh: stopped.", file=sys.stderr)
+        return 130  # as shells report Ctrl-C
 
 
 if __name__ == "__main__":
