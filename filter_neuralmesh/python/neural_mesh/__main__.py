@@ -6,11 +6,13 @@
 import argparse
 import importlib
 import sys
+from pathlib import Path
 from typing import List, Optional
 
 import pymeshlab
 
 from neural_mesh import FILTER
+from neural_mesh.mesh_files import NotWhole, save
 from neural_mesh.parameters import WrongUsage, check, for_pymeshlab, sentence_of, settings_of
 
 # A subcommand is the module of that name, with add_arguments(parser) and run(given), which returns the exit status.
@@ -26,8 +28,7 @@ def learn_one(given: argparse.Namespace) -> int:
     check(settings, meshes)
     meshes.load_new_mesh(given.cloud)
     result = meshes.apply_filter(FILTER, **for_pymeshlab(settings))
-    can_keep_quality = given.mesh.lower().endswith(".ply")
-    meshes.save_current_mesh(given.mesh, **({"save_vertex_quality": True} if can_keep_quality else {}))
+    save(meshes, Path(given.mesh))
     print(" ".join(f"{key}={value:.6g}" for key, value in result.items()))
     return 0
 
@@ -63,6 +64,9 @@ def main(arguments: Optional[List[str]] = None) -> int:
         return 2
     except pymeshlab.PyMeshLabException as error:
         print(f"neural-mesh: {sentence_of(error)}", file=sys.stderr)
+        return 1
+    except NotWhole as error:
+        print(f"neural-mesh: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("\nneural-mesh: stopped.", file=sys.stderr)

@@ -23,6 +23,7 @@ from neural_mesh import FILTER
 from neural_mesh.clouds import FORMATS, Cloud, CloudError, open_cloud
 from neural_mesh.distances import POINT_BYTES, VERTEX_BYTES, Unmeasured, measure
 from neural_mesh.even_sample import CHUNK_BYTES, HOLD_BYTES, EvenSample
+from neural_mesh.mesh_files import NotWhole, save
 from neural_mesh.parameters import Settings, WrongUsage, check, for_pymeshlab, settings_of
 from neural_mesh.sizes import check_space, gigabytes, memory_size
 
@@ -65,7 +66,7 @@ def run(given: argparse.Namespace) -> int:
             check_space(given.mesh.parent, plan.file_bytes())
             print(plan.sentence(), flush=True)
             _Stream(cloud, plan, meshes, Path(folder)).run(settings, given.mesh)
-    except (CloudError, Unmeasured) as error:
+    except (CloudError, NotWhole, Unmeasured) as error:
         sentence = str(error)
     except OSError as error:
         sentence = f"{error.filename or given.mesh} cannot be written: {error.strerror}."
@@ -185,9 +186,8 @@ class _Stream:
         (self._folder / "sample.ply").unlink()
         result = self._meshes.apply_filter(FILTER, **for_pymeshlab(settings))
         aside = self._folder / out.name
-        has_quality = out.suffix.lower() == ".ply"
         try:
-            self._meshes.save_current_mesh(str(aside), **({"save_vertex_quality": True} if has_quality else {}))
+            save(self._meshes, aside)
         except pymeshlab.PyMeshLabException as error:
             raise OSError(0, str(error).splitlines()[-1], str(out)) from error
         self._meshes.clear()

@@ -59,30 +59,12 @@ def peak_memory() -> int:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 
 
-def is_whole(mesh: Path) -> bool:
-    """Whether the file is as long as its header says. pymeshlab does not notice when no space is left."""
-    sizes = {"double": 8, "float": 4, "int": 4, "uint": 4, "short": 2, "ushort": 2, "char": 1, "uchar": 1}
-    expected = 0
-    count = 0
-    with mesh.open("rb") as file:
-        for line in file:
-            word, *rest = line.decode("ascii", "replace").split() or [""]
-            if word == "element":
-                count = int(rest[1])
-            elif word == "property" and rest[0] == "list":  # of three corners
-                expected += count * (sizes[rest[1]] + 3 * sizes[rest[2]])
-            elif word == "property":
-                expected += count * sizes[rest[0]]
-            elif word == "end_header":
-                return mesh.stat().st_size == file.tell() + expected
-    return False
-
-
 def learn(job: Dict[str, Any]) -> Dict[str, Any]:
     """Makes the mesh of a job. Returns the filter's results, or an error, after which the process must end."""
     import pymeshlab
 
     from neural_mesh import FILTER
+    from neural_mesh.mesh_files import NotWhole, save
     from neural_mesh.parameters import for_pymeshlab, sentence_of
 
     # With one MeshSet for all clouds pymeshlab 2025.7 loses 20 kB each.
@@ -91,15 +73,13 @@ def learn(job: Dict[str, Any]) -> Dict[str, Any]:
     try:
         meshes.load_new_mesh(job["input"])
         result = meshes.apply_filter(FILTER, **for_pymeshlab(job["settings"]))
-        meshes.save_current_mesh(str(aside), save_vertex_quality=True)
-        if not is_whole(aside):
-            raise OSError(f"The mesh could not be written whole to {aside.parent}: is there space left?")
+        save(meshes, aside)
         size = aside.stat().st_size
         os.replace(aside, job["result"])
         return {"output_size": size, "result": result}
     except MemoryError:
         return {"error": "There was not enough memory."}
-    except (pymeshlab.PyMeshLabException, OSError) as error:
+    except (pymeshlab.PyMeshLabException, OSError, NotWhole) as error:
         reason = str(error).partition("Error details: ")[2]  # of loading
         return {"error": f"The file cannot be loaded: {reason}." if reason else " ".join(sentence_of(error).split())}
 
