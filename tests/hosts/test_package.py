@@ -14,7 +14,7 @@ import pytest
 HOSTS = ("meshlab-2020.09", "meshlab-2022.02", "meshlab-2025.07", "pymeshlab-2025.7")
 # The classes that the adapters use; any other undefined symbol without a version would be a missing one of ours.
 MESHLAB_CLASSES = ("FilterPlugin", "GLLogStream", "MeshDocument", "MeshLabApplication", "MeshLabPluginLogger",
-                   "MeshModel", "RichBool", "RichEnum", "RichFloat", "RichInt", "RichParameterList",
+                   "MeshModel", "RichBool", "RichEnum", "RichFloat", "RichInt", "RichMesh", "RichParameterList",
                    "RichAbsPerc", "RichPercentage")
 LIBRARIES = ("libmeshlab-common.so", "libQt5Core.so.5", "libQt5Widgets.so.5", "libstdc++.so.6", "libm.so.6",
              "libgcc_s.so.1", "libc.so.6", "ld-linux-x86-64.so.2")
