@@ -32,7 +32,7 @@ FEWEST_PER_VERTEX = 10  # with fewer the mesh suffers
 HELD = 4  # points held while reading for each of the sample, at most
 KEEPS_COORDINATES = (".ply", ".obj", ".off")  # files for which pymeshlab writes doubles; georeferenced clouds need them
 # Bytes, measured with 1 to 10 million points and 10,000 to 100,000 vertices (tests/bench/stream.py), rounded up.
-PROCESS = 110e6  # Python with numpy and pymeshlab
+PROCESS = 120e6  # Python with numpy and pymeshlab
 LEARNED_POINT = 220
 LEARNED_VERTEX = 1500
 SAVED_VERTEX = 200  # of a file, with its two faces
