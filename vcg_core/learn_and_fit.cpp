@@ -61,10 +61,11 @@ int vertices_to_grow(const LearningTask& task, const Settings& settings, int fin
     constexpr int kLargestSurplus = 10000;
     int surplus = std::max(0, std::min(3 * final_vertices, kSmallSurplus - final_vertices / 2));
     // A preview of 1,000 vertices has to come at once, so it gains nothing; 2,000 gain 3,000.
-    if (is_calm(task)) surplus = std::max(surplus, std::min(3 * final_vertices - 1000, kLargestSurplus));
+    const bool calm = is_calm(task);
+    if (calm) surplus = std::max(surplus, std::min(3 * final_vertices - 1000, kLargestSurplus));
     const int grow_to = final_vertices + surplus;
     if (task.target().has_faces()) return grow_to;
-    const std::size_t points_per_vertex = is_calm(task) ? 3 : 10;
+    const std::size_t points_per_vertex = calm ? 3 : 10;
     const std::size_t supported = task.target().positions().size() / points_per_vertex;
     return std::max(final_vertices, static_cast<int>(std::min(supported, static_cast<std::size_t>(grow_to))));
 }
