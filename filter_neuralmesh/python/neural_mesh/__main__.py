@@ -38,10 +38,9 @@ def arguments_of_one(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("mesh", help="the file to write, such as mesh.ply")
     parser.add_argument("settings", nargs="*", metavar="name=value", help="parameters of the filter, such as "
                         "target_vertices=5000")
-    if SUBCOMMANDS:
-        parser.formatter_class = argparse.RawDescriptionHelpFormatter
-        parser.epilog = "\n".join(["other forms, which explain themselves with --help:", *(
-            f"  neural-mesh {name:8}{what}" for name, what in SUBCOMMANDS.items())])
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = "\n".join(["other forms, which explain themselves with --help:", *(
+        f"  neural-mesh {name:8}{what}" for name, what in SUBCOMMANDS.items())])
 
 
 def main(arguments: Optional[List[str]] = None) -> int:

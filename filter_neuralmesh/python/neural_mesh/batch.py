@@ -12,6 +12,8 @@ import sys
 from pathlib import Path
 from typing import Any, Generator, List
 
+import pymeshlab
+
 from neural_mesh.batch_files import Job, jobs_of, remove, remove_asides
 from neural_mesh.manifest import Busy, Manifest, Record
 from neural_mesh.parameters import WrongUsage, check, files_and_settings
@@ -50,7 +52,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    import pymeshlab
     inputs, settings = files_and_settings(given.words)
     if not inputs:
         raise WrongUsage("There is no input: give files, folders or patterns.")

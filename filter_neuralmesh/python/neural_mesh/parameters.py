@@ -4,10 +4,12 @@
 """Parameters of the filter as words `name=value` of a command: read, checked before any work, given to pymeshlab."""
 
 import re
-from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Tuple, Union
+from typing import Any, Dict, Iterable, List, Tuple, Union
 
-if TYPE_CHECKING:
-    import pymeshlab
+import numpy
+import pymeshlab
+
+from neural_mesh import FILTER
 
 Value = Union[bool, int, float, str]
 Settings = Dict[str, Value]  # as in JSON; a percentage is a text such as "5%"
@@ -53,7 +55,6 @@ def files_and_settings(words: Iterable[str]) -> Tuple[List[str], Settings]:
 
 def for_pymeshlab(settings: Settings) -> Dict[str, Any]:
     """The keyword arguments of the filter. Throws WrongUsage if a length or percentage is none."""
-    import pymeshlab
     arguments: Dict[str, Any] = dict(settings)
     for name in LENGTHS:
         if name in settings:
@@ -72,14 +73,9 @@ def sentence_of(error: Exception) -> str:
     return str(error).rpartition("\nDetails: ")[2].strip() or type(error).__name__
 
 
-def check(settings: Settings, meshes: "pymeshlab.MeshSet") -> Dict[str, Any]:
+def check(settings: Settings, meshes: pymeshlab.MeshSet) -> Dict[str, Any]:
     """Throws WrongUsage if the filter has no such parameter or does not accept a value. Returns the values of all
     parameters. Needs an empty MeshSet, and leaves it empty."""
-    import numpy
-    import pymeshlab
-
-    from neural_mesh import FILTER
-
     def refusal(arguments: Dict[str, Any]) -> str:
         try:
             meshes.apply_filter(FILTER, **arguments)

@@ -16,6 +16,12 @@ import time
 from pathlib import Path
 from typing import Any, Dict, List, Optional
 
+import pymeshlab
+
+from neural_mesh import FILTER
+from neural_mesh.mesh_files import NotWhole, save
+from neural_mesh.parameters import for_pymeshlab, sentence_of
+
 PR_SET_PDEATHSIG = 1  # of linux/prctl.h
 
 
@@ -61,12 +67,6 @@ def peak_memory() -> int:
 
 def learn(job: Dict[str, Any]) -> Dict[str, Any]:
     """Makes the mesh of a job. Returns the filter's results, or an error, after which the process must end."""
-    import pymeshlab
-
-    from neural_mesh import FILTER
-    from neural_mesh.mesh_files import NotWhole, save
-    from neural_mesh.parameters import for_pymeshlab, sentence_of
-
     # With one MeshSet for all clouds pymeshlab 2025.7 loses 20 kB each.
     meshes = pymeshlab.MeshSet(verbose=True)
     aside = Path(job["aside"])
@@ -93,7 +93,6 @@ def return_free_memory() -> None:
 
 
 def answer_jobs(answers: Any, memory_limit: Optional[int]) -> None:
-    import neural_mesh  # noqa: F401  so that the first cloud does not pay for it
     log = Log()
     if memory_limit:
         # Memory that can be written to: not that of libraries, nor what is only reserved, unlike RLIMIT_AS.
