@@ -199,7 +199,7 @@ stage() {
     TIMEFORMAT="$1: %U s of processor time + %S s of the system, %R s of the clock"
     time case "$1" in
         unit) ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel "$stage_jobs" | without_passed ;;
-        sanitize) sanitized sanitize unit_tests fuzz_network fuzz_settings fuzz_cloud ;;
+        sanitize) sanitized sanitize unit_tests fuzz_network fuzz_settings fuzz_cloud fuzz_mesh ;;
         threads) sanitized threads thread_tests ;;
         accuracy)
             "$venv/bin/python" tests/experiments/accuracy/accuracy_table.py --small --out "$build/experiments" \

@@ -32,6 +32,18 @@ constexpr const char* kReconstructInfo =
     "<b>\"Neural Meshes: Statistical Learning based on Normals\"</b><br/>"
     "Pacific Graphics 2003<br/>";
 
+constexpr const char* kCountersInfo =
+    "Computes how much of a feature each vertex of the current mesh is: near zero on smooth parts, large on "
+    "edges and corners, also where the points or the mesh are noisy. A copy of the mesh learns random points "
+    "of the signal layer, and the normals of its vertices tell how the surface bends there.<br/>"
+    "The mesh may come from any filter. Only its vertex quality changes and, with 'Select features', the "
+    "selection of its vertices. It has to be an oriented manifold, with or without boundary; vertices that "
+    "belong to no face get 0.<br/>"
+    "See:<br/>"
+    "<i>Won-Ki Jeong, Ioannis Ivrissimtzis, Hans-Peter Seidel</i><br/>"
+    "<b>\"Neural Meshes: Statistical Learning based on Normals\"</b><br/>"
+    "Pacific Graphics 2003<br/>";
+
 const char* words_for(StopReason reason) {
     switch (reason) {
         case StopReason::target_reached: return "the target was reached";
@@ -69,13 +81,29 @@ std::string sentence_on_topology(const Report& report) {
     return text.str();
 }
 
+std::string sentence_on_run(const Report& report, int action) {
+    std::ostringstream text = plain_stream();
+    text << std::fixed << std::setprecision(2);
+    if (action == kCounters) {
+        text << "Neural Normal Counter: " << report.vertices << " vertices after " << report.signals
+             << " signals in " << report.seconds << " seconds, mean " << report.mean_counter
+             << (report.stop_reason == StopReason::cancelled ? "; it was cancelled." : ".");
+        return text.str();
+    }
+    text << "Neural Mesh: " << report.vertices << " vertices and " << report.faces << " faces after "
+         << report.signals << " signals in " << report.seconds << " seconds, RMS error "
+         << std::setprecision(4) << report.rms_error << " % of the diagonal; learning ended because "
+         << words_for(report.stop_reason) << '.';
+    return text.str();
+}
+
 std::string sentence_if_memory_allows() {
     try {
         throw;
     } catch (const Error& error) {
         return error.what();
     } catch (const std::bad_alloc&) {
-        return "There is not enough memory for this mesh: lower 'Target vertices', or learn a smaller cloud.";
+        return "There is not enough memory for this mesh: take fewer vertices, or a smaller cloud.";
     } catch (const std::exception& error) {
         return std::string("The filter met an unexpected error and has changed nothing (") + error.what() +
                "). Please report it with the layer and the parameters.";
@@ -93,16 +121,27 @@ int Figure::count() const {
 }
 
 const std::vector<Action>& all_actions() {
-    static const std::vector<Action> all = {{kReconstruct, "Surface Reconstruction: Neural Mesh",
-                                             "generate_surface_reconstruction_neural_mesh",
-                                             kReconstructInfo}};
+    static const std::vector<Action> all = {
+        {kReconstruct, "Surface Reconstruction: Neural Mesh", "generate_surface_reconstruction_neural_mesh",
+         kReconstructInfo, setting_table()},
+        {kCounters, "Compute Scalar by Neural Normal Counter",
+         "compute_scalar_by_neural_normal_counter_per_vertex", kCountersInfo, counter_table()}};
     return all;
 }
 
 const Action& action_of(int id) { return all_actions().at(static_cast<std::size_t>(id)); }
 
-std::vector<Figure> figures(const Report& report) {
+std::vector<Figure> figures(const Report& report, int action) {
     const auto count = [](const char* key, long long n) { return Figure{key, static_cast<double>(n), true}; };
+    if (action == kCounters)
+        return {count("vertices", report.vertices),
+                count("signals", report.signals),
+                count("outliers", report.outliers),
+                count("feature_vertices", report.feature_vertices),
+                count("warnings", static_cast<long long>(report.warnings.size())),
+                {"mean_counter", report.mean_counter, false},
+                {"seconds", report.seconds, false},
+                count("stop_reason", static_cast<int>(report.stop_reason))};
     return {count("vertices", report.vertices),
             count("faces", report.faces),
             count("signals", report.signals),
@@ -121,16 +160,10 @@ std::vector<Figure> figures(const Report& report) {
             count("stop_reason", static_cast<int>(report.stop_reason))};
 }
 
-std::vector<std::string> log_lines(const Report& report) {
-    std::ostringstream text = plain_stream();
-    text << "Neural Mesh: " << report.vertices << " vertices and " << report.faces << " faces after "
-         << report.signals << " signals in " << std::fixed << std::setprecision(2) << report.seconds
-         << " seconds, RMS error " << std::setprecision(4) << report.rms_error
-         << " % of the diagonal; learning ended because " << words_for(report.stop_reason) << '.';
-
+std::vector<std::string> log_lines(const Report& report, int action) {
     std::ostringstream dictionary = plain_stream();
     dictionary << std::setprecision(9);
-    for (const Figure& figure : figures(report)) {
+    for (const Figure& figure : figures(report, action)) {
         dictionary << figure.key << '=';
         if (figure.is_count) {
             dictionary << static_cast<long long>(figure.value) << ' ';
@@ -139,7 +172,7 @@ std::vector<std::string> log_lines(const Report& report) {
         }
     }
 
-    std::vector<std::string> lines = {text.str(), dictionary.str()};
+    std::vector<std::string> lines = {sentence_on_run(report, action), dictionary.str()};
     if (report.topology_confidence > 0) lines.push_back(sentence_on_topology(report));
     return lines;
 }

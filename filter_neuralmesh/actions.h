@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The filter without MeshLab: names, help, figures, sentences and run(). The two adapters, one per plugin
-// interface, only translate this into the host's classes.
+// The filters without MeshLab: names, help, figures, sentences and what they run. The two adapters, one per
+// plugin interface, only translate this into the host's classes.
 #pragma once
 
 #include <chrono>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vcg_core/base/progress.h"
+#include "vcg_core/mesh_counters.h"
 #include "vcg_core/mesh_io.h"
 #include "vcg_core/neural_mesh.h"
 #include "vcg_core/reconstruct.h"
@@ -20,12 +21,14 @@ namespace neuralmesh {
 /// One entry of the Filters menu. Names are API: scripts key on them.
 struct Action {
     int id;
-    const char* name;         ///< menu and .mlx
-    const char* python_name;  ///< pymeshlab
-    const char* info;         ///< HTML, with the reference as MeshLab formats it
+    const char* name;                          ///< menu and .mlx
+    const char* python_name;                   ///< pymeshlab
+    const char* info;                          ///< HTML, with the reference as MeshLab formats it
+    const std::vector<SettingInfo>& settings;  ///< its parameters
 };
 
 constexpr int kReconstruct = 0;
+constexpr int kCounters = 1;
 constexpr const char* kPluginName = "FilterNeuralMesh";
 constexpr const char* kVendor = "The Neural Mesh authors";
 constexpr const char* kLayerLabel = "Neural Mesh";
@@ -33,6 +36,11 @@ constexpr const char* kNoLayer =
     "There is no current layer to learn: open or create a point cloud or a mesh first.";
 constexpr const char* kNoStartLayer =
     "The layer to start from does not exist: choose one as 'Start layer', or another 'Start mesh'.";
+constexpr const char* kNoSignalLayer =
+    "The layer to draw signals from does not exist: choose one as 'Signal layer', for example the current "
+    "one.";
+constexpr const char* kLayerGone =
+    "The layer was closed or changed while its counters were learned: nothing was written.";
 
 /// All actions, in order of their ids, which count from 0.
 const std::vector<Action>& all_actions();
@@ -50,12 +58,12 @@ struct Figure {
     int count() const;
 };
 
-/// The figures of \p report in the order of the log.
-std::vector<Figure> figures(const Report& report);
+/// The figures of \p report, of a run of \p action, in the order of the log.
+std::vector<Figure> figures(const Report& report, int action = kReconstruct);
 
-/// Lines for the log after a run, besides the warnings: a sentence, all figures as key=value, and, unless
-/// learning started from a tetrahedron, the topology found and its confidence.
-std::vector<std::string> log_lines(const Report& report);
+/// Lines for the log after a run, besides the warnings: a sentence, all figures as key=value, and, if
+/// learning started from a shell, the topology found and its confidence.
+std::vector<std::string> log_lines(const Report& report, int action = kReconstruct);
 
 /// The warning that the new layer stores its coordinates relative to \p origin.
 std::string sentence_on_origin(const Coordinates& origin);
@@ -93,6 +101,18 @@ NeuralMesh run(const MeshType& layer, const Matrix& transform, const Settings& s
     settings.check();
     HostProgress progress(call_back);
     return reconstruct(target_space_of(layer, transform, settings, colored), settings, progress, start);
+}
+
+/// The counters of \p layer, the host's mesh with the matrix \p transform, by signals from \p signal_layer, a
+/// mesh with a matrix of its own. \throws what target_space_of(), indexed_mesh_of() and mesh_counters() throw
+template <class MeshType, class Matrix>
+MeshCounters run_counters(const MeshType& layer, const Matrix& transform, const MeshType& signal_layer,
+                          const Matrix& signal_transform, const Settings& settings,
+                          HostProgress::CallBack* call_back) {
+    settings.check(counter_table());
+    HostProgress progress(call_back);
+    const TargetSpace target = target_space_of(signal_layer, signal_transform, settings);
+    return mesh_counters(indexed_mesh_of(layer, transform), target, settings, progress);
 }
 
 }  // namespace neuralmesh

@@ -13,6 +13,12 @@
 
 namespace neuralmesh {
 
+/// What a run of \p action changes, as bits of MeshModel.
+inline int changes_of(int action) {
+    return action == kCounters ? MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTFLAGSELECT
+                               : MeshModel::MM_VERTNUMBER | MeshModel::MM_FACENUMBER;
+}
+
 /// The attributes of the result besides coordinates and faces, as bits of MeshModel.
 inline int result_mask(const Settings& settings) {
     int mask = MeshModel::MM_VERTQUALITY;
@@ -71,12 +77,35 @@ Report learn_current_layer(MeshDocument& document, const Settings& settings, vcg
     return std::move(result.report);
 }
 
-/// Writes \p report to the log by \p log(level, line). Lack of memory for that is no failure: the mesh
-/// exists.
+/// Computes the counters of the current layer of \p document and writes them to its vertices. \p
+/// complete(report) makes what the host returns, before anything is written. \throws InputError if there is
+/// no layer, or if it is gone after the run, and what run_counters() throws; the document is then as before
+template <class Complete>
+Report count_current_layer(MeshDocument& document, const Settings& settings, vcg::CallBackPos* call_back,
+                           const Complete& complete) {
+    const MeshModel* const layer = document.mm();
+    if (layer == nullptr) throw InputError(kNoLayer);
+    const MeshModel* const drawn = document.getMesh(settings.signal_layer);
+    if (drawn == nullptr) throw InputError(kNoSignalLayer);
+    // The window handles events during a run.
+    const auto current = static_cast<int>(layer->id());
+    MeshCounters result = run_counters(layer->cm, layer->cm.Tr, drawn->cm, drawn->cm.Tr, settings, call_back);
+    MeshModel* const counted = document.getMesh(current);
+    if (counted == nullptr || counted->cm.vert.size() != result.counters.size()) throw InputError(kLayerGone);
+
+    complete(result.report);
+    counted->updateDataMask(MeshModel::MM_VERTQUALITY);
+    write_counters(result, settings, counted->cm);
+    if (settings.select_features) counted->cm.svn = result.report.feature_vertices;
+    return std::move(result.report);
+}
+
+/// Writes \p report, of a run of \p action, to the log by \p log(level, line). Lack of memory
+/// for that is no failure: the result exists.
 template <class Log>
-void log_run(const Report& report, const Log& log) {
+void log_run(const Report& report, int action, const Log& log) {
     try {
-        for (const std::string& line : log_lines(report)) log(GLLogStream::FILTER, line);
+        for (const std::string& line : log_lines(report, action)) log(GLLogStream::FILTER, line);
         for (const std::string& note : report.notes) log(GLLogStream::FILTER, note);
         for (const std::string& warning : report.warnings) log(GLLogStream::WARNING, warning);
     } catch (const std::bad_alloc&) {

@@ -99,10 +99,11 @@ void add_parameter(RichParameterList& list, const SettingInfo& info, Document& d
     }
 }
 
-/// The settings in \p list, whose layers are in \p document. Their ranges are not checked.
-inline Settings settings_from(const RichParameterList& list, const MeshDocument& document) {
+/// The settings in \p list, those of \p table, whose layers are in \p document. Their ranges are not checked.
+inline Settings settings_from(const RichParameterList& list, const std::vector<SettingInfo>& table,
+                              const MeshDocument& document) {
     Settings settings;
-    for (const SettingInfo& info : setting_table()) {
+    for (const SettingInfo& info : table) {
         const QString id = QString::fromUtf8(info.id);
         switch (info.kind) {
             case SettingInfo::Kind::boolean: info.store(settings, list.getBool(id) ? 1 : 0); break;

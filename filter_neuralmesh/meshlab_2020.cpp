@@ -64,31 +64,35 @@ QString FilterNeuralMeshPlugin::filterInfo(FilterIDType id) const {
     return QString::fromUtf8(action_of(id).info);
 }
 
-MeshFilterInterface::FilterClass FilterNeuralMeshPlugin::getClass(QAction* /*action*/) { return Remeshing; }
+MeshFilterInterface::FilterClass FilterNeuralMeshPlugin::getClass(QAction* action) {
+    return ID(action) == kCounters ? Quality : Remeshing;
+}
 
 MeshFilterInterface::FILTER_ARITY FilterNeuralMeshPlugin::filterArity(QAction* /*action*/) const {
     return SINGLE_MESH;
 }
 
-int FilterNeuralMeshPlugin::postCondition(QAction* /*action*/) const {
-    return MeshModel::MM_VERTNUMBER | MeshModel::MM_FACENUMBER;
-}
+int FilterNeuralMeshPlugin::postCondition(QAction* action) const { return changes_of(ID(action)); }
 
-void FilterNeuralMeshPlugin::initParameterSet(QAction* /*action*/, MeshDocument& document,
+void FilterNeuralMeshPlugin::initParameterSet(QAction* action, MeshDocument& document,
                                               RichParameterList& list) {
-    for (const SettingInfo& info : setting_table()) add_parameter(list, info, document);
+    for (const SettingInfo& info : action_of(ID(action)).settings) add_parameter(list, info, document);
 }
 
-bool FilterNeuralMeshPlugin::applyFilter(QAction* /*action*/, MeshDocument& document,
+bool FilterNeuralMeshPlugin::applyFilter(QAction* action, MeshDocument& document,
                                          const RichParameterList& list, vcg::CallBackPos* call_back) {
     try {
         const std::string refusal = misfit();
         if (!refusal.empty()) throw Error(refusal);
-        const Report report = learn_current_layer(
-            document, settings_from(list, document), call_back,
-            [](MeshModel& added, const Report&) { added.UpdateBoxAndNormals(); },
-            [&document](MeshModel& added) { document.delMesh(&added); });
-        log_run(report, [this](auto level, const std::string& line) { Log(level, line); });
+        const int id = ID(action);
+        const Settings settings = settings_from(list, action_of(id).settings, document);
+        const Report report = id == kCounters
+                                  ? count_current_layer(document, settings, call_back, [](const Report&) {})
+                                  : learn_current_layer(
+                                        document, settings, call_back,
+                                        [](MeshModel& added, const Report&) { added.UpdateBoxAndNormals(); },
+                                        [&document](MeshModel& added) { document.delMesh(&added); });
+        log_run(report, id, [this](auto level, const std::string& line) { Log(level, line); });
         return true;
     } catch (...) {
         const std::string sentence = sentence_of_current_exception();

@@ -41,42 +41,47 @@ QString FilterNeuralMeshPlugin::filterInfo(ActionIDType id) const {
     return QString::fromUtf8(action_of(id).info);
 }
 
-FilterPlugin::FilterClass FilterNeuralMeshPlugin::getClass(const QAction* /*action*/) const {
-    return Remeshing;
+FilterPlugin::FilterClass FilterNeuralMeshPlugin::getClass(const QAction* action) const {
+    return ID(action) == kCounters ? Quality : Remeshing;
 }
 
 FilterPlugin::FilterArity FilterNeuralMeshPlugin::filterArity(const QAction* /*action*/) const {
     return SINGLE_MESH;
 }
 
-int FilterNeuralMeshPlugin::postCondition(const QAction* /*action*/) const {
-    return MeshModel::MM_VERTNUMBER | MeshModel::MM_FACENUMBER;
-}
+int FilterNeuralMeshPlugin::postCondition(const QAction* action) const { return changes_of(ID(action)); }
 
-RichParameterList FilterNeuralMeshPlugin::initParameterList(const QAction* /*action*/,
+RichParameterList FilterNeuralMeshPlugin::initParameterList(const QAction* action,
                                                             const MeshDocument& document) {
     RichParameterList list;
-    for (const SettingInfo& info : setting_table()) add_parameter(list, info, document, info.advanced);
+    for (const SettingInfo& info : action_of(ID(action)).settings)
+        add_parameter(list, info, document, info.advanced);
     return list;
 }
 
-std::map<std::string, QVariant> FilterNeuralMeshPlugin::applyFilter(const QAction* /*action*/,
+std::map<std::string, QVariant> FilterNeuralMeshPlugin::applyFilter(const QAction* action,
                                                                     const RichParameterList& list,
                                                                     MeshDocument& document,
                                                                     unsigned int& /*post_condition_mask*/,
                                                                     vcg::CallBackPos* call_back) {
     std::string sentence;
     try {
+        const int id = ID(action);
+        const Settings settings = settings_from(list, action_of(id).settings, document);
         std::map<std::string, QVariant> results;
-        const auto complete = [&results](MeshModel& added, const Report& report) {
-            added.updateBoxAndNormals();
-            for (const Figure& figure : figures(report))
+        const auto report_to_host = [&results, id](const Report& report) {
+            for (const Figure& figure : figures(report, id))
                 results[figure.key] = figure.is_count ? QVariant(figure.count()) : QVariant(figure.value);
         };
+        const auto complete = [&report_to_host](MeshModel& added, const Report& report) {
+            added.updateBoxAndNormals();
+            report_to_host(report);
+        };
         const auto remove = [&document](MeshModel& added) { document.delMesh(added.id()); };
-        const Report report =
-            learn_current_layer(document, settings_from(list, document), call_back, complete, remove);
-        log_run(report, [this](auto level, const std::string& line) { log(level, line); });
+        const Report report = id == kCounters
+                                  ? count_current_layer(document, settings, call_back, report_to_host)
+                                  : learn_current_layer(document, settings, call_back, complete, remove);
+        log_run(report, id, [this](auto level, const std::string& line) { log(level, line); });
         return results;
     } catch (...) {
         sentence = sentence_of_current_exception();

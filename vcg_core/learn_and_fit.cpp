@@ -96,19 +96,6 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
                          stream_seed(settings.random_seed, Stream::fit), progress);
 }
 
-/// Writes the measures of the vertices of \p learned that the settings use. \p source: the learner's vertex
-/// that each takes its values from; empty: itself.
-void write_measures(const Learner& learner, const PerVertex<VertexId>& source, const Settings& settings,
-                    LearnedNetwork& learned) {
-    const Network& network = learned.network;
-    if (settings.uses(kCreaseMeasure))
-        learned.creases = learner.crease_measure().values(learner.network(), network, source);
-    if (!settings.uses(kFeatureCounter)) return;
-    learned.normal_counters.resize(network.slot_count());
-    for (const VertexId v : network.vertices())
-        learned.normal_counters[v] = learner.feature_counters().value(source.empty() ? v : source[v]);
-}
-
 LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, int grow_to, int carried,
                             MonotoneProgress& progress) {
     PartOf learning(progress, kPrepared, settings.fit_to_points ? kLearned : 1);
@@ -133,7 +120,8 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
     result.network.orient_outward();
     const bool moved = report.improved || report.inserted > 0;
     // If the rounds of the fit were discarded, no vertex has moved to the place of another.
-    write_measures(learner, moved ? report.sources : PerVertex<VertexId>(), settings, result);
+    result.measures = measures_of(learner, learner.crease_measure(), result.network,
+                                  moved ? report.sources : PerVertex<VertexId>(), settings);
     if (carried < settings.target_vertices)
         result.carried = static_cast<int>(task.target().positions().size() / kPointsPerCarried);
     return result;

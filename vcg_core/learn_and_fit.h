@@ -5,6 +5,7 @@
 #pragma once
 
 #include "vcg_core/base/progress.h"
+#include "vcg_core/feature_measures.h"
 #include "vcg_core/learning/learner_options.h"
 #include "vcg_core/learning_task.h"
 #include "vcg_core/mesh/network.h"
@@ -20,8 +21,7 @@ constexpr double kLearned = 0.8;
 /// A network after learning and fit, and what the report says of it.
 struct LearnedNetwork {
     Network network;  ///< after the fit, oriented outward
-    /// Empty if the settings do not use the measure.
-    PerVertex<float> normal_counters, creases;
+    FeatureMeasures measures;
     StopReason stop_reason = StopReason::target_reached;
     bool forced = false;  ///< growth stalled and was forced, see growth_budget()
     /// Vertices that the points carry, if these are less than settings.target_vertices; else 0.
@@ -30,11 +30,6 @@ struct LearnedNetwork {
     long long signals = 0;
     long long splits = 0;
     long long collapses = 0;
-
-    /// \p measure is one of FeatureMeasure that the settings use.
-    const PerVertex<float>& values(int measure) const {
-        return measure == kCreaseMeasure ? creases : normal_counters;
-    }
 };
 
 /// Learns the points of \p task and fits the network to them if settings.fit_to_points.

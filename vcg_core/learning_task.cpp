@@ -116,6 +116,13 @@ void remove_outliers(LearningTask& task, Survey& survey, int threads) {
     task.warnings.push_back(sentence);
 }
 
+LearningTask points_to_learn(const TargetSpace& given, const Settings& settings, Survey& survey) {
+    LearningTask task(given);
+    remove_repeated_points(task);
+    if (settings.remove_outliers && !given.is_exact()) remove_outliers(task, survey, settings.threads);
+    return task;
+}
+
 void measure_noise(LearningTask& task, Survey& survey, int vertices) {
     const std::vector<vcg::Point3f>& points = task.target().positions();
     task.noise = noise_in_edges(survey.of(points), static_cast<double>(points.size()) / vertices);
@@ -221,7 +228,7 @@ void begin_closed(LearningTask& task, StartMesh shell, const Settings& settings)
 }
 
 void begin_given(LearningTask& task, const IndexedMesh<double>& mesh, const Settings& settings) {
-    const IndexedMesh<float> start = given_start(mesh, task.target());
+    const GivenStart start = given_start(mesh, task.target());
     const std::size_t vertices = start.positions.size();
     if (vertices > static_cast<std::size_t>(settings.target_vertices))
         throw SettingError(
@@ -270,12 +277,15 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
 
 }  // namespace
 
+LearningTask points_to_learn(const TargetSpace& given, const Settings& settings) {
+    Survey survey(settings.threads);
+    return points_to_learn(given, settings, survey);
+}
+
 LearningTask prepare(const TargetSpace& given, const Settings& settings, const IndexedMesh<double>& start,
                      Progress& progress) {
-    LearningTask task(given);
-    remove_repeated_points(task);
     Survey survey(settings.threads);
-    if (settings.remove_outliers && !given.is_exact()) remove_outliers(task, survey, settings.threads);
+    LearningTask task = points_to_learn(given, settings, survey);
     begin(task, settings, start, progress);
     if (!given.has_faces()) measure_noise(task, survey, settings.target_vertices);
     if (settings.even_sampling && settings.utility_counter != kSignalCount && !given.is_exact())

@@ -39,6 +39,10 @@ struct LearningTask {
     std::vector<std::string> warnings;
 };
 
+/// The points of \p given without repeated ones and, if settings.remove_outliers is on, without outliers, and
+/// no network yet. \p given must outlive the result. O(points log points)
+LearningTask points_to_learn(const TargetSpace& given, const Settings& settings);
+
 /// Removes repeated points and, if settings.remove_outliers is on, outliers from \p given and makes the start
 /// mesh that \p settings asks for: the shell of the cloud, an open mesh of one layer, a tetrahedron, or \p
 /// start. If settings.even_sampling is on and settings.utility_counter does not follow the density of the

@@ -19,6 +19,7 @@
 
 #include "vcg_core/base/color.h"
 #include "vcg_core/mesh/indexed_mesh.h"
+#include "vcg_core/mesh_counters.h"
 #include "vcg_core/neural_mesh.h"
 #include "vcg_core/settings.h"
 #include "vcg_core/target/target_space.h"
@@ -57,6 +58,11 @@ Coordinates origin_of(const NeuralMesh& result, const Matrix& transform);
 template <class MeshType>
 void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& out,
                 const Coordinates& origin = {});
+
+/// Writes \p result into \p mesh, whose indexed_mesh_of() it was made of: the vertex quality and, if the
+/// settings ask for it, the selection of vertices. Skips deleted vertices. Throws nothing. O(vertices).
+template <class MeshType>
+void write_counters(const MeshCounters& result, const Settings& settings, MeshType& mesh);
 
 namespace detail {
 
@@ -215,6 +221,21 @@ void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& ou
         for (int k = 0; k < 3; ++k)
             face->V(k) = &out.vert[static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])];
         ++face;
+    }
+}
+
+template <class MeshType>
+void write_counters(const MeshCounters& result, const Settings& settings, MeshType& mesh) {
+    for (std::size_t i = 0; i < result.counters.size(); ++i) {
+        auto& vertex = mesh.vert[i];
+        if (vertex.IsD()) continue;
+        vertex.Q() = result.counters[i];
+        if (!settings.select_features) continue;
+        if (result.features[i] != 0) {
+            vertex.SetS();
+        } else {
+            vertex.ClearS();
+        }
     }
 }
 

@@ -3,15 +3,17 @@
 
 #include "vcg_core/reconstruct.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "vcg_core/cloud_colors.h"
 #include "vcg_core/counter_colors.h"
+#include "vcg_core/feature_measures.h"
 #include "vcg_core/fit/rms_error.h"
 #include "vcg_core/learn_and_fit.h"
-#include "vcg_core/learning/feature_counter.h"
 #include "vcg_core/learning_task.h"
 
 namespace neuralmesh {
@@ -31,30 +33,19 @@ void write_geometry(const Network& network, const Frame& frame, NeuralMesh& mesh
         for (VertexId& v : f) v = index[v];
 }
 
-double mean(const PerVertex<float>& values, const Network& network) {
-    double sum = 0;
-    for (const VertexId v : network.vertices()) sum += static_cast<double>(values[v]);
-    return sum / static_cast<double>(network.vertex_count());
+std::vector<float> in_order(const PerVertex<float>& values, const Network& network) {
+    std::vector<float> result;
+    for (const VertexId v : network.vertices()) result.push_back(values[v]);
+    return result;
 }
 
-void write_counters(const LearnedNetwork& learned, const Settings& settings, NeuralMesh& mesh) {
-    const PerVertex<float>& shown = learned.values(settings.feature_measure);
-    for (const VertexId v : learned.network.vertices()) mesh.counters.push_back(shown[v]);
-    mesh.report.mean_counter = mean(shown, learned.network);
-}
-
-/// Marks the vertices whose measure is above the threshold.
 void write_features(const LearnedNetwork& learned, const Settings& settings, NeuralMesh& mesh) {
-    const PerVertex<float>& measure = learned.values(settings.select_by);
-    // The crease measure is an angle: dividing it by its mean would make models less comparable.
-    const double threshold =
-        settings.select_by == kCreaseMeasure
-            ? settings.feature_threshold
-            : feature_threshold(settings.feature_threshold, mean(measure, learned.network));
-    for (const VertexId v : learned.network.vertices()) {
-        mesh.features.push_back(static_cast<double>(measure[v]) > threshold ? 1 : 0);
-        mesh.report.feature_vertices += mesh.features.back();
-    }
+    mesh.counters = in_order(learned.measures.values(settings.feature_measure), learned.network);
+    mesh.features =
+        features_of(in_order(learned.measures.values(settings.select_by), learned.network), settings);
+    mesh.report.mean_counter = mean(mesh.counters);
+    mesh.report.feature_vertices =
+        static_cast<int>(std::count(mesh.features.begin(), mesh.features.end(), 1));
 }
 
 void write_colors(const TargetSpace& target, const Network& network, const Settings& settings,
@@ -115,7 +106,6 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     mesh.report.topology_confidence = task.topology_confidence;
     mesh.report.outliers = task.outliers;
     write_geometry(learned.network, task.target().frame(), mesh);
-    write_counters(learned, settings, mesh);
     write_features(learned, settings, mesh);
     write_colors(task.target(), learned.network, settings, monotone, mesh);
     write_figures(learned, mesh.report);

@@ -122,7 +122,7 @@ std::vector<SettingInfo> mesh_rows() {
     };
 }
 
-std::vector<SettingInfo> feature_rows() {
+std::vector<SettingInfo> color_rows() {
     using S = Settings;
     return {
         row(&S::vertex_color, "vertex_color", "Vertex colour", {"Counter", "Cloud", "None"},
@@ -130,6 +130,12 @@ std::vector<SettingInfo> feature_rows() {
             "is smooth over red to purple at features. Cloud: the colours of the layer's vertices, each "
             "computed from all points near the vertex; if the layer has none, the colours of Counter. The "
             "vertex quality holds the feature measure in any case."),
+    };
+}
+
+std::vector<SettingInfo> feature_rows() {
+    using S = Settings;
+    return {
         row(&S::select_features, "select_features", "Select features",
             "Select the features: the vertices whose measure, chosen by 'Select by', is above the feature "
             "threshold."),
@@ -153,9 +159,9 @@ std::vector<SettingInfo> run_rows() {
     using S = Settings;
     return {
         row(&S::random_seed, "random_seed", "Random seed", 0, kLargestInt,
-            "The same seed gives the same mesh, bit for bit, on any machine and with any number of threads."),
+            "The same seed gives the same result, bit for bit, on any machine and with any number of threads."),
         row(&S::threads, "threads", "Threads", 0, 1024,
-            "The number of threads; 0: one per core. The mesh does not depend on it."),
+            "The number of threads; 0: one per core. The result does not depend on it."),
     };
 }
 
@@ -204,6 +210,27 @@ std::vector<SettingInfo> growth_rows() {
     };
 }
 
+SettingInfo signal_layer_row() {
+    return layer_row(
+        &Settings::signal_layer, "signal_layer", "Signal layer",
+        "The layer that the signals are drawn from, such as the cloud that the mesh was made of: "
+        "its faces if it has any, else its points. By default the mesh itself. It is not "
+        "changed unless it is the current layer.");
+}
+
+SettingInfo signals_per_vertex_row() {
+    return row(&Settings::signals_per_vertex, "signals_per_vertex", "Signals per vertex", 1, 1e5,
+               "Signals per vertex of the mesh (at least 60,000 in all). More make the values less random; "
+               "the run time is proportional to this number.");
+}
+
+/// The rows of all \p groups, in order.
+std::vector<SettingInfo> joined(const std::vector<std::vector<SettingInfo>>& groups) {
+    std::vector<SettingInfo> rows;
+    for (const auto& group : groups) rows.insert(rows.end(), group.begin(), group.end());
+    return rows;
+}
+
 }  // namespace
 
 double SettingInfo::value(const Settings& settings) const {
@@ -224,18 +251,23 @@ void SettingInfo::store(Settings& settings, double value) const {
 
 const std::vector<SettingInfo>& setting_table() {
     static const std::vector<SettingInfo> table = [] {
-        std::vector<SettingInfo> rows;
-        for (const auto& group : {mesh_rows(), feature_rows(), run_rows()})
-            rows.insert(rows.end(), group.begin(), group.end());
-        for (const auto& group : {paper_rows(), growth_rows()})
-            for (const SettingInfo& info : group) rows.push_back(advanced(info));
+        std::vector<SettingInfo> rows = joined({mesh_rows(), color_rows(), feature_rows(), run_rows()});
+        for (const SettingInfo& info : joined({paper_rows(), growth_rows()})) rows.push_back(advanced(info));
         return rows;
     }();
     return table;
 }
 
-void Settings::check() const {
-    for (const SettingInfo& info : setting_table()) {
+const std::vector<SettingInfo>& counter_table() {
+    static const std::vector<SettingInfo> table =
+        joined({{signal_layer_row()}, feature_rows(), {signals_per_vertex_row()}, run_rows()});
+    return table;
+}
+
+void Settings::check() const { check(setting_table()); }
+
+void Settings::check(const std::vector<SettingInfo>& table) const {
+    for (const SettingInfo& info : table) {
         const double value = info.value(*this);
         if (value >= info.low && value <= info.high) continue;
         std::ostringstream text;

@@ -46,7 +46,9 @@ enum SurfaceKind : int {
     kOpenSurface = 2,    ///< boundaries where the points end
 };
 
-/// All parameters of a run. setting_table() has their ranges and meanings.
+struct SettingInfo;
+
+/// All parameters of both filters. setting_table() and counter_table() have their ranges and meanings.
 struct Settings {
     int target_vertices = 10000;
     int surface = kAutomatic;
@@ -81,10 +83,15 @@ struct Settings {
     int settling_signals_per_vertex = 60;  ///< signals per vertex learned after the last split
     double stop_below_mean_counter = 0.0;  ///< alpha_t, eq 8; 0: off
 
+    // Of the counters of a given mesh, see mesh_counters.h.
+    int signal_layer = 0;         ///< as start_layer
+    int signals_per_vertex = 60;  ///< signals per vertex of the mesh
+
     /// Whether the quality or the selection needs \p measure.
     bool uses(FeatureMeasure measure) const { return feature_measure == measure || select_by == measure; }
-    /// \throws SettingError for a value out of range, naming parameter, value and range
-    void check() const;
+    /// \throws SettingError for a value of \p table out of its range, naming parameter, value and range
+    void check(const std::vector<SettingInfo>& table) const;
+    void check() const;  ///< of setting_table()
 };
 
 /// One parameter: its name, explanation, range, and the member of Settings that holds it.
@@ -112,7 +119,10 @@ struct SettingInfo {
     void store(Settings& settings, double value) const;
 };
 
-/// All parameters in the order of the dialog. Their defaults are those of Settings().
+/// The parameters of the reconstruction in the order of its dialog. Their defaults are those of Settings().
 const std::vector<SettingInfo>& setting_table();
+
+/// The same of the counters of a given mesh.
+const std::vector<SettingInfo>& counter_table();
 
 }  // namespace neuralmesh

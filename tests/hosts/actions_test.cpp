@@ -42,6 +42,29 @@ TEST(Actions, CountTheWarningsAndLogThemSeparately) {
     for (const std::string& line : log_lines(report)) EXPECT_EQ(line.find("One."), std::string::npos) << line;
 }
 
+TEST(Actions, ReportCountersWithoutFiguresOfAReconstruction) {
+    Report report;
+    report.vertices = 642;
+    report.signals = 60000;
+    EXPECT_EQ(log_lines(report, kCounters)[0].find("Neural Normal Counter: 642 vertices"), 0U);
+    EXPECT_EQ(log_lines(report, kCounters)[0].find("cancelled"), std::string::npos);
+    for (const char* other : {"genus", "faces", "rms_error"})
+        EXPECT_THROW(figure(figures(report, kCounters), other), std::out_of_range) << other;
+    EXPECT_EQ(figure(figures(report, kCounters), "signals").count(), 60000);
+    report.stop_reason = StopReason::cancelled;
+    EXPECT_NE(log_lines(report, kCounters)[0].find("it was cancelled."), std::string::npos);
+}
+
+TEST(Actions, HaveIdsInOrderAndNamesThatPymeshlabCanCall) {
+    for (std::size_t i = 0; i < all_actions().size(); ++i) {
+        const Action& action = all_actions()[i];
+        EXPECT_EQ(action.id, static_cast<int>(i));
+        EXPECT_EQ(&action_of(action.id), &action);
+        EXPECT_EQ(std::string(action.python_name).find_first_not_of("abcdefghijklmnopqrstuvwxyz_"),
+                  std::string::npos);
+    }
+}
+
 TEST(Actions, LogWhyLearningEnded) {
     Report report;
     report.stop_reason = StopReason::converged;

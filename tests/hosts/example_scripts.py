@@ -23,15 +23,22 @@ EXAMPLES = {
     "features": {"target_vertices": 5000, "select_features": True, "vertex_color": 0},
     "evenly_spaced": {"target_vertices": 5000, "utility_counter": 1},
     "vertices_of_a_mesh": {"target_vertices": 2000, "draw_from_faces": False},
+    "counters_of_a_mesh": {"select_features": True, "feature_measure": 1},
 }
+COUNTERS = "compute_scalar_by_neural_normal_counter_per_vertex"
+FILTERS = {"counters_of_a_mesh": COUNTERS}  # those of the others is the reconstruction
+
+
+def write(build, name, path):
+    return meshlabserver.write_script(build, path, FILTERS.get(name, ""), **EXAMPLES[name])
 
 
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     FOLDER.mkdir(exist_ok=True)
-    for name, values in EXAMPLES.items():
-        print(meshlabserver.write_script(sys.argv[1], FOLDER / f"{name}.mlx", **values))
+    for name in EXAMPLES:
+        print(write(sys.argv[1], name, FOLDER / f"{name}.mlx"))
 
 
 if __name__ == "__main__":

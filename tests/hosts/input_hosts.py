@@ -12,7 +12,7 @@ import meshlabserver
 import models
 import numpy as np
 
-PYTHON_NAME = "generate_surface_reconstruction_neural_mesh"
+PYTHON_NAME = inputs.RECONSTRUCTION
 SERVER = "meshlabserver 2020.09"
 PYMESHLAB = "pymeshlab 2025.7"
 HOSTS = (SERVER, *(f"library {release}" for release in library_hosts.RELEASES), PYMESHLAB)
@@ -41,10 +41,6 @@ def origin_in(host, layer):
     return (0, 0, 0) if host == PYMESHLAB else tuple(layer.origin)
 
 
-def parameters_of(layer):
-    return {"target_vertices": layer.target, **layer.parameters}
-
-
 # --- meshlabserver -----------------------------------------------------------------------------------------------
 
 PROJECT = """<!DOCTYPE MeshLabDocument>
@@ -65,7 +61,7 @@ def write_project(path, matrix, *files):
     return path
 
 
-def _server_input(layer, folder):
+def server_input(layer, folder):
     """The layer twice, so that its copy can be compared with it; the second is current."""
     files = [inputs.write_ply(layer, folder / name) for name in ("layer.ply", "copy.ply")]
     if (layer.matrix == np.eye(4)).all():
@@ -73,26 +69,35 @@ def _server_input(layer, folder):
     return ["-p", write_project(folder / "project.mlp", layer.matrix, *(file.name for file in files))]
 
 
-def in_server(build, server, layer, folder):
-    script = meshlabserver.write_script(build, folder / "script.mlx", **parameters_of(layer))
+def write_script(build, layer, folder):
+    script = meshlabserver.write_script(build, folder / "script.mlx", layer.filter, **layer.all_parameters())
     if layer.deleted.any():
         # This host keeps deleted vertices in the layer, marked as deleted.
         text = script.read_text().replace("<FilterScript>", '<FilterScript>\n <filter name="Delete Selected Vertices"/>', 1)
         script.write_text(text)
+    return script
+
+
+def sentence_of_server(text):
+    """The error message in what the server has printed after its filter failed."""
+    lines = [line.strip() for line in text.splitlines()]
+    assert any(line.startswith("Problem with filter") for line in lines), text
+    return " ".join(line for line in lines if line.endswith(".") and " " in line
+                    and not line.startswith(("LOG", "MeshLab")))
+
+
+def in_server(build, server, layer, folder):
+    script = write_script(build, layer, folder)
     out, kept, copy = (folder / name for name in ("out.ply", "kept.ply", "kept_copy.ply"))
     project = folder / "learned.mlp"
     moved = not (layer.matrix == np.eye(4)).all()
-    code, text = meshlabserver.run(server, *_server_input(layer, folder), *(("-w", project) if moved else ()),
+    code, text = meshlabserver.run(server, *server_input(layer, folder), *(("-w", project) if moved else ()),
                                    "-o", out, "-m", "vq", "vc",
                                    "-o", copy, "-l", 0, "-m", *ALL_ATTRIBUTES, "-o", kept, "-l", 1, "-m", *ALL_ATTRIBUTES,
                                    "-s", script)
     assert code in (0, 255), f"ended with code {code}: {text[-2000:]}"
     if code != 0:
-        lines = [line.strip() for line in text.splitlines()]
-        problem = next((i for i, line in enumerate(lines) if line.startswith("Problem with filter")), None)
-        assert problem is not None, text
-        sentences = [line for line in lines if line.endswith(".") and " " in line and not line.startswith(("LOG", "MeshLab"))]
-        return Outcome(sentence=" ".join(sentences))
+        return Outcome(sentence=sentence_of_server(text))
     assert out.exists() and kept.exists(), text
     same = kept.read_bytes() == copy.read_bytes() if not layer.deleted.any() else True
     origin = _translation_of_last(project) if moved else (0, 0, 0)
@@ -138,7 +143,7 @@ def state(meshes):
     return layers, meshes.current_mesh_id() if len(layers) else None
 
 
-def _load(pymeshlab, layer, folder):
+def load(pymeshlab, layer, folder):
     meshes = new_mesh_set(pymeshlab)
     cleaned_by_reader = not np.isfinite(layer.points).all() or any(len(set(face)) < 3 for face in layer.faces)
     if cleaned_by_reader:
@@ -159,7 +164,7 @@ def _load(pymeshlab, layer, folder):
 
 
 def in_pymeshlab(pymeshlab, layer, folder):
-    meshes = _load(pymeshlab, layer, folder)
+    meshes = load(pymeshlab, layer, folder)
     before = state(meshes)
 
     def unchanged():
@@ -168,7 +173,7 @@ def in_pymeshlab(pymeshlab, layer, folder):
         return kept and state(meshes)[0][0] == before[0][0]
 
     try:
-        report = meshes.apply_filter(PYTHON_NAME, **parameters_of(layer))
+        report = meshes.apply_filter(PYTHON_NAME, **layer.all_parameters())
     except pymeshlab.PyMeshLabException as error:
         sentence = str(error).split("Details: ", 1)[1].strip()
         return Outcome(sentence=sentence, unchanged=unchanged() and state(meshes) == before)

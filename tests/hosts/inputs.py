@@ -11,6 +11,8 @@ import shapes
 
 SELECTED = 0x20  # vcg's flag, in the property "flags" of a PLY file
 NAN, INF = float("nan"), float("inf")
+RECONSTRUCTION = "generate_surface_reconstruction_neural_mesh"
+COUNTERS = "compute_scalar_by_neural_normal_counter_per_vertex"
 GOLDEN_TURN = 2.399963229728653
 BALL = 4 / 3 * np.pi
 
@@ -29,8 +31,9 @@ class Input:
     textured: bool = False
     paint: np.ndarray = None  # the points' colours, RGB from 0 to 255; None: a pattern
     outliers: int = 0  # the number of last points, which the mesh must not follow
+    filter: str = RECONSTRUCTION
     parameters: dict = field(default_factory=dict)
-    target: int = 250
+    target: int = 250  # vertices
     # The expected mesh; the defaults are those of a ball. Percentages are of the diagonal of followed_points().
     components: int = 1
     genus: int = 0
@@ -61,6 +64,9 @@ class Input:
             return np.column_stack([self.paint, np.full(len(self.points), 255)]).astype("u1")
         steps = np.arange(len(self.points))
         return np.column_stack([steps % 251, steps % 13 * 19, steps % 7 * 36, steps * 0 + 255]).astype("u1")
+
+    def all_parameters(self):
+        return {**({"target_vertices": self.target} if self.filter == RECONSTRUCTION else {}), **self.parameters}
 
     def triangles(self):
         """(corners, input face, bits of the new edges) of the faces split into fans of triangles."""
@@ -240,6 +246,51 @@ def _meshes():
     }
 
 
+def counted_inputs():
+    """name -> Input whose counters are asked for. Those with refused = "" get a value at every vertex of a face."""
+    count = functools.partial(Input, filter=COUNTERS, parameters={"select_features": True})
+    vertices, faces = ball_mesh()
+    half = [face for face in faces if vertices[list(face), 2].mean() > 0]
+    broken = vertices.copy()
+    broken[5, 1] = NAN
+    fin = [(0, 1, len(vertices)), (1, 0, len(vertices) + 1)]
+    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    far = np.vstack([[[50, 50, 50]] * 10, vertices])
+    moved_faces = [tuple(v + 10 for v in face) for face in faces]
+    return {
+        "empty layer": count([], refused="no points"),
+        "points": count(vertices, refused="The current layer has no faces"),
+        "one triangle": count(corners[:3], [(0, 1, 2)], refused="3 distinct"),
+        "two triangles": count([*corners[:3], [1, 1, 0]], [(0, 1, 2), (1, 3, 2)]),
+        "tetrahedron": count(corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]),
+        "mesh": count(vertices, faces),
+        "selection not asked for": count(vertices, faces, parameters={}, selected_points=np.arange(len(vertices)) % 3 == 0),
+        "all selected": count(vertices, faces, selected_points=np.arange(len(vertices)) >= 0),
+        "by the counter": count(vertices, faces, parameters={"select_features": True, "select_by": 0}),
+        "crease measure": count(vertices, faces, parameters={"feature_measure": 1}),
+        "a vertex not finite": count(broken, faces, refused="1 of the 642 vertices"),
+        "unreferenced vertices": count(far, moved_faces),
+        "deleted vertices": count(np.vstack([vertices, vertices[:9] * 2]), faces,
+                                  deleted=np.arange(len(vertices) + 9) >= len(vertices)),
+        "open mesh": count(vertices, half),
+        "quads": count(*quads()),
+        "texture and attributes": count(vertices, faces, textured=True),
+        "zero-area faces": count(vertices, faces + [(0, 0, 1), (2, 2, 2)], refused="faces with a corner twice (2)"),
+        "only zero-area faces": count(vertices, [(a, b, b) for a, b, _ in faces], refused="no area"),
+        "repeated faces": count(vertices, faces + faces[:20], refused="faces that repeat others (20)"),
+        "fins": count(np.vstack([vertices, vertices[0] * 1.2, vertices[1] * 1.3]), faces + fin,
+                      refused="edges with more than two faces"),
+        "a face turned over": count(vertices, [faces[0][::-1], *faces[1:]], refused="opposite orientations (3)"),
+        "separate faces": count(vertices[np.array(faces).ravel()], [(i, i + 1, i + 2) for i in range(0, 3 * len(faces), 3)],
+                                refused="of which no two share a vertex"),
+        "size 1e-9": count(vertices * 1e-9, faces),
+        "offset 1e+7": count(vertices * 1000 + [1e7, -1e7, 1e7], faces),
+        "mirrored": count(vertices, faces, matrix=np.diag([-1.0, 1, 1, 1])),
+        "georeferenced": count(vertices, faces, matrix=moved(1e7, -1e7, 1e7)),
+        "matrix not finite": count(vertices, faces, matrix=np.diag([NAN, 1, 1, 1]), refused="The matrix of the layer"),
+    }
+
+
 def all_inputs():
     """name -> Input, the same at every call."""
     return {**_clouds(np.random.default_rng(1)), **_meshes()}
@@ -281,7 +332,8 @@ def write_layer(layer, path):
         lines.append(f"face {corners[0]} {corners[1]} {corners[2]} {int(layer.selected_faces[index])} {inner}")
     if layer.textured:
         lines.append("textured")
-    for key, value in {"target_vertices": layer.target, **layer.parameters}.items():
+    lines.append(f"filter {layer.filter}")
+    for key, value in layer.all_parameters().items():
         lines.append(f"set {key} {int(value)}")
     path.write_text("\n".join(lines) + "\n")
     return path

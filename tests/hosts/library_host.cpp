@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // MeshLab 2022.02 or 2025.07 without its window: the plugin manager of libmeshlab-common checks and loads the
-// plugin, and the filter learns a layer. It is compiled once per release, with MeshLab's symbols left
+// plugin, and the filter learns a layer, or the filter that the layer's file names. It is compiled once per release, with MeshLab's symbols left
 // undefined until run_library_host.cpp loads it. Arguments:
 //   LAYER OUT          learns the layer that inputs.py has written and writes the result to OUT
 //   LAYER OUT cancel   repeats this; the host asks to stop at a later call of the progress each time
@@ -44,9 +44,13 @@ const char* truth(bool value) { return value ? "true" : "false"; }
 
 class Host {
 public:
-    explicit Host(const char* plugin_file)
+    Host(const char* plugin_file, const char* layer_file)
         : plugin_(dynamic_cast<FilterPlugin*>(manager_.loadPlugin(plugin_file))),
-          action_(plugin_->actions().front()) {}
+          action_(plugin_->actions().front()),
+          filter_(filter_in(layer_file)) {
+        for (QAction* action : plugin_->actions())
+            if (plugin_->pythonFilterName(plugin_->ID(action)).toStdString() == filter_) action_ = action;
+    }
 
     /// Learns the layer once and prints the outcome. The filter's \p nth allocation fails, counted from 0;
     /// none if -1.
@@ -58,6 +62,7 @@ public:
         read_layer(layer_file, layer, list);
         plugin_->setLog(&document.Log);
         const std::string before = bytes_of(document, layer);
+        const VertexValues values(layer.cm);
 
         Outcome outcome;
         unsigned int mask = 0;
@@ -75,8 +80,13 @@ public:
         print(document, outcome);
         if (outcome.sentence.empty()) {
             std::ofstream file(out);
-            write_off(document.mm()->cm, file);
-            document.delMesh(document.mm()->id());
+            if (document.mm() == &layer) {
+                write_values(layer.cm, file);
+                values.restore();
+            } else {
+                write_off(document.mm()->cm, file);
+                document.delMesh(document.mm()->id());
+            }
         }
         std::cout << ", \"unchanged\": " << truth(bytes_of(document, layer) == before) << "}" << std::endl;
     }
@@ -91,7 +101,11 @@ public:
         unsigned int mask = 0;
         plugin_->applyFilter(action_, list, document, mask, nullptr);
         std::ostringstream text;
-        write_off(document.mm()->cm, text);
+        if (document.mm() == &layer) {
+            write_values(layer.cm, text);
+        } else {
+            write_off(document.mm()->cm, text);
+        }
         return text.str();
     }
 
@@ -125,6 +139,7 @@ private:
     PluginManager manager_;
     FilterPlugin* plugin_;
     QAction* action_;
+    std::string filter_;
 };
 
 void repeat(Host& host, const char* layer, const char* out) {
@@ -177,7 +192,7 @@ void run(Host& host, const char* layer, const char* out, const std::string& mode
 extern "C" __attribute__((visibility("default"))) int library_host(int argc, char** argv) {
     QApplication application(argc, argv);
     try {
-        Host host(argv[3]);
+        Host host(argv[3], argv[4]);
         run(host, argv[4], argv[5], argc > 6 ? argv[6] : "");
         return 0;
     } catch (const MLException& error) {

@@ -12,6 +12,8 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 /// A number as Python prints it, including inf and nan.
 inline double number(std::istream& words) {
@@ -57,6 +59,15 @@ inline void read_textured(MeshModel& layer) {
         for (int k = 0; k < 3; ++k) f.WT(k).P() = Point2m(Scalarm(k == 1), Scalarm(k == 2));
 }
 
+/// The Python name of the filter that a layer file names; empty if it names none.
+inline std::string filter_in(const char* file) {
+    std::ifstream words(file);
+    std::string word, name;
+    while (words >> word)
+        if (word == "filter") words >> name;
+    return name;
+}
+
 /// Fills \p layer, and sets the parameters in \p list that the file names.
 inline void read_layer(const char* file, MeshModel& layer, RichParameterList& list) {
     layer.updateDataMask(MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR | MeshModel::MM_POLYGONAL);
@@ -73,6 +84,8 @@ inline void read_layer(const char* file, MeshModel& layer, RichParameterList& li
             for (int row = 0; row < 4; ++row)
                 for (int column = 0; column < 4; ++column)
                     layer.cm.Tr.ElementAt(row, column) = Scalarm(number(words));
+        } else if (word == "filter") {
+            words >> word;
         } else if (word == "set") {
             words >> word;
             const int value = static_cast<int>(number(words));
@@ -114,6 +127,37 @@ inline std::string bytes_of(const MeshDocument& document, MeshModel& layer) {
           << mesh.vert_attr.size();
     bytes << " of " << document.meshNumber();
     return bytes.str();
+}
+
+/// Quality and selection of the vertices, which the counters change.
+class VertexValues {
+public:
+    explicit VertexValues(CMeshO& mesh) : mesh_(mesh), selected_(mesh.svn) {
+        for (const auto& v : mesh.vert) values_.emplace_back(v.cQ(), v.IsS());
+    }
+    void restore() const {
+        for (std::size_t i = 0; i < values_.size(); ++i) {
+            mesh_.vert[i].Q() = values_[i].first;
+            if (values_[i].second) {
+                mesh_.vert[i].SetS();
+            } else {
+                mesh_.vert[i].ClearS();
+            }
+        }
+        mesh_.svn = selected_;
+    }
+
+private:
+    CMeshO& mesh_;
+    int selected_;
+    std::vector<std::pair<Scalarm, bool>> values_;
+};
+
+/// A line with quality and selection for every vertex that is not deleted.
+inline void write_values(const CMeshO& mesh, std::ostream& out) {
+    out.precision(9);
+    for (const auto& v : mesh.vert)
+        if (!v.IsD()) out << v.cQ() << ' ' << v.IsS() << '\n';
 }
 
 /// A JSON array, row by row.

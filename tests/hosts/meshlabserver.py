@@ -103,9 +103,10 @@ def figures(text):
             for key, value in pairs}
 
 
-def write_script(build, path, **values):
-    """A complete script with the filter's defaults and the given values."""
-    words = [f"{key}={str(value).lower() if isinstance(value, bool) else value}" for key, value in values.items()]
+def write_script(build, path, filter_name="", **values):
+    """A complete script with the defaults of a filter, by its Python name or the reconstruction, and the given values."""
+    words = [f"--filter={filter_name}"] if filter_name else []
+    words += [f"{key}={str(value).lower() if isinstance(value, bool) else value}" for key, value in values.items()]
     done = subprocess.run([str(Path(build) / "tests" / "write_mlx"), *words], check=True, stdout=subprocess.PIPE)
     Path(path).write_bytes(done.stdout)
     return Path(path)

@@ -139,6 +139,8 @@ ms.load_new_mesh(sys.argv[1])
 result = ms.generate_surface_reconstruction_neural_mesh(target_vertices=300)
 assert result["vertices"] == ms.current_mesh().vertex_number() == 300
 ms.save_current_mesh(sys.argv[2], save_vertex_quality=True)
+assert "scalar" in pymeshlab.MeshSet.compute_scalar_by_neural_normal_counter_per_vertex.__doc__
+assert ms.compute_scalar_by_neural_normal_counter_per_vertex(signal_layer=0)["vertices"] == 300
 """
 PLAIN = """
 import pymeshlab, sys

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// write_mlx [ID=VALUE ...]: prints a script for meshlabserver with all parameters of the filter, at their
-// defaults or the values given. (meshlabserver aborts on scripts that omit one.) write_mlx --table: prints
-// the parameters for tests, one per line: id, type, low, high, default, advanced.
+// write_mlx [--filter=NAME] [ID=VALUE ...]: prints a script for meshlabserver with all parameters of a
+// filter, at their defaults or the values given. (meshlabserver aborts on scripts that omit one.) NAME is a
+// Python name; default: the reconstruction. write_mlx [--filter=NAME] --table: prints the parameters for
+// tests, one per line: id, type, low, high, default, advanced.
 #include <cstdlib>
 #include <iostream>
 #include <map>
@@ -50,47 +51,59 @@ void write_parameter(const SettingInfo& info, const std::string& value) {
     std::cout << "/>\n";
 }
 
-void write_script(std::map<std::string, std::string> values) {
-    std::cout << "<!DOCTYPE FilterScript>\n<FilterScript>\n <filter name=\"" << action_of(kReconstruct).name
-              << "\">\n";
-    for (const SettingInfo& info : setting_table()) {
+void write_script(const Action& action, std::map<std::string, std::string> values) {
+    std::cout << "<!DOCTYPE FilterScript>\n<FilterScript>\n <filter name=\"" << action.name << "\">\n";
+    for (const SettingInfo& info : action.settings) {
         const auto given = values.find(info.id);
         write_parameter(info, given == values.end() ? default_of(info) : given->second);
     }
     std::cout << " </filter>\n</FilterScript>\n";
 }
 
-void write_table() {
+void write_table(const Action& action) {
     std::cout.precision(17);
-    for (const SettingInfo& info : setting_table())
+    for (const SettingInfo& info : action.settings)
         std::cout << info.id << ' ' << type_of(info) << ' ' << info.low << ' ' << info.high << ' '
                   << default_of(info) << ' ' << info.advanced << '\n';
 }
 
-bool is_id(const std::string& word) {
-    for (const SettingInfo& info : setting_table())
+bool is_id(const Action& action, const std::string& word) {
+    for (const SettingInfo& info : action.settings)
         if (word == info.id) return true;
     return false;
+}
+
+/// The action that the first argument names, if it does; else the reconstruction.
+const Action& chosen_action(int argc, char** argv, int& next) {
+    next = 1;
+    for (const Action& action : all_actions()) {
+        if (argc < 2 || argv[1] != std::string("--filter=") + action.python_name) continue;
+        next = 2;
+        return action;
+    }
+    return action_of(kReconstruct);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     std::map<std::string, std::string> values;
-    for (int i = 1; i < argc; ++i) {
+    int first = 1;
+    const Action& action = chosen_action(argc, argv, first);
+    for (int i = first; i < argc; ++i) {
         const std::string word = argv[i];
         if (word == "--table") {
-            write_table();
+            write_table(action);
             return EXIT_SUCCESS;
         }
         const std::size_t equals = word.find('=');
-        if (equals == std::string::npos || !is_id(word.substr(0, equals))) {
+        if (equals == std::string::npos || !is_id(action, word.substr(0, equals))) {
             std::cerr << word
                       << " is not ID=VALUE with the id of a parameter; write_mlx --table lists them.\n";
             return EXIT_FAILURE;
         }
         values[word.substr(0, equals)] = word.substr(equals + 1);
     }
-    write_script(values);
+    write_script(action, values);
     return EXIT_SUCCESS;
 }

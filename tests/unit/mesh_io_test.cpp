@@ -22,6 +22,31 @@ using layer_mesh::Mesh;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+TEST(MeshIo, CountersChangeQualityAndSelectionOnly) {
+    Mesh mesh;
+    fill(mesh, shapes::cube(), true);
+    for (auto& vertex : mesh.vert) vertex.Q() = 9;
+    vcg::tri::Allocator<Mesh>::AddVertices(mesh, 2);
+    vcg::tri::Allocator<Mesh>::DeleteVertex(mesh, mesh.vert[8]);
+    mesh.vert[8].Q() = 5;
+    mesh.vert[1].SetS();
+    MeshCounters counters;
+    counters.counters = {0, 1, 2, 3, 4, 5, 6, 7, 8, 0};
+    counters.features = {0, 0, 1, 0, 0, 0, 0, 0, 1, 0};
+    Settings settings;
+    write_counters(counters, settings, mesh);
+    EXPECT_TRUE(mesh.vert[1].IsS() && !mesh.vert[2].IsS()) << "the selection has changed without being asked";
+    settings.select_features = true;
+    write_counters(counters, settings, mesh);
+    for (int i = 0; i < 10; ++i) {
+        const auto& vertex = mesh.vert[static_cast<std::size_t>(i)];
+        EXPECT_EQ(vertex.Q(), i == 8 ? 5.0F : counters.counters[static_cast<std::size_t>(i)]) << i;
+        EXPECT_EQ(vertex.IsS(), i == 2) << i;
+    }
+    EXPECT_TRUE(mesh.vert[8].IsD());
+    EXPECT_EQ(mesh.vert[3].P(), vcg::Point3f::Construct(shapes::cube().positions[3]));
+}
+
 vcg::Matrix44f moved(float x, float y, float z) {
     vcg::Matrix44f matrix;
     matrix.SetTranslate(x, y, z);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The table of parameters is complete and consistent, and values beyond either end of a range are refused.
+// The tables of parameters are complete and consistent, and values beyond either end of a range are refused.
 #include "vcg_core/settings.h"
 
 #include <gtest/gtest.h>
@@ -18,20 +18,27 @@ namespace {
 using Kind = SettingInfo::Kind;
 
 /// The message that check() throws, or nothing.
-std::string complaint(const Settings& settings) {
+std::string complaint(const Settings& settings, const std::vector<SettingInfo>& table = setting_table()) {
     try {
-        settings.check();
+        settings.check(table);
     } catch (const SettingError& error) {
         return error.what();
     }
     return {};
 }
 
-TEST(Settings, TheDefaultsPass) { EXPECT_NO_THROW(Settings().check()); }
+using TableOf = const std::vector<SettingInfo>& (*)();
+class EveryTable : public testing::TestWithParam<TableOf> {
+protected:
+    const std::vector<SettingInfo>& table() const { return GetParam()(); }
+};
+INSTANTIATE_TEST_SUITE_P(Settings, EveryTable, testing::Values(setting_table, counter_table));
 
-TEST(Settings, EveryRowIsCompleteAndItsIdUnique) {
+TEST_P(EveryTable, DefaultsPass) { EXPECT_EQ(complaint(Settings(), table()), ""); }
+
+TEST_P(EveryTable, EveryRowIsCompleteAndItsIdUnique) {
     std::set<std::string> ids;
-    for (const SettingInfo& info : setting_table()) {
+    for (const SettingInfo& info : table()) {
         SCOPED_TRACE(info.id);
         EXPECT_TRUE(ids.insert(info.id).second);
         for (const char c : std::string(info.id)) EXPECT_TRUE((c >= 'a' && c <= 'z') || c == '_');
@@ -46,14 +53,14 @@ TEST(Settings, EveryRowIsCompleteAndItsIdUnique) {
     }
 }
 
-TEST(Settings, StoreAndValueAreInverse) {
-    for (const SettingInfo& info : setting_table()) {
+TEST_P(EveryTable, StoreAndValueAreInverse) {
+    for (const SettingInfo& info : table()) {
         SCOPED_TRACE(info.id);
         for (const double value : {info.low, info.high}) {
             Settings settings;
             info.store(settings, value);
             EXPECT_EQ(info.value(settings), value);
-            for (const SettingInfo& other : setting_table()) {
+            for (const SettingInfo& other : table()) {
                 if (&other == &info) continue;
                 EXPECT_EQ(other.value(settings), other.value(Settings())) << other.id;
             }
@@ -61,20 +68,20 @@ TEST(Settings, StoreAndValueAreInverse) {
     }
 }
 
-TEST(Settings, BothEndsOfARangePassAndNothingBeyond) {
-    for (const SettingInfo& info : setting_table()) {
+TEST_P(EveryTable, BothEndsOfARangePassAndNothingBeyond) {
+    for (const SettingInfo& info : table()) {
         SCOPED_TRACE(info.id);
         if (info.kind == Kind::boolean) continue;
         const bool real = info.real_member != nullptr;
         for (const double end : {info.low, info.high}) {
             Settings settings;
             info.store(settings, end);
-            EXPECT_EQ(complaint(settings), "");
+            EXPECT_EQ(complaint(settings, table()), "");
             const double beyond = real ? std::nextafter(end, end == info.low ? -1e300 : 1e300)
                                        : end + (end == info.low ? -1 : 1);
             if (!real && std::abs(beyond) > std::numeric_limits<int>::max()) continue;
             info.store(settings, beyond);
-            EXPECT_THROW(settings.check(), SettingError);
+            EXPECT_THROW(settings.check(table()), SettingError);
         }
         if (!real) continue;
         for (const double bad :
@@ -82,23 +89,36 @@ TEST(Settings, BothEndsOfARangePassAndNothingBeyond) {
               -std::numeric_limits<double>::infinity()}) {
             Settings settings;
             info.store(settings, bad);
-            EXPECT_THROW(settings.check(), SettingError);
+            EXPECT_THROW(settings.check(table()), SettingError);
         }
     }
 }
 
-TEST(Settings, IntegersOutsideTheRangeOfIntAreRefused) {
+TEST_P(EveryTable, IntegersOutsideTheRangeOfIntAreRefused) {
     const double two_to_32 = 4294967296.0;
-    for (const SettingInfo& info : setting_table()) {
+    for (const SettingInfo& info : table()) {
         SCOPED_TRACE(info.id);
         if (info.integer_member == nullptr) continue;
         for (const double beyond : {info.low + two_to_32, info.high + two_to_32, -two_to_32, 1e300, -1e300,
                                     std::numeric_limits<double>::quiet_NaN()}) {
             Settings settings;
             info.store(settings, beyond);
-            EXPECT_THROW(settings.check(), SettingError) << beyond;
+            EXPECT_THROW(settings.check(table()), SettingError) << beyond;
         }
     }
+}
+
+/// Scripts that know a parameter of one filter may rely on it in the other.
+TEST(Settings, WhatBothFiltersHaveMeansTheSame) {
+    std::size_t shared = 0;
+    for (const SettingInfo& one : setting_table())
+        for (const SettingInfo& other : counter_table()) {
+            if (std::string(one.id) != other.id) continue;
+            ++shared;
+            EXPECT_STREQ(one.help, other.help);
+            EXPECT_EQ(one.value(Settings()), other.value(Settings()));
+        }
+    EXPECT_EQ(shared, counter_table().size() - 2) << "all but signal_layer and signals_per_vertex";
 }
 
 TEST(Settings, TheMessageNamesParameterValueAndRange) {

@@ -70,6 +70,16 @@ void CreaseMeasure::observe(const Network& network) {
     ++moments_;
 }
 
+void CreaseMeasure::add(const CreaseMeasure& other) {
+    position_sums_.resize(other.position_sums_.size(), Point3f(0, 0, 0));
+    spread_sums_.resize(other.spread_sums_.size(), 0);
+    for (VertexId v = 0; v < other.position_sums_.size(); ++v) {
+        position_sums_[v] += other.position_sums_[v];
+        spread_sums_[v] += other.spread_sums_[v];
+    }
+    moments_ += other.moments_;
+}
+
 PerVertex<float> CreaseMeasure::values(const Network& learned) const { return values(learned, learned, {}); }
 
 PerVertex<float> CreaseMeasure::values(const Network& learned, const Network& shown,

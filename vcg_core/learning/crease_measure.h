@@ -36,6 +36,8 @@ public:
     /// Adds the present positions as one moment. All moments must have the same connectivity.
     /// O(vertices x valence), a tenth of the time of one signal per vertex.
     void observe(const Network& network);
+    /// Adds the moments of \p other, of the same connectivity. O(vertices).
+    void add(const CreaseMeasure& other);
     int moments() const { return moments_; }
 
     /// The value of every slot of \p learned, the network observed; 0 for free slots. Without a moment, its

@@ -152,10 +152,17 @@ void Learner::force_growth() {
 }
 
 bool Learner::settle(int per_vertex, Progress& progress, bool observe) {
+    if (!learn_at_rest(settling_signals(per_vertex, network().vertex_count()), progress, observe))
+        return false;
+    if (observe && !state_.to_the_letter()) mend_boundary_faces(state_, false);
+    return true;
+}
+
+bool Learner::learn_at_rest(std::int64_t count, Progress& progress, bool observe) {
     memory_order_.finish();
     crease_measure_ = CreaseMeasure();
     const std::int64_t begin = signals();
-    const std::int64_t end = begin + settling_signals(per_vertex, network().vertex_count());
+    const std::int64_t end = begin + count;
     // The first fifth is not observed: there the mesh still moves as a result of its growth.
     std::int64_t next_moment = begin + (end - begin) / 5;
     while (signals() < end) {
@@ -168,8 +175,11 @@ bool Learner::settle(int per_vertex, Progress& progress, bool observe) {
         const double done = static_cast<double>(signals() - begin) / static_cast<double>(end - begin);
         if (!report("Settling", done, progress)) return false;
     }
-    if (observe && !state_.to_the_letter()) mend_boundary_faces(state_, false);
     return true;
+}
+
+void Learner::move_to(const PerVertex<vcg::Point3f>& places) {
+    for (const VertexId v : state_.network.vertices()) state_.search.move(v, places[v]);
 }
 
 bool Learner::report_due() {

@@ -68,6 +68,10 @@ public:
     /// \param observe false: no crease measure. It needs fixed connectivity, so pass false before growth.
     /// \return false if \p progress, which gets the share of the signals done, asked to stop
     bool settle(int per_vertex, Progress& progress, bool observe = true);
+    /// The same for \p count signals, without mending.
+    bool learn_at_rest(std::int64_t count, Progress& progress, bool observe = true);
+    /// Moves every vertex to its place in \p places, and keeps all counters. O(vertices).
+    void move_to(const PerVertex<vcg::Point3f>& places);
 
     const Network& network() const { return state_.network; }
     const UtilityCounters& utility_counters() const { return state_.utility_counters; }

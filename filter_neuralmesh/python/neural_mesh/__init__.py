@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The filter "Surface Reconstruction: Neural Mesh" for pymeshlab. Importing this module makes it a method of MeshSet:
+"""The filters of Neural Mesh for pymeshlab. Importing this module makes them methods of MeshSet:
 
     import neural_mesh, pymeshlab
     ms = pymeshlab.MeshSet()
     ms.load_new_mesh("cloud.ply")
     ms.generate_surface_reconstruction_neural_mesh(target_vertices=5000)
+
+    ms.load_new_mesh("mesh.ply")
+    ms.compute_scalar_by_neural_normal_counter_per_vertex(select_features=True)
 """
 
 from importlib import metadata
@@ -14,6 +17,7 @@ from pathlib import Path
 
 BUILT_FOR = "2025.7"  # the release of pymeshlab; its post-releases have the same interface
 FILTER = "generate_surface_reconstruction_neural_mesh"
+COUNTERS = "compute_scalar_by_neural_normal_counter_per_vertex"
 PLUGIN = Path(__file__).with_name("libfilter_neuralmesh.so")
 __version__ = metadata.version("neural-mesh")
 
@@ -30,21 +34,36 @@ def _check_release():
                           f"built for pymeshlab {found}.")
 
 
-def _add_method():
-    import pymeshlab
-    if FILTER not in pymeshlab.filter_list():  # else the caller has loaded the plugin
-        pymeshlab.load_plugin(str(PLUGIN))
-    method = pymeshlab.bind_function(FILTER)  # as pymeshlab does for its own filters
-    method.__doc__ = """Reconstructs the surface of the current layer's points as a triangle mesh, a new layer.
+_DOCUMENTATION = {
+    FILTER: """Reconstructs the surface of the current layer's points as a triangle mesh, a new layer.
 
 The mesh has exactly `target_vertices` vertices (default 10000), dense where the surface bends and sparse where it is
 flat. The vertex quality measures how much it bends. All parameters and results are in the README of Neural Mesh;
 pymeshlab.print_filter_parameter_list('%s') lists the parameters.
 
 Returns a dict: vertices, faces, genus, components, rms_error, warnings and others. Raises PyMeshLabException with a
-sentence that says what to do.""" % FILTER
-    setattr(pymeshlab.MeshSet, FILTER, method)
+sentence that says what to do.""",
+    COUNTERS: """Computes how much of a feature each vertex of the current mesh is, as its scalar.
+
+A copy of the mesh learns random points of the layer `signal_layer` (default: the mesh itself). The scalar holds the
+normal counter or, with `feature_measure` 1, the crease measure; `select_features` selects the features. Nothing else
+changes. All parameters and results are in the README of Neural Mesh; pymeshlab.print_filter_parameter_list('%s') lists
+the parameters.
+
+Returns a dict: vertices, signals, feature_vertices, mean_counter, seconds and others. Raises PyMeshLabException with a
+sentence that says what to do.""",
+}
+
+
+def _add_methods():
+    import pymeshlab
+    if FILTER not in pymeshlab.filter_list():  # else the caller has loaded the plugin
+        pymeshlab.load_plugin(str(PLUGIN))
+    for name, documentation in _DOCUMENTATION.items():
+        method = pymeshlab.bind_function(name)  # as pymeshlab does for its own filters
+        method.__doc__ = documentation % name
+        setattr(pymeshlab.MeshSet, name, method)
 
 
 _check_release()
-_add_method()
+_add_methods()

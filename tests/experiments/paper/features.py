@@ -88,21 +88,25 @@ class Creases:
 
 
 class Mesh:
-    """A result with its two counters, and the feature measures that use the final mesh only."""
+    """A mesh with its two counters, and the feature measures that use the mesh only."""
 
-    def __init__(self, paths):
+    def __init__(self, positions, faces, eq6, measure):
+        """eq6, measure: the normal counter and the crease measure of each vertex."""
+        self.positions, self.faces, self.eq6, self.measure = positions, faces, eq6, measure
+        self.ends, self.sides = inner_edges(faces)
+        self.valence = np.bincount(self.ends.ravel(), minlength=len(positions))
+
+    @classmethod
+    def from_files(cls, paths):
         """paths: the same mesh twice, with the normal counter and with the crease measure as its quality."""
         meshes = pymeshlab.MeshSet(verbose=False)
         for path in paths:
             meshes.load_new_mesh(str(path))
         one, other = meshes
-        self.positions, self.faces = one.vertex_matrix(), one.face_matrix()
-        if not np.array_equal(self.positions, other.vertex_matrix()):
+        if not np.array_equal(one.vertex_matrix(), other.vertex_matrix()):
             raise paper_runs.RunError(f"{paths[0]} and {paths[1]} are different meshes: the feature measure changed more "
                                       "than the quality.")
-        self.eq6, self.measure = one.vertex_scalar_array(), other.vertex_scalar_array()
-        self.ends, self.sides = inner_edges(self.faces)
-        self.valence = np.bincount(self.ends.ravel(), minlength=len(self.positions))
+        return cls(one.vertex_matrix(), one.face_matrix(), one.vertex_scalar_array(), other.vertex_scalar_array())
 
     def of_edges(self, values):
         """Mean over the edges at each vertex."""
@@ -251,7 +255,7 @@ class Case:
             paper_runs.learn(self.options.learn, self.folder / "cloud.ply", path, feature_measure=measure,
                              target_vertices=self.options.vertices, utility_counter=UTILITY[utility],
                              fit_to_points=int(fit))
-        return Mesh(paths)
+        return Mesh.from_files(paths)
 
     def row(self, utility, fit):
         """The figures of one mesh."""

@@ -28,7 +28,7 @@ screenshots() {
     "$python" "$here/small_png.py" --width 1080 "$pictures/meshlab_$2"_{dialog,result}.png
 }
 
-cmake --build "$build" --target learn counter_trace check_mesh -- --quiet
+cmake --build "$build" --target learn counter_trace check_mesh plugins -- --quiet
 say "Figures of the paper"
 "$python" "$here/../paper/paper_figures.py" --learn "$build/tests/learn" --out "$out" --pictures "$pictures"
 if [ -n "${NEURAL_MESH_DATA:-}" ]; then
@@ -36,6 +36,9 @@ if [ -n "${NEURAL_MESH_DATA:-}" ]; then
     "$python" "$here/open_scans.py" "$build/tests/learn" "$pictures/open_scans.png" --data "$NEURAL_MESH_DATA" --out "$out"
     "$python" "$here/small_png.py" --width 1080 "$pictures/open_scans.png"
 fi
+say "Creases of noisy data"
+"$python" "$here/creases.py" "$pictures/creases.png" --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so" --out "$out"
+"$python" "$here/small_png.py" --width 1080 "$pictures/creases.png"
 say "Screenshots"
 screenshots gui_2020_09.sh 2020.09
 if [ -e "$roots/trixie.complete" ]; then screenshots gui_2022_02.sh 2022.02; fi
@@ -44,5 +47,7 @@ say "Table 1 of the paper"
 "$python" "$here/../paper/paper_table1.py" --learn "$build/tests/learn" --check "$build/tests/check_mesh" --out "$out"
 say "Features by learning, by the final mesh and by the cloud"
 "$python" "$here/../paper/features.py" --learn "$build/tests/learn" --out "$out"
+say "Creases of given meshes"
+"$python" "$here/../paper/given_meshes.py" --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so" --out "$out"
 say "Termination by eq 8"
 "$python" "$here/../paper/paper_termination.py" --learn "$build/tests/learn" --trace "$build/tests/counter_trace" --out "$out"

@@ -228,6 +228,30 @@ TEST(Learner, ReportsHowMuchOfTheRunIsDone) {
     EXPECT_GT(progress.last, 0.98);
 }
 
+/// After that, signals find the vertices where they are, and move them as if they had never been elsewhere.
+TEST(Learner, LearnsFromPlacesThatItReturnsTo) {
+    const TargetSpace target = target_of(shapes::torus_cloud(5000));
+    const Network start = start_of(shapes::torus_grid(20, 12), 0.3);
+    PerVertex<vcg::Point3f> places(start.slot_count());
+    for (const VertexId v : start.vertices()) places[v] = start.position(v);
+    NoProgress progress;
+    Learner learner(target, LearnerOptions(), start);
+    ASSERT_TRUE(learner.learn_at_rest(5000, progress));
+    EXPECT_EQ(learner.signals(), 5000);
+    learner.move_to(places);
+    for (const VertexId v : start.vertices()) ASSERT_EQ(learner.network().position(v), places[v]);
+
+    Learner fresh(target, LearnerOptions(), start);
+    Random random(2);
+    for (int i = 0; i < 2000; ++i) {
+        const vcg::Point3f s = target.sample(random);
+        learner.basic_step(s);
+        fresh.basic_step(s);
+    }
+    for (const VertexId v : start.vertices())
+        ASSERT_EQ(learner.network().position(v), fresh.network().position(v));
+}
+
 TEST(Learner, DoesNotObserveTheStartMesh) {
     const TargetSpace target = target_of(shapes::box_cloud(2000));
     LearnerOptions options;

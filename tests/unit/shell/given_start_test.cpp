@@ -91,6 +91,12 @@ TEST(GivenStart, RefusesAMeshApartFromThePoints) {
     EXPECT_NE(complaint(far).find("lies apart from the points"), std::string::npos);
 }
 
+/// The boxes of a plane and of points on it are flat.
+TEST(GivenStart, TakesAPlaneOfPointsInItsPlane) {
+    const TargetSpace plane = targets::target_of(shapes::plane_cloud(1000));
+    EXPECT_EQ(given_start(shapes::grid(5, 5), plane).positions.size(), 25U);
+}
+
 /// Two poles of a hundred neighbours, and the middle of an open fan of sixty faces.
 TEST(GivenStart, SplitsVerticesWithTooManyNeighbours) {
     for (const Shape& shape : {shapes::bipyramid(100), shapes::fan(60)}) {

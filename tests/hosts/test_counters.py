@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""The counters of a given mesh in all hosts: the same values or the same error message, and nothing else changes."""
+
+import subprocess
+import sys
+
+import counter_hosts
+import features
+import given_meshes
+import input_hosts
+import inputs
+import library_hosts
+import meshlabserver
+import models
+import numpy as np
+import pytest
+import shapes
+from conftest import out_of_range, parameters, write_points
+from input_hosts import state
+from library_hosts import RELEASES
+
+COUNTED = inputs.counted_inputs()
+COUNTS = ("vertices", "signals", "outliers", "feature_vertices", "warnings", "stop_reason")
+MEASURES = ("mean_counter", "seconds")
+
+
+@pytest.fixture(scope="module")
+def first_of():
+    """The result of each input in the first host."""
+    return {}
+
+
+@pytest.mark.parametrize("host", input_hosts.HOSTS)
+@pytest.mark.parametrize("name", COUNTED)
+def test_the_same_values_or_error_message(build, server, pymeshlab, first_of, tmp_path, name, host):
+    layer = COUNTED[name]
+    found = counter_hosts.count(build, server, pymeshlab, host, layer, tmp_path)
+    assert found.rest_unchanged, "more than quality and selection has changed"
+    if layer.refused:
+        assert layer.refused in found.sentence and found.sentence.endswith("."), found.sentence or "there are counters"
+        assert found.sentence == first_of.setdefault(name, found.sentence)
+        return
+    assert not found.sentence, found.sentence
+    first = first_of.setdefault(name, found)
+    assert np.array_equal(found.quality, first.quality) and np.array_equal(found.selected, first.selected)
+    assert [found.report[key] for key in COUNTS] == [first.report[key] for key in COUNTS]
+    check(layer, found)
+
+
+def check(layer, found):
+    used = np.zeros(len(layer.points), dtype=bool)
+    used[[corner for corners, _, _ in layer.triangles() for corner in corners]] = True
+    used = used[~layer.deleted]
+    assert len(found.quality) == len(used) and found.report["vertices"] == used.sum()
+    assert (found.quality[~used] == 0).all() and (found.quality[used] > 0).mean() > .99
+    assert found.quality[used].mean() == pytest.approx(found.report["mean_counter"], rel=1e-4)
+    assert found.report["signals"] == max(60_000, 60 * used.sum()) and found.report["stop_reason"] == 0
+    if layer.parameters.get("select_features"):
+        assert found.selected.sum() == found.report["feature_vertices"]
+    else:
+        assert np.array_equal(found.selected, layer.selected_points[~layer.deleted])
+
+
+def test_the_dictionary_is_full_and_repeats(meshes, model):
+    meshes.load_new_mesh(str(model("crossed-cylinders")[1]))
+    reports, values = [], []
+    for threads in (1, 2, 0):
+        reports.append(meshes.apply_filter(inputs.COUNTERS, threads=threads))
+        values.append(meshes.current_mesh().vertex_scalar_array().copy())
+    assert set(reports[0]) == {*COUNTS, *MEASURES}
+    assert all(type(reports[0][key]) is int for key in COUNTS) and all(type(reports[0][key]) is float for key in MEASURES)
+    assert np.array_equal(values[0], values[1]) and np.array_equal(values[0], values[2])
+    meshes.apply_filter(inputs.COUNTERS, random_seed=2)
+    assert not np.array_equal(meshes.current_mesh().vertex_scalar_array(), values[0]), "the seed has no effect"
+
+
+def test_signals_come_from_the_layer_that_is_named(pymeshlab, meshes):
+    meshes.add_mesh(pymeshlab.Mesh(inputs.ball(20000) * [1.0, 1.0, .95]))
+    meshes.add_mesh(pymeshlab.Mesh(*shapes.sphere(subdivisions=4)))
+    before = state(meshes)
+    values = []
+    for layer in (0, 1, None):
+        meshes.apply_filter(inputs.COUNTERS, **({} if layer is None else {"signal_layer": layer}))
+        values.append(meshes.current_mesh().vertex_scalar_array().copy())
+        assert counter_hosts.without_values(state(meshes)) == counter_hosts.without_values(before)
+    assert state(meshes)[0][0] == before[0][0], "the signal layer has changed"
+    assert not np.array_equal(values[0], values[1])
+    assert np.array_equal(values[1], values[2]), "by default the signals come from the mesh itself"
+    with pytest.raises(pymeshlab.PyMeshLabException, match="The layer to draw signals from does not exist"):
+        meshes.apply_filter(inputs.COUNTERS, signal_layer=7)
+
+
+def test_signals_come_from_the_layer_that_a_script_names(build, server, tmp_path):
+    cloud = write_points(tmp_path / "cloud.ply", inputs.ball(20000) * [1.0, 1.0, .95])
+    mesh = write_points(tmp_path / "mesh.ply", *shapes.sphere(subdivisions=4))
+    saved = []
+    for layer in (0, 1):
+        script = meshlabserver.write_script(build, tmp_path / "s.mlx", inputs.COUNTERS, signal_layer=layer)
+        out = tmp_path / f"{layer}.ply"
+        code, text = meshlabserver.run(server, "-i", cloud, mesh, "-o", out, "-m", "vq", "-s", script)
+        assert code == 0 and meshlabserver.figures(text)["vertices"] == 2562, text
+        saved.append(out.read_bytes())
+    assert saved[0] != saved[1]
+
+
+def test_every_parameter_out_of_range_raises(build, pymeshlab, meshes):
+    meshes.add_mesh(pymeshlab.Mesh(*shapes.sphere(subdivisions=2)))
+    before = state(meshes)
+    cases = out_of_range(build, inputs.COUNTERS)
+    assert len(cases) > 6
+    for name, value in cases:
+        with pytest.raises(pymeshlab.PyMeshLabException, match=f"The parameter {name} "):
+            meshes.apply_filter(inputs.COUNTERS, **{name: value})
+        assert state(meshes) == before
+
+
+LIST_PARAMETERS = """import pymeshlab, sys
+pymeshlab.load_plugin(sys.argv[1])
+pymeshlab.print_filter_parameter_list(sys.argv[2])
+"""
+
+
+def test_parameters_are_those_of_the_table(build):
+    plugin = meshlabserver.plugin_path(build, "pymeshlab-2025.7")
+    text = subprocess.run([sys.executable, "-c", LIST_PARAMETERS, str(plugin), inputs.COUNTERS], check=True,
+                          stdout=subprocess.PIPE, text=True).stdout
+    listed = [line.split(" : ")[0].strip() for line in text.splitlines() if " : " in line]
+    assert listed == [name for name, *_ in parameters(build, inputs.COUNTERS)]
+
+
+def ball_layer(**settings):
+    vertices, faces = inputs.ball_mesh()
+    return inputs.Input(vertices, faces, filter=inputs.COUNTERS, parameters={"select_features": True, **settings})
+
+
+def run_library(build, release, layer, tmp_path, mode):
+    file = inputs.write_layer(layer, tmp_path / "layer.txt")
+    plugin = meshlabserver.plugin_path(build, f"meshlab-{release}")
+    return library_hosts.outcomes(library_hosts.run(build, release, plugin, file, tmp_path / "out.txt", mode))
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_a_host_that_asks_to_stop_gets_the_values_so_far(build, tmp_path, release):
+    first, *stopped = run_library(build, release, ball_layer(), tmp_path, "cancel")
+    assert first["stop_reason"] == 0 and first["unchanged"]
+    assert stopped[0]["asked_to_stop"]
+    for outcome in stopped:
+        assert outcome["unchanged"] and (outcome["layers"], outcome["current"]) == (2, "layer")
+        assert outcome["stop_reason"] == (2 if outcome["asked_to_stop"] else 0)
+        assert outcome["logged"].count("it was cancelled") == (1 if outcome["asked_to_stop"] else 0)
+        assert outcome["signals"] < 60000 or not outcome["asked_to_stop"]
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_out_of_memory_at_any_allocation_leaves_the_layer_as_it_was(build, tmp_path, release):
+    first, *starved = run_library(build, release, ball_layer(), tmp_path, "memory")
+    assert first["vertices"] == 642 and len(starved) > 200
+    for index, outcome in enumerate(starved):
+        assert outcome["unchanged"] and (outcome["layers"], outcome["current"]) == (2, "layer"), f"run {index}: {outcome}"
+        if outcome["sentence"]:
+            assert "memory" in outcome["sentence"] and "signals=" not in outcome["logged"], f"run {index}: {outcome}"
+        else:
+            assert outcome["signals"] == first["signals"]
+    assert sum(1 for outcome in starved if outcome["sentence"]) > len(starved) / 2
+
+
+@pytest.mark.parametrize("name", ["l-block", "crossed-cylinders"])
+def test_creases_of_a_noisy_mesh_are_found_better_than_by_any_curvature(pymeshlab, name):
+    """At the default threshold, against the best threshold of each measure of the mesh, found with the truth."""
+    surface = features.load(name, None)
+    creases = features.Creases(*surface)
+    clean, noisy = (given_meshes.even(surface, None, 2000, noise) for noise in (0, .6))
+    cloud = models.make_cloud(*surface, 50_000, .6)
+    mesh = given_meshes.counted(*clean)
+    assert features.f1_at(mesh.measure, given_meshes.truth_of(mesh, creases), 1) > .9
+    for signals in (cloud, None):
+        mesh = given_meshes.counted(*noisy, signals)
+        truth = given_meshes.truth_of(mesh, creases)
+        peers = [mesh.dihedral(), mesh.spread(), *(values for _, values in mesh.curvatures())]
+        ours = features.f1_at(mesh.measure, truth, 1)
+        assert ours > .8 and ours > .1 + max(features.best_f1(values, truth) for values in peers)
