@@ -57,11 +57,8 @@ def poisson(_surface, cloud, count, _noise):
     meshes = pymeshlab.MeshSet(verbose=False)
     meshes.add_mesh(pymeshlab.Mesh(cloud))
     peers.reconstruct_poisson_smooth(meshes, count)
-    peers.decimated(meshes, count)
-    # The collapse may leave what no network can hold.
-    meshes.meshing_remove_duplicate_faces()
-    meshes.meshing_repair_non_manifold_edges()
-    meshes.meshing_repair_non_manifold_vertices()
+    # Else the collapse of a noisy mesh leaves edges that no manifold has.
+    meshes.meshing_decimation_quadric_edge_collapse(targetfacenum=2 * count, preservetopology=True)
     meshes.meshing_remove_unreferenced_vertices()
     return meshes.current_mesh().vertex_matrix(), meshes.current_mesh().face_matrix()
 
