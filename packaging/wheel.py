@@ -44,8 +44,9 @@ result = ms.generate_surface_reconstruction_neural_mesh(target_vertices=5000)
 ms.save_current_mesh("mesh.ply", save_vertex_quality=True)
 ```
 
-Or as a command: `neural-mesh cloud.ply mesh.ply target_vertices=5000`, and for a folder of clouds
-`neural-mesh batch clouds --out meshes target_vertices=5000`.
+Or as a command: `neural-mesh cloud.ply mesh.ply target_vertices=5000`, for a folder of clouds
+`neural-mesh batch clouds --out meshes target_vertices=5000`, and for a cloud larger than memory
+`neural-mesh stream cloud.las mesh.ply target_vertices=100000`.
 """
 
 

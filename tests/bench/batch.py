@@ -10,7 +10,6 @@ SITE: a folder into which pip has installed the wheel (pip install --no-deps --t
 
 import argparse
 import collections
-import json
 import os
 import random
 import shutil
@@ -24,6 +23,7 @@ import psutil
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "hosts"))
 
 import many_clouds  # noqa: E402
+from many_clouds import records  # noqa: E402
 
 # What users write without this package, with what their results need: a loop in one process.
 LOOP = """
@@ -77,7 +77,7 @@ class Measure:
             status = driver.wait()
             latest = {record["output"]: record for record in records(out)}
             failed = {name for name, record in latest.items() if "error" in record}
-            if status == 1 and len(latest) == count and failed <= corrupt:
+            if status == bool(corrupt) and len(latest) == count and failed <= corrupt:
                 break
         times = collections.Counter(record["output"] for record in records(out) if "result" in record)
         print(f"kills: {killed_drivers} of the driver, {killed_workers} of workers, {starts} starts; {len(times)} "
@@ -108,12 +108,6 @@ class Measure:
             assert status == 0
             ratios.append(batch / loop)
             print(f"processor time: loop {loop:.1f} s, batch {batch:.1f} s, ratio {ratios[-1]:.3f}", flush=True)
-
-
-def records(out):
-    path = out / "manifest.jsonl"
-    lines = path.read_bytes().split(b"\n") if path.exists() else []
-    return [json.loads(line) for line in lines if line.endswith(b"}")]
 
 
 def kill_a_worker(driver, generator):

@@ -3,6 +3,8 @@
 
 """Many small clouds, some of them corrupt, for batches."""
 
+import json
+
 import numpy as np
 
 POINTS = 200
@@ -45,3 +47,10 @@ def make(folder, count):
             corrupt.add(f"cloud_{i:04}.ply")
         (folder / f"cloud_{i:04}.ply").write_bytes(content)
     return corrupt
+
+
+def records(out):
+    """The whole lines of the manifest in the folder `out`."""
+    path = out / "manifest.jsonl"
+    lines = path.read_bytes().split(b"\n") if path.exists() else []
+    return [json.loads(line) for line in lines if line.endswith(b"}")]

@@ -5,7 +5,6 @@
 
 import collections
 import fcntl
-import json
 import os
 import random
 import resource
@@ -22,6 +21,7 @@ import numpy as np
 import psutil
 import pytest
 from conftest import ROOT, write_points
+from many_clouds import records
 
 TIMEOUT = 120  # seconds, on a busy machine
 
@@ -55,13 +55,6 @@ def few(tmp_path_factory):
     folder = tmp_path_factory.mktemp("few") / "clouds"
     many_clouds.make(folder, 8)
     return folder
-
-
-def records(out):
-    """The whole lines of the manifest."""
-    path = out / "manifest.jsonl"
-    lines = path.read_bytes().split(b"\n") if path.exists() else []
-    return [json.loads(line) for line in lines if line.endswith(b"}")]
 
 
 def done(out):
@@ -310,10 +303,23 @@ def test_wrong_usage_is_one_sentence_before_any_work(batch, few, tmp_path, words
     assert not places["out"].exists()
 
 
-def test_too_little_space_is_known_before_any_work(installed, few, tmp_path):
-    code = ("import shutil, sys; shutil.disk_usage = lambda path: shutil._ntuple_diskusage(10**9, 10**9, 3000); "
-            "from neural_mesh.__main__ import main; sys.exit(main(sys.argv[1:]))")
-    made = subprocess.run([sys.executable, "-c", code, "batch", str(few), "--out", str(tmp_path),
+@pytest.mark.parametrize("change, sentence", [
+    ("shutil.disk_usage = lambda path: shutil._ntuple_diskusage(10**9, 10**9, 3000)", "The meshes need 2.98e-05 GB"),
+    # Root may read all folders, so that a mode would not do.
+    ("""
+def refuse(path, scan=os.scandir):
+    if path.endswith("below"):
+        raise PermissionError(errno.EACCES, "Permission denied", path)
+    return scan(path)
+os.scandir = refuse""", "The folder {clouds}/below cannot be read: Permission denied."),
+])
+def test_what_the_disk_lacks_is_known_before_any_work(installed, few, tmp_path, change, sentence):
+    clouds = shutil.copytree(few, tmp_path / "clouds")
+    (clouds / "below").mkdir()
+    code = (f"import errno, os, shutil, sys\n{change}\n"
+            "from neural_mesh.__main__ import main\nsys.exit(main(sys.argv[1:]))")
+    made = subprocess.run([sys.executable, "-c", code, "batch", str(clouds), "--out", str(tmp_path / "out"),
                            *many_clouds.SETTINGS], env=dict(os.environ, PYTHONPATH=str(installed)),
                           stderr=subprocess.PIPE, text=True, check=False)
-    assert made.returncode == 2 and "The meshes need 2.98e-05 GB" in made.stderr, made.stderr
+    assert made.returncode == 2 and made.stderr.startswith(f"neural-mesh: {sentence.format(clouds=clouds)}"), made.stderr
+    assert len(made.stderr.splitlines()) == 1 and not meshes(tmp_path / "out")

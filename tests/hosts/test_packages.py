@@ -208,9 +208,18 @@ def test_beside_another_pymeshlab_the_import_names_both_versions(installed, tmp_
     if other:
         (tmp_path / f"pymeshlab-{other}.dist-info").mkdir()
         (tmp_path / f"pymeshlab-{other}.dist-info/METADATA").write_text(f"Name: pymeshlab\nVersion: {other}\n")
-    done = subprocess.run(["/usr/bin/python3", "-c", "import neural_mesh"], stderr=subprocess.PIPE, text=True,
-                          check=False, env=dict(os.environ, PYTHONPATH=f"{tmp_path}:{installed}"))
-    assert done.returncode == 1
-    sentence = done.stderr.splitlines()[-1]
+
+    def error_of(*command):
+        done = subprocess.run(["/usr/bin/python3", *command], stderr=subprocess.PIPE, text=True, check=False,
+                              env=dict(os.environ, PYTHONPATH=f"{tmp_path}:{installed}"))
+        assert done.returncode == 1
+        return done.stderr
+
+    sentence = error_of("-c", "import neural_mesh").splitlines()[-1]
     assert sentence.startswith(f"ImportError: neural-mesh {packaging.project_version()} ")
     assert "pymeshlab 2025.7" in sentence and words in sentence
+    # As a command: the sentence alone.
+    script = tmp_path / "neural-mesh"
+    script.write_text("import neural_mesh.__main__")
+    for command in (["-m", "neural_mesh", "batch"], [script, "batch"]):
+        assert error_of(*command) == sentence.replace("ImportError", "neural-mesh") + "\n"

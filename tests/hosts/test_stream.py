@@ -13,6 +13,7 @@ import sys
 
 import meshlabserver
 import numpy as np
+import psutil
 import pytest
 from conftest import ROOT, write_points
 
@@ -361,6 +362,27 @@ def test_memory_that_is_named_as_needed_is_enough(stream, small, tmp_path):
     asked = error_of(stream(small, tmp_path / "mesh.ply", "--memory", "100MB", "target_vertices=400"), 2)
     enough = re.search(r"need ([\d.]+ GB)", asked)[1].replace(" ", "")
     assert results(stream(small, tmp_path / "mesh.ply", "--memory", enough, "target_vertices=400"))["vertices"] == 400
+
+
+def test_processes_that_measure_end_with_a_killed_command(site, tmp_path):
+    cloud = tmp_path / "cloud.ply"
+    bench.write_cloud(cloud, 4_000_000)
+    command = psutil.Popen([sys.executable, "-m", "neural_mesh", "stream", str(cloud), str(tmp_path / "mesh.ply"),
+                            "target_vertices=200"], stdout=subprocess.PIPE, text=True,
+                           env=dict(os.environ, PYTHONPATH=str(site)))
+    while "Learned" not in command.stdout.readline():
+        assert command.poll() is None
+    while len(command.children()) < 2:  # one is multiprocessing's own, which ends by itself
+        assert command.poll() is None
+    children = command.children()
+    command.kill()
+    command.communicate()
+    assert not psutil.wait_procs(children, timeout=10)[1]
+
+
+def test_counts_are_printed_in_full(site):
+    from neural_mesh.parameters import line_of
+    assert line_of({"points": 20_000_000, "rms": 1 / 3}) == "points=20000000 rms=0.333333"
 
 
 def test_a_full_disk_leaves_the_old_file(stream, small, tmp_path):

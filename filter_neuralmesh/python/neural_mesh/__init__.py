@@ -12,6 +12,7 @@
     ms.compute_scalar_by_neural_normal_counter_per_vertex(select_features=True)
 """
 
+import sys
 from importlib import metadata
 from pathlib import Path
 
@@ -65,5 +66,11 @@ def _add_methods():
         setattr(pymeshlab.MeshSet, name, method)
 
 
-_check_release()
+try:
+    _check_release()
+except ImportError as error:
+    called = sys.argv[0] if sys.argv else ""
+    if called == "-m" or Path(called).name == "neural-mesh":  # -m: while python looks for the module to run
+        sys.exit(f"neural-mesh: {error}")  # a sentence, and no traceback, for the command
+    raise
 _add_methods()

@@ -13,7 +13,7 @@ import pymeshlab
 
 from neural_mesh import FILTER
 from neural_mesh.mesh_files import NotWhole, save
-from neural_mesh.parameters import WrongUsage, check, for_pymeshlab, sentence_of, settings_of
+from neural_mesh.parameters import WrongUsage, check, for_pymeshlab, line_of, sentence_of, settings_of
 
 # A subcommand is the module of that name, with add_arguments(parser) and run(given), which returns the exit status.
 SUBCOMMANDS = {
@@ -29,7 +29,7 @@ def learn_one(given: argparse.Namespace) -> int:
     meshes.load_new_mesh(given.cloud)
     result = meshes.apply_filter(FILTER, **for_pymeshlab(settings))
     save(meshes, Path(given.mesh))
-    print(" ".join(f"{key}={value:.6g}" for key, value in result.items()))
+    print(line_of(result))
     return 0
 
 

@@ -64,7 +64,7 @@ def run(given: argparse.Namespace) -> int:
     manifest = opened(given.out)
     try:
         missing = [job for job in jobs if not manifest.has(job, given.out)]
-        check_space(given.out, len(missing) * vertices * BYTES_PER_VERTEX)
+        check_space(given.out, len(missing) * vertices * BYTES_PER_VERTEX, "The meshes")
         remove_asides(given.out, missing)
         there = f", {len(jobs) - len(missing)} of them done before" if len(missing) < len(jobs) else ""
         print(f"{counted(len(jobs))}{there}.", file=sys.stderr)

@@ -103,9 +103,13 @@ def _files(inputs: List[str], out: Path) -> Iterator[Tuple[Path, Path]]:
                 raise WrongUsage(f"{path}: pymeshlab cannot load files of the kind '{path.suffix}'.")
 
 
+def _refuse(error: OSError) -> None:
+    raise WrongUsage(f"The folder {error.filename} cannot be read: {error.strerror}.")
+
+
 def _in_folder(folder: Path, out: Path) -> Iterator[Path]:
     """The files at any depth, in a fixed order, without hidden ones and without the folder of results."""
-    for place, folders, files in os.walk(folder):
+    for place, folders, files in os.walk(folder, onerror=_refuse):
         folders[:] = sorted(name for name in folders
                             if not name.startswith(".") and (Path(place) / name).resolve() != out.resolve())
         yield from (Path(place) / name for name in sorted(files) if not name.startswith("."))

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import multiprocessing
+import os
 from collections import deque
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -15,6 +16,8 @@ from pathlib import Path
 from typing import Callable, Iterable, Iterator
 
 import numpy as np
+
+from neural_mesh.worker import end_with
 
 POINT_BYTES = 350  # for each point of a chunk in a process: the layer, its order, the copies on the way
 VERTEX_BYTES = 800  # for each vertex of the mesh in a process: the mesh and pymeshlab's grid of its faces
@@ -58,7 +61,7 @@ def measure(mesh: Path, chunks: Iterable[np.ndarray], reach: float, workers: int
     found = Distances()
     context = multiprocessing.get_context("spawn")  # a fork would copy the threads' locks of OpenMP
     try:
-        with ProcessPoolExecutor(workers, context, _load, (str(mesh),)) as pool:
+        with ProcessPoolExecutor(workers, context, _load, (str(mesh), os.getpid())) as pool:
             for part in _in_order(pool, chunks, reach, workers):
                 found.add(part)
                 report()
@@ -83,8 +86,9 @@ def _in_order(pool: ProcessPoolExecutor, chunks: Iterable[np.ndarray], reach: fl
 _meshes = None  # of a worker: one layer, the mesh
 
 
-def _load(mesh: str) -> None:
+def _load(mesh: str, parent: int) -> None:
     global _meshes
+    end_with(parent)
     import pymeshlab
     _meshes = pymeshlab.MeshSet(verbose=False)
     _meshes.load_new_mesh(mesh)

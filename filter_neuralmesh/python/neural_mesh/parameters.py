@@ -73,6 +73,11 @@ def sentence_of(error: Exception) -> str:
     return str(error).rpartition("\nDetails: ")[2].strip() or type(error).__name__
 
 
+def line_of(result: Dict[str, Any]) -> str:
+    """The results of the filter as words name=value: counts in full, other numbers with six digits."""
+    return " ".join(f"{name}={value if isinstance(value, int) else f'{value:.6g}'}" for name, value in result.items())
+
+
 def check(settings: Settings, meshes: pymeshlab.MeshSet) -> Dict[str, Any]:
     """Throws WrongUsage if the filter has no such parameter or does not accept a value. Returns the values of all
     parameters. Needs an empty MeshSet, and leaves it empty."""

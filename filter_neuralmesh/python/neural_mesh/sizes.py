@@ -25,8 +25,8 @@ def gigabytes(size: float) -> str:
     return f"{size / 1e9:.3g} GB"
 
 
-def check_space(folder: Path, needed: float) -> None:
-    """Throws WrongUsage if the disk of the folder has not so many bytes left."""
+def check_space(folder: Path, needed: float, what: str) -> None:
+    """Throws WrongUsage if the disk of the folder has not so many bytes left. `what` needs them, as in "The meshes"."""
     free = shutil.disk_usage(folder).free
     if free < needed:
-        raise WrongUsage(f"The meshes need {gigabytes(needed)}, and {gigabytes(free)} are free in {folder}.")
+        raise WrongUsage(f"{what} need {gigabytes(needed)}, and {gigabytes(free)} are free in {folder}.")

@@ -24,7 +24,7 @@ from neural_mesh.clouds import FORMATS, Cloud, CloudError, open_cloud
 from neural_mesh.distances import POINT_BYTES, VERTEX_BYTES, Unmeasured, measure
 from neural_mesh.even_sample import CHUNK_BYTES, HOLD_BYTES, EvenSample
 from neural_mesh.mesh_files import NotWhole, save
-from neural_mesh.parameters import Settings, WrongUsage, check, for_pymeshlab, settings_of
+from neural_mesh.parameters import Settings, WrongUsage, check, for_pymeshlab, line_of, settings_of
 from neural_mesh.sizes import check_space, gigabytes, memory_size
 
 PER_VERTEX = 100  # points of the sample for each vertex wanted
@@ -63,7 +63,7 @@ def run(given: argparse.Namespace) -> int:
         processors = values["threads"] or len(os.sched_getaffinity(0))
         plan = plan_for(given.memory, values["target_vertices"], cloud.count, processors)
         with _folder_beside(given.mesh) as folder:
-            check_space(given.mesh.parent, plan.file_bytes())
+            check_space(given.mesh.parent, plan.file_bytes(), "The sample and the mesh")
             print(plan.sentence(), flush=True)
             _Stream(cloud, plan, meshes, Path(folder)).run(settings, given.mesh)
     except (CloudError, NotWhole, Unmeasured) as error:
@@ -162,7 +162,7 @@ class _Stream:
               f"maximum {found.maximum:.6g} ({found.maximum * percent:.4f} %).")
         result.update(points=sample.seen, skipped=sample.skipped, points_rms=found.rms, points_mean=found.mean,
                       points_maximum=found.maximum, diagonal=diagonal)
-        print(" ".join(f"{key}={value:.6g}" for key, value in result.items()))
+        print(line_of(result))
 
     def _read(self) -> EvenSample:
         sample = EvenSample(self._plan.sample, self._plan.held, self._plan.chunk)
