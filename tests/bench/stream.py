@@ -5,7 +5,7 @@
 """`neural-mesh stream` on a cloud made on the spot: memory, seconds, and the error beside learning all points.
 
     stream.py --plugin LIBRARY.so [--points 20] [--vertices 10000] [--format ply|las|laz|xyz] [--memory 2GB]
-              [--all 10] [--folder DIR] [--out FILE.json]
+              [--all 10] [--seed 1] [--folder DIR] [--out FILE.json]
 
 --points: millions. Prints what the command prints, the largest memory of all its processes together, and its seconds.
 With --all another cloud of so many million points of the same surface and noise is learned whole, and the RMS distances
@@ -119,13 +119,13 @@ def compare(folder, streamed, is_las, options):
     import neural_mesh
     import pymeshlab
     whole = folder / "all.ply"
-    write_cloud(whole, int(options.all * 1e6), seed=2)
+    write_cloud(whole, int(options.all * 1e6), options.seed + 100)
     meshes = pymeshlab.MeshSet(verbose=False)
     meshes.load_new_mesh(str(whole))
     meshes.apply_filter(neural_mesh.FILTER, target_vertices=options.vertices)
     rows = {}
     for name, noise in (("points", NOISE), ("points without noise", 0)):
-        points = surface(CHUNK, 3, noise)
+        points = surface(CHUNK, options.seed + 200, noise)
         rows[name] = []
         for mesh in (streamed, None):
             if mesh:
@@ -153,6 +153,7 @@ def main():
     parser.add_argument("--format", default="ply", choices=("ply", "las", "laz", "xyz"))
     parser.add_argument("--memory", default="2GB")
     parser.add_argument("--all", type=float, help="millions")
+    parser.add_argument("--seed", type=int, default=1, help="of the cloud's noise and directions")
     parser.add_argument("--folder", type=Path, help="where the clouds are made; default: the system's temporary folder")
     parser.add_argument("--out", type=Path)
     options = parser.parse_args()
@@ -161,7 +162,7 @@ def main():
         sys.path.insert(0, str(install(options.plugin, folder / "site")))
         cloud, mesh = folder / f"cloud.{options.format}", folder / "mesh.ply"
         started = time.monotonic()
-        write_cloud(cloud, int(options.points * 1e6))
+        write_cloud(cloud, int(options.points * 1e6), options.seed)
         print(f"{options.points:g} million points, {cloud.stat().st_size / 1e9:.1f} GB, made in "
               f"{time.monotonic() - started:.0f} s; {options.vertices:,} vertices", flush=True)
         output, seconds, memory = run_watched(

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
-from typing import BinaryIO, Iterator, Optional
+from typing import BinaryIO, Iterator, Optional, Union
 
 import numpy as np
 
@@ -69,6 +69,14 @@ def open_cloud(path: Path) -> Cloud:
     if cloud.count == 0:
         raise CloudError(f"{path} holds no points.")
     return cloud
+
+
+def finite(points: np.ndarray) -> Union[slice, np.ndarray]:
+    """The index of the points, an (n, 3) array, without NaN or infinite coordinates."""
+    with np.errstate(all="ignore"):
+        if np.isfinite(points.sum()):  # much faster than to look at each; a sum that overflows costs time only
+            return slice(None)
+    return np.isfinite(points).all(axis=1)
 
 
 def _one_line(error: Exception) -> str:

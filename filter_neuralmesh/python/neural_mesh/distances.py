@@ -17,6 +17,7 @@ from typing import Callable, Iterable, Iterator
 
 import numpy as np
 
+from neural_mesh.clouds import finite
 from neural_mesh.worker import end_with
 
 POINT_BYTES = 350  # for each point of a chunk in a process: the layer, its order, the copies on the way
@@ -96,7 +97,7 @@ def _load(mesh: str, parent: int) -> None:
 
 def _measure(points: np.ndarray, reach: float) -> Distances:
     import pymeshlab
-    points = points[np.isfinite(points).all(axis=1)]
+    points = points[finite(points)]
     if not len(points):
         return Distances()
     low = points.min(axis=0)

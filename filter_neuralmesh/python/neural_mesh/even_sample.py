@@ -17,6 +17,9 @@ from typing import Optional
 
 import numpy as np
 
+from neural_mesh.clouds import finite
+from neural_mesh.cubes import FACTORS, joined, keys_of
+
 # Points held of a cube, of which some 8 to 16 are taken. The last priority says how many the cube had, within 18 %.
 MOST = 32
 # The sample's density is this power of the cloud's: 1 would keep the cloud's, 0 makes all parts alike, and noise across
@@ -27,11 +30,9 @@ POWER = .5
 SPARSEST = 300
 # Cubes along the widest side of the cloud at most: finer than any scanner, and far within the range of int64.
 FINEST = 2.0**40
-# Odd numbers of 64 bits: the golden ratio and the factors of splitmix64 (Steele, Lea, Flood, OOPSLA 2014).
-FACTORS = np.array([0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB], dtype=np.uint64)
 HASHES = 2**32  # priorities are less
 HOLD_BYTES = 110  # for each point of the capacity, with room for new points and what a choice needs
-CHUNK_BYTES = 150  # for each point of a chunk while it is added
+CHUNK_BYTES = 200  # for each point of a chunk while it is added, also to averages.py
 
 
 def priorities(numbers: np.ndarray) -> np.ndarray:
@@ -81,15 +82,39 @@ class _Cubes:
         """The sum of the counts of each cube and its 26 neighbours."""
         sums = np.zeros(len(counts))
         for step in product((-1, 0, 1), repeat=3):
-            wanted = self.keys + _joined(np.array(step, dtype=np.int64)[:, None])
+            wanted = self.keys + joined(np.array(step, dtype=np.int64)[:, None])
             found = np.minimum(np.searchsorted(self.keys, wanted), len(counts) - 1)
             sums += np.where(self.keys[found] == wanted, counts[found], 0)
         return sums
 
 
-def _joined(indices: np.ndarray) -> np.ndarray:
-    """One number of three, modulo 2**64; that of a sum of indices is the sum of the numbers."""
-    return sum(axis.view(np.uint64) * factor for axis, factor in zip(indices, FACTORS))
+class _Full:
+    """The last priorities of the cubes that are full, in a table by the upper bits of their keys."""
+
+    ROOM = 8  # places of the table for a cube
+
+    def __init__(self, keys: np.ndarray, last: np.ndarray) -> None:
+        """`keys` are sorted."""
+        self._shift = np.uint64(64 - max(1, math.ceil(math.log2(self.ROOM * max(len(keys), 1)))))
+        self._keys = np.zeros(1 << (64 - int(self._shift)), dtype=np.uint64)
+        self._last = np.full(len(self._keys), HASHES - 1, dtype=np.uint32)
+        places = keys >> self._shift
+        self._keys[places], self._last[places] = keys, last
+        # Of those with the same place the table has one.
+        left = self._keys[places] != keys
+        self._left_keys, self._left_last = keys[left], last[left]
+
+    def below(self, keys: np.ndarray, priority: np.ndarray) -> np.ndarray:
+        """The indices of the points, by their keys and priorities, that are not above the last of a full cube."""
+        places = keys >> self._shift
+        in_table = self._keys[places] == keys
+        below = priority <= self._last[places]
+        below[~in_table] = True
+        if len(self._left_keys):
+            others = np.flatnonzero(~in_table)
+            found = np.minimum(np.searchsorted(self._left_keys, keys[others]), len(self._left_keys) - 1)
+            below[others] = (self._left_keys[found] != keys[others]) | (priority[others] <= self._left_last[found])
+        return np.flatnonzero(below)
 
 
 class EvenSample:
@@ -104,8 +129,8 @@ class EvenSample:
         self._points = np.empty((capacity + max(chunk, capacity // 4), 3))
         self._numbers = np.empty(len(self._points), dtype=np.uint64)  # in the file
         self._held = 0
-        self._level: Optional[int] = None  # cubes have the sides 2**((level + axis) // 3); None: all points are held
-        self._full_keys, self._full_last = np.empty(0, np.uint64), np.empty(0, np.uint32)
+        self.level: Optional[int] = None  # of the cubes (cubes.py); None: all points are held
+        self._full = _Full(np.empty(0, np.uint64), np.empty(0, np.uint32))
         self._origin = np.zeros(3)
         self.low, self.high = np.full(3, np.inf), np.full(3, -np.inf)  # the box of all points
         self.seen = 0
@@ -115,18 +140,18 @@ class EvenSample:
         """Adds the next points of the file, an (n, 3) array."""
         numbers = np.arange(self.seen, self.seen + len(points), dtype=np.uint64)
         self.seen += len(points)
-        finite = np.isfinite(points).all(axis=1)
-        if not finite.all():
-            points, numbers = points[finite], numbers[finite]
-            self.skipped += len(finite) - len(points)
+        self.skipped += len(points)
+        wanted = finite(points)
+        points, numbers = points[wanted], numbers[wanted]
+        self.skipped -= len(points)
         if not len(points):
             return
         if self.seen - self.skipped == len(points):  # the first
             self._origin = points[0].copy()
-        self.low = np.minimum(self.low, points.min(axis=0))
-        self.high = np.maximum(self.high, points.max(axis=0))
-        if self._level is not None:
-            wanted = self._may_be_held(points, numbers)
+        for axis, column in enumerate(points.T):  # much faster than numpy's reduction of rows
+            self.low[axis], self.high[axis] = min(self.low[axis], column.min()), max(self.high[axis], column.max())
+        if self.level is not None:
+            wanted = self._full.below(self._keys(points, self.level), priorities(numbers))
             points, numbers = points[wanted], numbers[wanted]
         if self._held + len(points) > len(self._points):
             self._choose(self._capacity)
@@ -138,11 +163,13 @@ class EvenSample:
     def take(self) -> np.ndarray:
         """The sample in the order of the file: all points, if they are no more than the limit. Of the points that lie
         apart from others the same share is taken as of all points, so that outliers gain no weight. Ends the sample."""
-        if self._level is not None or self._held > self._limit:
+        if self.level is not None or self._held > self._limit:
             # A cloud that could be held whole needs cubes of several points, too.
-            cubes = self._choose(min(self._capacity, .9 * (self.seen - self.skipped)))
+            self._choose(min(self._capacity, .9 * (self.seen - self.skipped)))
+            priority = priorities(self._numbers[:self._held])
+            cubes = self._cubes(self.level, priority)
             highest = np.minimum(self._rates(cubes) * HASHES, HASHES - 1).astype(np.uint32)
-            self._keep(cubes.up_to(highest, priorities(self._numbers[:self._held])))
+            self._keep(cubes.up_to(highest, priority))
         points = self._points[:self._held][np.argsort(self._numbers[:self._held])]
         self._points, self._numbers = np.empty((0, 3)), np.empty(0, np.uint64)
         return points
@@ -163,38 +190,23 @@ class EvenSample:
             low, high = (low, middle) if too_many else (middle, high)
         return rates
 
-    def _may_be_held(self, points: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-        """The indices of the points that are not above the last of a full cube."""
-        keys = self._keys(points, self._level)
-        order = np.argsort(keys)  # sorted queries find their places much faster
-        if not len(self._full_keys):
-            return order
-        keys = keys[order]
-        place = np.minimum(np.searchsorted(self._full_keys, keys), len(self._full_keys) - 1)
-        above = priorities(numbers[order]) > self._full_last[place]
-        return order[~(above & (self._full_keys[place] == keys))]
-
-    def _choose(self, bound: float) -> _Cubes:
-        """Doubles the cubes as often as the bound asks, and drops the points above the last of each cube. Returns the
-        cubes of those held."""
+    def _choose(self, bound: float) -> None:
+        """Doubles the cubes as often as the bound asks, and drops the points above the last of each cube."""
         priority = priorities(self._numbers[:self._held])
         cubes = self._smallest_cubes(priority, bound)
-        self._full_keys, self._full_last = cubes.keys[cubes.full], cubes.last[cubes.full]
-        mask = cubes.up_to(cubes.last, priority)
-        del cubes  # those below need the room
-        self._keep(mask)
-        return self._cubes(self._level, priority[mask])
+        self._full = _Full(cubes.keys[cubes.full], cubes.last[cubes.full])
+        self._keep(cubes.up_to(cubes.last, priority))
 
     def _smallest_cubes(self, priority: np.ndarray, bound: float) -> _Cubes:
         """Sets the level to the least, not below the present one, with which at most `bound` points are held. A level
         that suffices for all points suffices for the first of them, so the last level is the same for any chunks."""
         widest = max((self.high - self.low).max(), 1e-300)
         finest = 3 * math.ceil(math.log2(widest / FINEST))
-        if self._level is None:
+        if self.level is None:
             # Near the level found, if the points are of a surface.
             level = max(finest, 3 * math.ceil(math.log2(widest / math.sqrt(self._capacity / MOST))))
         else:
-            level = finest = max(finest, self._level)
+            level = finest = max(finest, self.level)
         cubes = self._cubes(level, priority)
         while cubes.held.sum() > bound:
             level += 1
@@ -205,18 +217,14 @@ class EvenSample:
             if finer.held.sum() > bound:
                 break
             level, cubes = level - 1, finer
-        self._level = level
+        self.level = level
         return cubes
 
     def _cubes(self, level: int, priority: np.ndarray) -> _Cubes:
         return _Cubes(self._keys(self._points[:self._held], level), priority)
 
     def _keys(self, points: np.ndarray, level: int) -> np.ndarray:
-        keys = np.zeros(len(points), dtype=np.uint64)
-        for axis, factor in enumerate(FACTORS):
-            index = np.floor((points[:, axis] - self._origin[axis]) * 2.0**-((level + axis) // 3)).astype(np.int64)
-            keys += index.view(np.uint64) * factor
-        return keys
+        return keys_of(points, self._origin, level)
 
     def _keep(self, mask: np.ndarray) -> None:
         """Moves the points of the mask together, a part at a time, because a copy of all would double the memory."""

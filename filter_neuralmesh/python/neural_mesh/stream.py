@@ -20,6 +20,8 @@ import numpy as np
 import pymeshlab
 
 from neural_mesh import FILTER
+from neural_mesh.averages import POINT_BYTES as AVERAGED_BYTES
+from neural_mesh.averages import Averages
 from neural_mesh.clouds import FORMATS, Cloud, CloudError, open_cloud
 from neural_mesh.distances import POINT_BYTES, VERTEX_BYTES, Unmeasured, measure
 from neural_mesh.even_sample import CHUNK_BYTES, HOLD_BYTES, EvenSample
@@ -92,6 +94,9 @@ class Plan:
     def reading_bytes(self) -> float:
         return PROCESS + HOLD_BYTES * self.held + CHUNK_BYTES * self.chunk
 
+    def averaging_bytes(self) -> float:
+        return PROCESS + AVERAGED_BYTES * self.sample + CHUNK_BYTES * self.chunk
+
     def learning_bytes(self) -> float:
         return PROCESS + LEARNED_POINT * self.sample + LEARNED_VERTEX * self.target
 
@@ -103,7 +108,7 @@ class Plan:
         return 24 * self.sample + SAVED_VERTEX * self.target
 
     def bytes(self) -> float:
-        return max(self.reading_bytes(), self.learning_bytes(), self.measuring_bytes())
+        return max(self.reading_bytes(), self.averaging_bytes(), self.learning_bytes(), self.measuring_bytes())
 
     def sentence(self) -> str:
         return (f"This will take up to {gigabytes(self.bytes())} of the {gigabytes(self.memory)} allowed: a sample of "
@@ -153,7 +158,8 @@ class _Stream:
         """Writes the mesh to `out` when it is whole, then measures the distances. Prints what was done."""
         sample = self._read()
         diagonal = float(np.linalg.norm(sample.high - sample.low))
-        result = self._learn(sample, settings, out)
+        size = self._write_sample(sample)
+        result = {**self._learn(settings, out), "sample": size}
         found = measure(out, self._cloud.chunks(self._plan.chunk), diagonal * 2, self._plan.workers,
                         lambda: self._show("Measuring"))
         percent = 100 / diagonal if diagonal else 0
@@ -173,15 +179,24 @@ class _Stream:
             raise CloudError(f"{self._cloud.path} holds no point with finite coordinates.")
         return sample
 
-    def _learn(self, sample: EvenSample, settings: Settings, out: Path) -> Dict[str, Any]:
-        """Learns from the sample, writes the mesh, returns the filter's results."""
+    def _write_sample(self, sample: EvenSample) -> int:
+        """Writes the points to learn from, and returns their number. Those of a larger cloud stand for all points."""
         points = sample.take()
         skipped = f" {sample.skipped:,} of them are left out: they are not finite." if sample.skipped else ""
         print(f"Read {sample.seen:,} points in {self._seconds():.1f} s.{skipped} The sample has {len(points):,}.",
               flush=True)
+        if sample.level is not None:
+            averages = Averages(points, sample.level)
+            for chunk in self._cloud.chunks(self._plan.chunk):
+                averages.add(chunk)
+                self._show("Averaging")
+            print(f"Moved {averages.move():,} points of the sample to the mean of all points around them in "
+                  f"{self._seconds():.1f} s.", flush=True)
         _write_ply(self._folder / "sample.ply", points)
-        taken = len(points)
-        del points  # pymeshlab needs the room
+        return len(points)
+
+    def _learn(self, settings: Settings, out: Path) -> Dict[str, Any]:
+        """Learns from the sample, writes the mesh, returns the filter's results."""
         self._meshes.load_new_mesh(str(self._folder / "sample.ply"))
         (self._folder / "sample.ply").unlink()
         result = self._meshes.apply_filter(FILTER, **for_pymeshlab(settings))
@@ -193,7 +208,7 @@ class _Stream:
         self._meshes.clear()
         os.replace(aside, out)
         print(f"Learned {result['vertices']:,} vertices in {self._seconds():.1f} s and wrote {out}.", flush=True)
-        return {**result, "sample": taken}
+        return result
 
     def _seconds(self) -> float:
         """Since the last call. Ends the line of the progress."""
