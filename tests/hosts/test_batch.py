@@ -133,6 +133,16 @@ def test_200_clouds_with_corrupt_ones_and_kills(command, batch, tmp_path):
     assert len(named) <= killed
 
 
+def test_a_process_killed_before_its_first_cloud_is_started_again(command, few, tmp_path):
+    driver = command(few, "--out", tmp_path, "--workers", 1, *many_clouds.SETTINGS)
+    process = psutil.Process(driver.pid)
+    wait_until(lambda: learners(process))
+    learners(process)[0].kill()
+    assert not records(tmp_path)
+    status, text = finished(driver)
+    assert status == 0 and len(meshes(tmp_path)) == 8, text
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_interrupted_it_ends_and_the_next_start_goes_on(command, batch, few, tmp_path, number):
     words = (few, "--out", tmp_path, "--workers", 1, *many_clouds.SETTINGS)

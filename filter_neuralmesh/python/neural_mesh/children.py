@@ -21,6 +21,7 @@ from neural_mesh.batch_files import Job, aside_of, remove
 from neural_mesh.manifest import Record
 
 START_SECONDS = 300  # for the libraries to load from a slow network disk
+START_TRIES = 3  # if someone kills it before its first cloud
 REASONS = {"SIGSEGV": " (segmentation fault)", "SIGKILL": " (by the system if memory ran out, or by someone)"}
 
 
@@ -96,6 +97,18 @@ class Child:
         self._end()
 
     def _start(self) -> None:
+        for tries_left in reversed(range(START_TRIES)):
+            self._spawn()
+            if self._answer(START_SECONDS) is not None:
+                return
+            sentence = self._why_no_answer(START_SECONDS)
+            assert self._process is not None
+            killed = (self._process.returncode or 0) < 0
+            self._end()
+            if not (killed and tries_left):
+                raise CannotStart(f"The process that learns cannot start. {sentence}")
+
+    def _spawn(self) -> None:
         self._log = tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace")
         # BLAS would start a thread per core, and is not used. Qt takes names of files for those of the locale.
         environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "LC_ALL": "C.UTF-8"}
@@ -107,10 +120,6 @@ class Child:
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._log, env=environment,
                 start_new_session=True)  # Ctrl-C in a terminal goes to the driver only
         self._files = 0
-        if self._answer(START_SECONDS) is None:
-            sentence = self._why_no_answer(START_SECONDS)
-            self._end()
-            raise CannotStart(f"The process that learns cannot start. {sentence}")
 
     def _send(self, job: Dict[str, Any]) -> None:
         assert self._process is not None and self._process.stdin is not None
