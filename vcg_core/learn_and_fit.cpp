@@ -30,15 +30,13 @@ constexpr int kMostPerCarried = 64;
 int carried_vertices(const LearningTask& task, const Settings& settings) {
     constexpr std::size_t kFewestPoints = 256;
     const int wanted = settings.target_vertices;
-    if (!settings.fit_to_points || settings.utility_counter != kNormalVariation || !task.encloses_space ||
-        settings.start_mesh == kTetrahedron || settings.stop_below_mean_counter > 0 ||
-        task.target().has_faces() || task.network.boundary_loop_count() > 0 ||
-        task.target().positions().size() < kFewestPoints)
+    if (!settings.redistributes_vertices() || !task.encloses_space || task.target().has_faces() ||
+        task.network.boundary_loop_count() > 0 || task.target().positions().size() < kFewestPoints)
         return wanted;
     const std::size_t carried = task.target().positions().size() / kPointsPerCarried;
     if (static_cast<std::size_t>(wanted) / kMostPerCarried > carried) return wanted;
-    return std::max(task.network.vertex_count(),
-                    static_cast<int>(std::min(carried, static_cast<std::size_t>(wanted))));
+    return std::min(wanted, std::max(task.network.vertex_count(),
+                                     static_cast<int>(std::min(carried, static_cast<std::size_t>(wanted)))));
 }
 
 /// Whether the noise is small beside the edges. Then the network learns many more vertices than are asked
@@ -54,20 +52,23 @@ bool is_calm(const LearningTask& task) {
 /// redistribute vertices and only the number of vertices ends growth. With too few points per vertex,
 /// learning cannot place the vertices. Chosen by tests/experiments/accuracy/accuracy_table.py.
 int vertices_to_grow(const LearningTask& task, const Settings& settings, int final_vertices) {
-    if (!settings.fit_to_points || settings.utility_counter != kNormalVariation ||
-        settings.start_mesh == kTetrahedron || !task.encloses_space || settings.stop_below_mean_counter > 0)
-        return final_vertices;
+    if (!settings.redistributes_vertices() || !task.encloses_space)
+        return std::max(final_vertices, task.network.vertex_count());
+    // Growth removes the vertices that the landing leaves without signals, far off.
+    const int start = task.network.vertex_count();
+    const int least = start > final_vertices ? start + start / 4 : start;
     constexpr int kSmallSurplus = 2500;
     constexpr int kLargestSurplus = 10000;
     int surplus = std::max(0, std::min(3 * final_vertices, kSmallSurplus - final_vertices / 2));
     // A preview of 1,000 vertices has to come at once, so it gains nothing; 2,000 gain 3,000.
     const bool calm = is_calm(task);
     if (calm) surplus = std::max(surplus, std::min(3 * final_vertices - 1000, kLargestSurplus));
-    const int grow_to = final_vertices + surplus;
+    const int grow_to = std::max(least, final_vertices + surplus);
     if (task.target().has_faces()) return grow_to;
     const std::size_t points_per_vertex = calm ? 3 : 10;
     const std::size_t supported = task.target().positions().size() / points_per_vertex;
-    return std::max(final_vertices, static_cast<int>(std::min(supported, static_cast<std::size_t>(grow_to))));
+    return std::max(
+        {final_vertices, least, static_cast<int>(std::min(supported, static_cast<std::size_t>(grow_to)))});
 }
 
 LearnerOptions learner_options(const LearningTask& task, const Settings& settings, int grow_to, int carried) {
@@ -134,9 +135,11 @@ LearnedNetwork learn_and_fit(const LearningTask& task, const Settings& settings,
     const int grow_to = vertices_to_grow(task, settings, carried);
     LearnedNetwork first = grow_and_fit(task, settings, grow_to, carried, progress);
     const bool stalled = first.forced || first.network.vertex_count() > settings.target_vertices;
-    if (!stalled || grow_to == carried || progress.stopped()) return first;
+    if (!stalled || grow_to <= std::max(carried, task.network.vertex_count()) || progress.stopped())
+        return first;
 
-    LearnedNetwork second = grow_and_fit(task, settings, carried, carried, progress);
+    const int least = std::max(carried, task.network.vertex_count());
+    LearnedNetwork second = grow_and_fit(task, settings, least, carried, progress);
     second.signals += first.signals;
     second.splits += first.splits;
     second.collapses += first.collapses;

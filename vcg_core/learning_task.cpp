@@ -21,6 +21,8 @@ namespace {
 
 /// A shell lies outside the cloud by its radius. This many signals per vertex bring it down.
 constexpr int kLandingSignals = 100;
+/// Of start meshes that the fit reduces. Thin walls need many (shell.h).
+constexpr int kMostStartVertices = 50000;
 constexpr double kShellMade = 0.6;  // of the progress
 /// Openings of closed models (places without points on large faces, cavities) are narrower than this share of
 /// the diagonal, those of scans and cut models wider. Chosen by open_table.py.
@@ -32,9 +34,6 @@ constexpr double kMostSheet = 0.04;
 /// as 2.3 spacings and a sheet share of 4.4 times the spacing were found with 500 to 15,000 points of five
 /// closed models. Of the same models cut by a plane one of the two is above these bounds.
 constexpr double kOpeningSpacings = 3, kSheetSpacings = 5;
-/// A start mesh of fewer vertices cuts across the two walls of a thin object: a cup of which 125 are left has
-/// a lid.
-constexpr int kTwoWalls = 200;
 /// Planes that are thicker than this say nothing about where the cloud is open.
 constexpr double kTooThick = 0.45;
 /// An open start mesh with more handles than this share of its vertices follows gaps between the points.
@@ -61,6 +60,7 @@ void remove_repeated_points(LearningTask& task) {
 StartMesh make_shell(const TargetSpace& target, const Settings& settings, Progress& progress) {
     ShellOptions options;
     options.target_vertices = settings.target_vertices;
+    options.most_vertices = settings.redistributes_vertices() ? kMostStartVertices : settings.target_vertices;
     options.threads = settings.threads;
     options.learn_outliers = !settings.remove_outliers;
     Random random(stream_seed(settings.random_seed, Stream::shell));
@@ -154,13 +154,15 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, P
     return open_start(target, options, random, progress);
 }
 
-/// Whether the cloud may be open: the shell closed wide openings, or a part of it has no space inside.
+/// Whether the cloud may be open: the shell closed wide openings, or a part of it has no space inside, and is
+/// no thin wall.
 /// \param spacing of the points, 0 if it is not known yet
 bool may_be_open(const StartMesh& shell, const TargetSpace& target, const Settings& settings,
                  double spacing) {
     const double widest = settings.close_holes_up_to >= 0
                               ? settings.close_holes_up_to / target.frame().diagonal
                               : std::max(kWidestClosed, kOpeningSpacings * spacing);
+    if (shell.walled) return false;
     return !shell.encloses_space || 2 * shell.widest_opening > widest ||
            shell.sheet_share > std::max(kMostSheet, kSheetSpacings * spacing);
 }
@@ -175,8 +177,7 @@ std::optional<OpenStart> try_open_start(const TargetSpace& target, const StartMe
         const bool open = start.loops > 0 && !start.two_layers &&
                           may_be_open(shell, target, settings, start.spacing) &&
                           (settings.close_holes_up_to >= 0 || start.widest_loop > kWidestClosed);
-        const bool two_walls = start.loops == 0 && !shell.encloses_space && vertices >= kTwoWalls;
-        if ((open || two_walls) && start.thickness < kTooThick && vertices <= settings.target_vertices &&
+        if (open && start.thickness < kTooThick && vertices <= settings.target_vertices &&
             start.genus <= kMostHandles * vertices)
             return start;
     } catch (const InputError&) {
@@ -212,7 +213,8 @@ std::string too_large(const StartMesh& shell, int final_vertices) {
 void begin_closed(LearningTask& task, StartMesh shell, const Settings& settings) {
     task.warnings.insert(task.warnings.end(), shell.warnings.begin(), shell.warnings.end());
     remove_groups_without_component(task, shell.outliers, shell.positions);
-    if (static_cast<int>(shell.positions.size()) > settings.target_vertices) {
+    const auto vertices = static_cast<int>(shell.positions.size());
+    if ((settings.redistributes_vertices() ? shell.fewest_vertices : vertices) > settings.target_vertices) {
         task.warnings.push_back(too_large(shell, settings.target_vertices));
         task.network = tetrahedron();
         return;

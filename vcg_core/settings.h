@@ -89,6 +89,12 @@ struct Settings {
 
     /// Whether the quality or the selection needs \p measure.
     bool uses(FeatureMeasure measure) const { return feature_measure == measure || select_by == measure; }
+    /// Whether the fit may take vertices away from one place and put them in another: only the number of
+    /// vertices ends growth, and where they are follows the surface.
+    bool redistributes_vertices() const {
+        return fit_to_points && utility_counter == kNormalVariation && start_mesh != kTetrahedron &&
+               stop_below_mean_counter <= 0;
+    }
     /// \throws SettingError for a value of \p table out of its range, naming parameter, value and range
     void check(const std::vector<SettingInfo>& table) const;
     void check() const;  ///< of setting_table()

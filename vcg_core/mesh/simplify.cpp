@@ -20,9 +20,17 @@ constexpr int kMaxValence = 12;
 /// Collapses leave this much below kMaxValence for flips and further collapses.
 constexpr int kSpareValence = 2;
 
-float squared_length(const Network& net, VertexId a, VertexId b) {
-    return (net.position(a) - net.position(b)).SquaredNorm();
-}
+/// A network with the lengths that its edges are wanted to have, by vertex.
+struct Scaled {
+    Network& net;
+    PerVertex<float> inverse_squared;  ///< of the wanted lengths; empty: all are 1
+
+    /// Of an edge, over what is wanted at its end with the shorter wanted length.
+    float squared_length(VertexId a, VertexId b) const {
+        const float squared = (net.position(a) - net.position(b)).SquaredNorm();
+        return inverse_squared.empty() ? squared : squared * std::max(inverse_squared[a], inverse_squared[b]);
+    }
+};
 
 /// True if moving \p v to \p where turns the normal of a face at v by more than about 72 degrees. Ignores the
 /// faces at \p except (-1: none).
@@ -66,9 +74,10 @@ bool may_collapse(const Network& net, VertexId gone, VertexId kept, bool careful
 }
 
 /// Collapses \p v along its first edge that is not longer than the bound and may go.
-void collapse_short_edge(Network& net, VertexId v, float squared_bound) {
+void collapse_short_edge(const Scaled& scaled, VertexId v, float squared_bound) {
+    Network& net = scaled.net;
     for (const VertexId w : net.ring(v)) {
-        if (squared_length(net, v, w) > squared_bound || !may_collapse(net, v, w, true)) continue;
+        if (scaled.squared_length(v, w) > squared_bound || !may_collapse(net, v, w, true)) continue;
         net.collapse(v, w);
         return;
     }
@@ -76,32 +85,33 @@ void collapse_short_edge(Network& net, VertexId v, float squared_bound) {
 
 /// Quickly reduces a mesh of many more than \p vertices vertices, to no fewer than that. Every sweep over the
 /// vertices collapses edges shorter than a bound that grows from sweep to sweep. O(n) per sweep.
-void collapse_in_sweeps(Network& net, int vertices, float squared_bound) {
+void collapse_in_sweeps(const Scaled& scaled, int vertices, float squared_bound) {
     constexpr int kSweeps = 24;
     constexpr float kGrowth = 1.5F;
     for (int sweep = 0; sweep < kSweeps; ++sweep, squared_bound *= kGrowth)
-        for (const VertexId v : net.vertices()) {
-            if (net.vertex_count() <= vertices) return;
-            collapse_short_edge(net, v, squared_bound);
+        for (const VertexId v : scaled.net.vertices()) {
+            if (scaled.net.vertex_count() <= vertices) return;
+            collapse_short_edge(scaled, v, squared_bound);
         }
 }
 
-float mean_squared_length(const Network& net) {
+float mean_squared_length(const Scaled& scaled) {
     double sum = 0;
     double count = 0;
-    for (const VertexId v : net.vertices())
-        for (const VertexId w : net.ring(v)) {
-            sum += static_cast<double>(squared_length(net, v, w));
+    for (const VertexId v : scaled.net.vertices())
+        for (const VertexId w : scaled.net.ring(v)) {
+            sum += static_cast<double>(scaled.squared_length(v, w));
             ++count;
         }
     return static_cast<float>(sum / count);
 }
 
 /// Collapses edges in the order of their lengths. \p careful: none that would fold the surface.
-void collapse_to(Network& net, int vertices, bool careful) {
+void collapse_to(const Scaled& scaled, int vertices, bool careful) {
+    Network& net = scaled.net;
     Queue queue;
     for (const VertexId v : net.vertices())
-        for (const VertexId w : net.ring(v)) queue.push({squared_length(net, v, w), v, w});
+        for (const VertexId w : net.ring(v)) queue.push({scaled.squared_length(v, w), v, w});
     while (net.vertex_count() > vertices && !queue.empty()) {
         const auto [length, gone, kept] = queue.top();
         queue.pop();
@@ -109,8 +119,8 @@ void collapse_to(Network& net, int vertices, bool careful) {
         if (!may_collapse(net, gone, kept, careful)) continue;
         net.collapse(gone, kept);
         for (const VertexId w : net.ring(kept)) {
-            queue.push({squared_length(net, kept, w), kept, w});
-            queue.push({squared_length(net, kept, w), w, kept});
+            queue.push({scaled.squared_length(kept, w), kept, w});
+            queue.push({scaled.squared_length(kept, w), w, kept});
         }
     }
 }
@@ -156,22 +166,31 @@ void make_even(Network& net) {
     smooth_tangentially(net);
 }
 
-}  // namespace
-
-void simplify(Network& network, int vertices) {
+void simplify_scaled(const Scaled& scaled, int vertices) {
+    Network& network = scaled.net;
     constexpr int kRounds = 3;
     constexpr int kSweepAbove = 6;  // times the wanted vertices
     if (network.vertex_count() > kSweepAbove * vertices) {
-        collapse_in_sweeps(network, kSweepAbove * vertices, 0.5F * mean_squared_length(network));
+        collapse_in_sweeps(scaled, kSweepAbove * vertices, 0.5F * mean_squared_length(scaled));
         make_even(network);
     }
     for (int i = 0; i < kRounds && network.vertex_count() > vertices; ++i) {
         // An even mesh allows collapses that would have folded the uneven one.
-        collapse_to(network, vertices, true);
+        collapse_to(scaled, vertices, true);
         make_even(network);
     }
-    if (network.vertex_count() > vertices) collapse_to(network, vertices, false);
+    if (network.vertex_count() > vertices) collapse_to(scaled, vertices, false);
     for (int i = 0; i < kRounds; ++i) make_even(network);
+}
+
+}  // namespace
+
+void simplify(Network& network, int vertices) { simplify_scaled({network, {}}, vertices); }
+
+void simplify(Network& network, int vertices, const PerVertex<float>& lengths) {
+    PerVertex<float> inverse_squared(lengths.size(), 0);
+    for (const VertexId v : network.vertices()) inverse_squared[v] = 1 / (lengths[v] * lengths[v]);
+    simplify_scaled({network, std::move(inverse_squared)}, vertices);
 }
 
 }  // namespace neuralmesh

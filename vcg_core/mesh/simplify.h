@@ -14,4 +14,7 @@ namespace neuralmesh {
 /// collapse does, more vertices remain. No valence rises above 12. O(n log n).
 void simplify(Network& network, int vertices);
 
+/// The same, with edges in proportion to \p lengths, one for each vertex, as far as it can be.
+void simplify(Network& network, int vertices, const PerVertex<float>& lengths);
+
 }  // namespace neuralmesh

@@ -14,11 +14,14 @@
 #include "vcg_core/base/text.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/simplify.h"
+#include "vcg_core/mesh/triangle.h"
 #include "vcg_core/shell/closed_mesh.h"
 #include "vcg_core/shell/lattice_survey.h"
+#include "vcg_core/shell/local_width.h"
 #include "vcg_core/shell/outliers.h"
 #include "vcg_core/shell/region.h"
 #include "vcg_core/shell/start_points.h"
+#include "vcg_core/target/opposite_layers.h"
 
 namespace neuralmesh {
 namespace {
@@ -31,6 +34,23 @@ constexpr int kMinMeshVertices = 4;
 constexpr int kMaxNodesPerSide = 1024;
 // Enough for a component or handle to keep its shape.
 constexpr int kVerticesPerFeature = 8;
+/// Area of an even mesh for each of its vertices, in squared edges: twice that of an equilateral triangle.
+constexpr double kAreaPerVertex = 0.8660254037844386;
+/// The points do not tell where more vertices of a start mesh are.
+constexpr double kPointsPerVertex = 8;
+/// Fewer additional vertices than a quarter come from the noise of the lattice.
+constexpr double kWorthwhile = 1.25;
+/// The surface of the solid at one level lies between this level and the next.
+constexpr float kHalfLevel = 0.5F;
+/// Edges are this much shorter than walls and gaps are wide. With 1 some vertices land on the wrong side,
+/// with 0.6 no fewer than with this (wall_table.py).
+constexpr double kEdgeOverWidth = 0.75;
+/// Where more of the surface has no enclosed space beside it, it may be the two sides of walls too thin for
+/// the lattice, ...
+constexpr double kManyThin = 0.04;
+/// ... and is, where so many of the points have a layer of others opposite: with walls of 4 to 7 spacings .37
+/// at least, on single scans, rooms and facades .21 at most (wall_table.py).
+constexpr double kWalled = 0.35;
 // A warning is due from here on, in steps of the first lattice and of the chosen one. Gaps between points are
 // narrower.
 constexpr double kCoarseRadius = 5, kWideOpening = 4;
@@ -43,12 +63,59 @@ void check(const ShellOptions& o) {
             "An option of the start mesh is out of range. It needs at least 4 vertices, 1000 lattice nodes, 16 to 1024 nodes per side, 1 point per node and 4 samples, and a component share in [0, 1).");
 }
 
-/// Reduces \p network and puts it into \p result, with its topology.
-void set_mesh(Network& network, const ShellOptions& options, StartMesh& result) {
+double area_around(const Network& network, VertexId v) {
+    const Ring& ring = network.ring(v);
+    double sum = 0;
+    for (int i = 0; i < ring.face_count(); ++i)
+        sum += static_cast<double>(
+            area_vector(network.position(v), network.position(ring[i]), network.position(ring.next(i)))
+                .Norm());
+    return sum / 6;  // a third of each face, whose area vector is twice as long as its area
+}
+
+/// The number of vertices of a mesh of \p network with edges of \p lengths.
+double vertices_of(const Network& network, const PerVertex<float>& lengths) {
+    double count = 0;
+    for (const VertexId v : network.vertices()) {
+        const auto length = static_cast<double>(lengths[v]);
+        count += area_around(network, v) / (kAreaPerVertex * length * length);
+    }
+    return count;
+}
+
+/// Reduces \p closed to \p vertices vertices, or to more where the surface is close to itself.
+void reduce(ClosedMesh& closed, const Lattice& lattice, int vertices, double most) {
+    Network& network = closed.network;
+    double area = 0;
+    for (const VertexId v : network.vertices()) area += area_around(network, v);
+    const double even_edge = std::sqrt(area / (kAreaPerVertex * vertices));
+    const float radius = lattice.step * std::sqrt(static_cast<float>(closed.level) + kHalfLevel);
+    PerVertex<float> lengths =
+        local_widths(network, lattice, closed.solid, radius, static_cast<float>(even_edge / kEdgeOverWidth));
+    for (const VertexId v : network.vertices()) lengths[v] *= static_cast<float>(kEdgeOverWidth);
+    const double wanted = std::min(vertices_of(network, lengths), most);
+    if (wanted > kWorthwhile * vertices) {
+        simplify(network, static_cast<int>(wanted), lengths);
+    } else {
+        simplify(network, vertices);
+    }
+}
+
+/// Reduces the mesh of \p closed and puts it into \p result, with its topology. \p points: their number.
+void set_mesh(ClosedMesh& closed, const Lattice& lattice, std::size_t points, const ShellOptions& options,
+              StartMesh& result) {
+    Network& network = closed.network;
     result.components = network.component_count();
     result.genus = network.genus();
+    result.fewest_vertices = kVerticesPerFeature * (result.components + result.genus);
     const int budget = std::min(options.max_vertices, options.target_vertices / 4);
-    simplify(network, std::max(budget, kVerticesPerFeature * (result.components + result.genus)));
+    const int vertices = std::max(budget, result.fewest_vertices);
+    if (result.encloses_space) {
+        const double told = static_cast<double>(points) / kPointsPerVertex;
+        reduce(closed, lattice, vertices, std::min(told, static_cast<double>(options.most_vertices)));
+    } else {
+        simplify(network, vertices);  // a sheet is nowhere far from itself
+    }
     network.compact();
     for (const VertexId v : network.vertices()) result.positions.push_back(network.position(v));
     result.faces = network.faces();
@@ -61,8 +128,12 @@ void set_figures(const LatticeSurvey& survey, int level, StartMesh& result) {
     result.resolution = static_cast<double>(region.lattice.step);
     result.radius = result.resolution * std::sqrt(static_cast<double>(level));
     result.widest_opening = region.widest_opening;
-    result.encloses_space = region.encloses_space;
-    result.sheet_share = sheet_share(survey.regions.front());
+}
+
+/// Whether the points lie on the two sides of walls too thin for the lattice to show the space between them.
+bool is_walled(const std::vector<Point3f>& points, const StartMesh& start, int threads) {
+    if (start.encloses_space && start.sheet_share <= kManyThin) return false;
+    return share_with_opposite_layer(CloudSurvey(points, threads)) > kWalled;
 }
 
 void set_outliers(const TargetSpace& target, const std::vector<Point3f>& points, const Region& region,
@@ -117,7 +188,11 @@ StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Rando
         throw InputError(
             "No part of the cloud holds enough points for a start mesh around it. Choose the tetrahedron as start mesh, or remove scattered points first.");
     StartMesh result;
-    set_mesh(closed.network, options, result);
+    result.encloses_space = region.encloses_space;
+    result.sheet_share = sheet_share(survey.regions.front());
+    result.walled = is_walled(points, result, options.threads);
+    result.encloses_space |= result.walled;
+    set_mesh(closed, region.lattice, points.size(), options, result);
     set_figures(survey, closed.level, result);
     set_outliers(target, points, region, closed, options.learn_outliers, result);
     warn_of_uncertain_topology(survey, result);

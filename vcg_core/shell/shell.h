@@ -14,7 +14,7 @@
 //    handles from gaps between points and from parts that nearly touch (bridgeless_growth.h,
 //    lattice_survey.h).
 // 5. Marching tetrahedra turn the chosen solid into a mesh (closed_mesh.h). Half-edge collapses, which keep
-//    the topology, reduce it (simplify.h).
+//    the topology, reduce it (simplify.h), less where walls and gaps are narrow (local_width.h).
 //
 // Outliers make no component. An isolated group of points makes one if it holds at least 1 % of the points
 // (component_share) and at least kSpeckPoints: of 200,000 points, a group of 1,999 is outliers. Single points
@@ -39,6 +39,9 @@ struct ShellOptions {
     /// per handle, and more if the topology needs them.
     int max_vertices = 400;
     int target_vertices = 10000;
+    /// Where walls or gaps are narrower than its edges, the start mesh gets shorter ones: in all up to this
+    /// many vertices, and one for every eight points, if the surface encloses space.
+    int most_vertices = 10000;
     /// Upper limit of the nodes of the first lattice. A node costs about 30 bytes and 0.3 microseconds. Where
     /// parts nearly touch, a further lattice has up to eight times as many nodes, and a node takes 9 bytes
     /// more for each of at most eight threads.
@@ -64,10 +67,12 @@ struct ShellOptions {
 struct StartMesh : IndexedMesh<float> {
     int components = 0;
     int genus = 0;                 ///< of all components together
+    int fewest_vertices = 0;       ///< that its components and handles need
     double confidence = 0;         ///< share of the votes for components and genus, in [0, 1]
     double radius = 0;             ///< of the ball; the mesh lies about this far outside the points
     double resolution = 0;         ///< distance of the lattice nodes
     double widest_opening = 0;     ///< radius of the widest sealed opening; 0: none
+    bool walled = false;           ///< the points are the two sides of walls too thin for the lattice
     bool encloses_space = true;    ///< false for a sheet or a single scan: the mesh has a layer on both sides
     double sheet_share = 0;        ///< share of the surface with no enclosed space beside it
     long long ignored_points = 0;  ///< outliers: the mesh leaves them out

@@ -65,6 +65,16 @@ def revolved(profile, around=256):
     return v, np.vstack([_grid_faces(len(ring), around, False, True)[:, ::-1]] + caps)
 
 
+def turned_ring(profile, around=256):
+    """The surface of revolution about the z axis of a closed profile (radius, height), counter-clockwise seen with the
+    radius to the right: genus 1."""
+    profile = np.asarray(profile, dtype=float)
+    u = np.arange(around) * 2 * np.pi / around
+    v = np.stack([profile[:, :1] * np.cos(u), profile[:, :1] * np.sin(u), np.repeat(profile[:, 1:], around, axis=1)],
+                 axis=-1)
+    return v.reshape(-1, 3), _grid_faces(len(profile), around, True, True)[:, ::-1]
+
+
 def cup(wall=0.06):
     """A drinking cup of radius 1, height 1.8 and a thin wall with a rounded rim: one closed surface of genus 0."""
     arc = np.linspace(0, np.pi, 9)

@@ -92,5 +92,20 @@ TEST(Simplify, MakesEvenTrianglesOfRoughOnes) {
     expect_even(network, 0.98);
 }
 
+TEST(Simplify, MakesEdgesInProportionToTheLengthsAskedFor) {
+    Network network = network_of(shapes::icosphere(5));
+    PerVertex<float> lengths(network.slot_count(), 0.1F);
+    for (const VertexId v : network.vertices())
+        if (network.position(v)[0] > 0) lengths[v] = 0.3F;
+    simplify(network, 1000, lengths);
+    ASSERT_EQ(network.validate(), "");
+    EXPECT_EQ(network.vertex_count(), 1000);
+    int coarse = 0;
+    for (const VertexId v : network.vertices()) coarse += network.position(v)[0] > 0 ? 1 : 0;
+    // A ninth of the vertices of the other half, and those near the border.
+    EXPECT_GT(coarse, 80);
+    EXPECT_LT(coarse, 200);
+}
+
 }  // namespace
 }  // namespace neuralmesh

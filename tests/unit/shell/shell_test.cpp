@@ -50,11 +50,12 @@ void expect_sound(const StartMesh& mesh) {
     EXPECT_GT(referee::enclosed_volume(mesh), 0);
 }
 
-void expect_topology(const StartMesh& mesh, int components, int genus) {
+/// \param most vertices: ShellOptions::max_vertices, more where parts are thin or close to each other
+void expect_topology(const StartMesh& mesh, int components, int genus, std::size_t most = 400) {
     expect_sound(mesh);
     EXPECT_EQ(mesh.components, components);
     EXPECT_EQ(mesh.genus, genus);
-    EXPECT_LE(mesh.positions.size(), 400U);
+    EXPECT_LE(mesh.positions.size(), most);
 }
 
 TEST(Shell, Sphere) {
@@ -79,7 +80,7 @@ TEST(Shell, TwoSpheresAreTwoComponents) {
 }
 
 TEST(Shell, LinkedToriStayLinked) {
-    expect_topology(shell_of_samples(shell_shapes::chain(4, 1, 0.2, 1.3), 20000), 4, 4);
+    expect_topology(shell_of_samples(shell_shapes::chain(4, 1, 0.2, 1.3), 20000), 4, 4, 800);
 }
 
 TEST(Shell, ThinWalledCupStaysOpen) {
@@ -87,6 +88,29 @@ TEST(Shell, ThinWalledCupStaysOpen) {
     expect_topology(mesh, 1, 0);
     // In a frame of diagonal 1 a filled cup has a volume of 0.151, and more at the shell's distance.
     EXPECT_LT(referee::enclosed_volume(mesh), 0.15);
+}
+
+TEST(Shell, EdgesAreNoLongerThanAWallIsThick) {
+    const double wall = 0.1;
+    StartMesh mesh = shell_of_samples(shell_shapes::cup(1, 2, wall), 200000);
+    expect_topology(mesh, 1, 0, 10000);
+    const double diagonal = 2 * std::sqrt(3.0);
+    double sum = 0, edges = 0;
+    for (const Triangle& f : mesh.faces)
+        for (std::size_t k = 0; k < 3; ++k, ++edges) {
+            const auto at = [&](std::size_t i) { return mesh.positions[static_cast<std::size_t>(f[i % 3])]; };
+            sum += static_cast<double>((at(k) - at(k + 1)).Norm());
+        }
+    EXPECT_LT(sum / edges, wall / diagonal);
+    EXPECT_GT(sum / edges, wall / diagonal / 3);
+}
+
+TEST(Shell, TellsTheTwoSidesOfAThinWallFromASheet) {
+    // The wall is four spacings thick, too thin for the lattice to show a space in it.
+    const StartMesh cup = shell_of_samples(shell_shapes::cup(1, 2, 0.045), 200000);
+    EXPECT_TRUE(cup.walled);
+    EXPECT_TRUE(cup.encloses_space);
+    EXPECT_FALSE(warns_of(cup, "enclose no space"));
 }
 
 TEST(Shell, NoiseDoesNotMakeHandles) {
@@ -97,7 +121,7 @@ TEST(Shell, NoiseDoesNotMakeHandles) {
 
 TEST(Shell, NoiseDoesNotJoinLinks) {
     const shell_shapes::Shape chain = shell_shapes::chain(4, 1, 0.2, 1.3);
-    expect_topology(shell_of_samples(chain, 200000, 0.001 * 6.9), 4, 4);
+    expect_topology(shell_of_samples(chain, 200000, 0.001 * 6.9), 4, 4, 800);
 }
 
 TEST(Shell, OutliersAreIgnoredAndReported) {
@@ -170,6 +194,7 @@ TEST(Shell, VerticesFollowTheBudget) {
     ShellOptions options;
     for (const int target : {100, 400, 1000}) {
         options.target_vertices = target;
+        options.most_vertices = target / 4;
         EXPECT_EQ(shell(cloud, options).positions.size(), static_cast<std::size_t>(target / 4));
     }
 }

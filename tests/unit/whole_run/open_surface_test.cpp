@@ -67,7 +67,7 @@ TEST(OpenSurface, LeavesClosedPartsClosed) {
     EXPECT_EQ(mesh.report.boundary_loops, 1);
 }
 
-TEST(OpenSurface, IsClosedInOneLayerWhereWallsAreThin) {
+TEST(OpenSurface, IsClosedWhereBothWallsArePoints) {
     // Both walls of a cup, too close to each other for a space between them that the shell finds.
     Random random(1);
     const Cloud cloud = shell_shapes::sample(shell_shapes::cup(1, 2, 0.06), 100000, random);

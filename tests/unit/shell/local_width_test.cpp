@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The widths of walls and gaps along the shell of shapes on a lattice, whose widths are known.
+#include "vcg_core/shell/local_width.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "vcg_core/shell/marching_tetrahedra.h"
+
+namespace neuralmesh {
+namespace {
+
+constexpr float kStep = 0.02F;
+constexpr float kFarthest = 0.5F;
+
+using Inside = std::function<bool(const vcg::Point3f&)>;
+
+struct Solid {
+    Lattice lattice;
+    NodeSet nodes;
+    Network shell;
+};
+
+Solid solid_of(const Inside& inside) {
+    const vcg::Box3f box(vcg::Point3f(-0.6F, -0.6F, -0.6F), vcg::Point3f(0.6F, 0.6F, 0.6F));
+    Solid solid{Lattice(box, kStep, 4), {}, {}};
+    solid.nodes.assign(solid.lattice.size(), 0);
+    PerNode<float> values(solid.lattice.size(), 1.0F);
+    for (NodeId i = 0; i < solid.lattice.size(); ++i)
+        if (inside(solid.lattice.position(i))) {
+            solid.nodes[i] = 1;
+            values[i] = -1;
+        }
+    const IndexedMesh<float> mesh = marching_tetrahedra(solid.lattice, values);
+    solid.shell = Network(mesh.positions, mesh.faces);
+    return solid;
+}
+
+/// The widths at the vertices of the shell at which \p counts is true.
+std::vector<float> widths_where(const Solid& solid, float radius, const Inside& counts) {
+    const PerVertex<float> widths = local_widths(solid.shell, solid.lattice, solid.nodes, radius, kFarthest);
+    std::vector<float> chosen;
+    for (const VertexId v : solid.shell.vertices())
+        if (counts(solid.shell.position(v))) chosen.push_back(widths[v]);
+    return chosen;
+}
+
+bool in_the_middle(const vcg::Point3f& p) { return std::abs(p[0]) < 0.3F && std::abs(p[1]) < 0.3F; }
+
+TEST(LocalWidth, OfAWallIsItsThicknessBetweenThePoints) {
+    const Solid plate = solid_of([](const vcg::Point3f& p) {
+        return std::abs(p[0]) < 0.5F && std::abs(p[1]) < 0.5F && std::abs(p[2]) < 0.09F;
+    });
+    const float radius = 0.03F;
+    const std::vector<float> widths = widths_where(plate, radius, in_the_middle);
+    ASSERT_FALSE(widths.empty());
+    for (const float width : widths) EXPECT_NEAR(width, 0.18F - 2 * radius, kStep);
+}
+
+TEST(LocalWidth, OfAGapIsItsWidthBetweenThePoints) {
+    const Solid blocks = solid_of([](const vcg::Point3f& p) {
+        return std::abs(p[0]) < 0.5F && std::abs(p[1]) < 0.5F && std::abs(p[2]) > 0.07F &&
+               std::abs(p[2]) < 0.55F;
+    });
+    const float radius = 0.03F;
+    const std::vector<float> widths = widths_where(
+        blocks, radius, [](const vcg::Point3f& p) { return in_the_middle(p) && std::abs(p[2]) < 0.1F; });
+    ASSERT_FALSE(widths.empty());
+    for (const float width : widths) EXPECT_NEAR(width, 0.14F + 2 * radius, 1.5F * kStep);
+}
+
+TEST(LocalWidth, IsTheBoundWhereNothingIsNear) {
+    const Solid ball = solid_of([](const vcg::Point3f& p) { return p.Norm() < 0.5F; });
+    const std::vector<float> widths =
+        widths_where(ball, 1.2F * kStep, [](const vcg::Point3f&) { return true; });
+    for (const float width : widths) EXPECT_FLOAT_EQ(width, kFarthest);
+}
+
+TEST(LocalWidth, IsNeverLessThanTheLatticeTells) {
+    const Solid foil = solid_of([](const vcg::Point3f& p) {
+        return std::abs(p[0]) < 0.5F && std::abs(p[1]) < 0.5F && std::abs(p[2]) < 0.03F;
+    });
+    for (const float width : widths_where(foil, 0.025F, in_the_middle)) EXPECT_FLOAT_EQ(width, 1.5F * kStep);
+    for (const float width : widths_where(foil, 0.04F, in_the_middle)) EXPECT_FLOAT_EQ(width, 0.04F);
+}
+
+}  // namespace
+}  // namespace neuralmesh

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Thin walls are told from single layers.
+#include "vcg_core/target/opposite_layers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/targets.h"
+
+namespace neuralmesh {
+namespace {
+
+constexpr int kPoints = 20000;
+
+double share_of(const shapes::Cloud& cloud) {
+    std::vector<vcg::Point3f> points;
+    for (const vcg::Point3d& p : cloud) points.push_back(vcg::Point3f::Construct(p));
+    return share_with_opposite_layer(CloudSurvey(points, 1));
+}
+
+/// A sphere of \p kPoints points and another one within it, \p spacings spacings of the points away.
+shapes::Cloud two_spheres(double spacings) {
+    const double spacing = std::sqrt(4 * M_PI / kPoints);
+    shapes::Cloud cloud = shapes::sphere_cloud(kPoints);
+    // In another order, so that no point lies above its like.
+    for (const vcg::Point3d& p : shapes::sphere_cloud(kPoints))
+        cloud.emplace_back(vcg::Point3d(-p[1], p[2], p[0]) * (1 - spacings * spacing));
+    return cloud;
+}
+
+TEST(OppositeLayers, AreFoundFromThreeSpacingsOn) {
+    for (const double spacings : {3.0, 5.0, 6.0}) EXPECT_GT(share_of(two_spheres(spacings)), 0.8) << spacings;
+}
+
+TEST(OppositeLayers, AreNotFoundWhereTheyAreFarOrOne) {
+    EXPECT_LT(share_of(two_spheres(20)), 0.02);
+    EXPECT_LT(share_of(two_spheres(0.5)), 0.1);
+}
+
+TEST(OppositeLayers, OfOneLayerAreNone) {
+    EXPECT_LT(share_of(shapes::sphere_cloud(kPoints)), 0.01);
+    EXPECT_LT(share_of(shapes::plane_cloud(kPoints)), 0.01);
+    const double spacing = std::sqrt(4 * M_PI / kPoints);
+    for (const double noise : {0.5, 1.0, 2.0})
+        EXPECT_LT(share_of(shapes::sphere_cloud(kPoints, noise * spacing)), 0.2) << noise;
+}
+
+TEST(OppositeLayers, OfCloudsWithoutASurfaceAreNone) {
+    EXPECT_EQ(share_of(shapes::Cloud(100, vcg::Point3d(1, 2, 3))), 0);
+    EXPECT_EQ(share_of(shapes::sphere_cloud(5)), 0);
+}
+
+}  // namespace
+}  // namespace neuralmesh

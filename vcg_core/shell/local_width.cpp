@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/shell/local_width.h"
+
+#include <algorithm>
+
+#include "vcg_core/mesh/triangle.h"
+
+namespace neuralmesh {
+namespace {
+
+using vcg::Point3f;
+
+/// Between two looks at the lattice, in its steps.
+constexpr float kStride = 0.5F;
+/// The shell may be that many steps from where the nodes of the solid end: it is made on every third node.
+constexpr float kSkin = 3;
+/// No smaller width can be told.
+constexpr float kLeastSteps = 1.5F;
+constexpr int kSmoothingRounds = 2;
+
+Point3f star_area_vector(const Network& network, VertexId v) {
+    const Ring& ring = network.ring(v);
+    Point3f sum(0, 0, 0);
+    for (int i = 0; i < ring.face_count(); ++i)
+        sum += area_vector(network.position(v), network.position(ring[i]), network.position(ring.next(i)));
+    return sum;
+}
+
+/// Means over the stars of the neighbours, and of theirs: marching tetrahedra leave slivers, whose own normals
+/// may lie in the surface.
+PerVertex<Point3f> smooth_normals(const Network& network) {
+    PerVertex<Point3f> normals(network.slot_count(), Point3f(0, 0, 0));
+    for (const VertexId v : network.vertices()) normals[v] = star_area_vector(network, v);
+    for (int round = 0; round < kSmoothingRounds; ++round) {
+        const PerVertex<Point3f> before = normals;
+        for (const VertexId v : network.vertices())
+            for (const VertexId w : network.ring(v)) normals[v] += before[w];
+    }
+    for (const VertexId v : network.vertices()) normals[v].Normalize();
+    return normals;
+}
+
+/// The way from \p p along \p direction to the first node that is in \p solid, or that is not if \p inside is
+/// true; \p farthest if there is none before.
+float way_to_end(const Lattice& lattice, const NodeSet& solid, bool inside, const Point3f& p,
+                 const Point3f& direction, float farthest) {
+    for (float way = kSkin * lattice.step; way < farthest; way += kStride * lattice.step) {
+        const NodeId node = lattice.node_of(p + direction * way);
+        const bool in_solid = node < solid.size() && solid[node] != 0;
+        if (in_solid != inside) return way;
+    }
+    return farthest;
+}
+
+}  // namespace
+
+PerVertex<float> local_widths(const Network& shell, const Lattice& lattice, const NodeSet& solid,
+                              float radius, float farthest) {
+    const float least = std::max(radius, kLeastSteps * lattice.step);
+    PerVertex<float> widths(shell.slot_count(), farthest);
+    const PerVertex<Point3f> normals = smooth_normals(shell);
+    for (const VertexId v : shell.vertices()) {
+        const Point3f p = shell.position(v), n = normals[v];
+        const float wall = way_to_end(lattice, solid, true, p, -n, farthest + 2 * radius) - 2 * radius;
+        const float gap = way_to_end(lattice, solid, false, p, n, farthest - 2 * radius) + 2 * radius;
+        widths[v] = std::min(farthest, std::max(least, std::min(wall, gap)));
+    }
+    return widths;
+}
+
+}  // namespace neuralmesh
