@@ -35,8 +35,8 @@ int carried_vertices(const LearningTask& task, const Settings& settings) {
         return wanted;
     const std::size_t carried = task.target().positions().size() / kPointsPerCarried;
     if (static_cast<std::size_t>(wanted) / kMostPerCarried > carried) return wanted;
-    return std::min(wanted, std::max(task.network.vertex_count(),
-                                     static_cast<int>(std::min(carried, static_cast<std::size_t>(wanted)))));
+    const std::size_t placed = std::max(carried, static_cast<std::size_t>(task.network.vertex_count()));
+    return static_cast<int>(std::min(placed, static_cast<std::size_t>(wanted)));
 }
 
 /// Whether the noise is small beside the edges. Then the network learns many more vertices than are asked
@@ -135,10 +135,9 @@ LearnedNetwork learn_and_fit(const LearningTask& task, const Settings& settings,
     const int grow_to = vertices_to_grow(task, settings, carried);
     LearnedNetwork first = grow_and_fit(task, settings, grow_to, carried, progress);
     const bool stalled = first.forced || first.network.vertex_count() > settings.target_vertices;
-    if (!stalled || grow_to <= std::max(carried, task.network.vertex_count()) || progress.stopped())
-        return first;
-
     const int least = std::max(carried, task.network.vertex_count());
+    if (!stalled || grow_to == least || progress.stopped()) return first;
+
     LearnedNetwork second = grow_and_fit(task, settings, least, carried, progress);
     second.signals += first.signals;
     second.splits += first.splits;

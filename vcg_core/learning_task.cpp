@@ -27,9 +27,6 @@ constexpr double kShellMade = 0.6;  // of the progress
 /// Openings of closed models (places without points on large faces, cavities) are narrower than this share of
 /// the diagonal, those of scans and cut models wider. Chosen by open_table.py.
 constexpr double kWidestClosed = 0.066;
-/// Of closed models less than this share of the surface has no enclosed space beside it. Chosen by
-/// open_table.py: up to .027 on closed models, from .048 on where a part is open.
-constexpr double kMostSheet = 0.04;
 /// Sparse points leave openings, and places that enclose nothing, in closed surfaces, too: openings as wide
 /// as 2.3 spacings and a sheet share of 4.4 times the spacing were found with 500 to 15,000 points of five
 /// closed models. Of the same models cut by a plane one of the two is above these bounds.

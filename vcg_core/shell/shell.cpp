@@ -45,11 +45,8 @@ constexpr float kHalfLevel = 0.5F;
 /// Edges are this much shorter than walls and gaps are wide. With 1 some vertices land on the wrong side,
 /// with 0.6 no fewer than with this (wall_table.py).
 constexpr double kEdgeOverWidth = 0.75;
-/// Where more of the surface has no enclosed space beside it, it may be the two sides of walls too thin for
-/// the lattice, ...
-constexpr double kManyThin = 0.04;
-/// ... and is, where so many of the points have a layer of others opposite: with walls of 4 to 7 spacings .37
-/// at least, on single scans, rooms and facades .21 at most (wall_table.py).
+/// Points are the two sides of walls where so many of them have a layer of others opposite: with walls of 4
+/// to 7 spacings .37 at least, on single scans, rooms and facades .21 at most (wall_table.py).
 constexpr double kWalled = 0.35;
 // A warning is due from here on, in steps of the first lattice and of the chosen one. Gaps between points are
 // narrower.
@@ -132,7 +129,7 @@ void set_figures(const LatticeSurvey& survey, int level, StartMesh& result) {
 
 /// Whether the points lie on the two sides of walls too thin for the lattice to show the space between them.
 bool is_walled(const std::vector<Point3f>& points, const StartMesh& start, int threads) {
-    if (start.encloses_space && start.sheet_share <= kManyThin) return false;
+    if (start.encloses_space && start.sheet_share <= kMostSheet) return false;
     return share_with_opposite_layer(CloudSurvey(points, threads)) > kWalled;
 }
 

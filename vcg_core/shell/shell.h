@@ -32,6 +32,10 @@
 
 namespace neuralmesh {
 
+/// Of closed models less than this share of the surface has no enclosed space beside it: up to .027, and from
+/// .048 on where a part is open or a thin wall. Chosen by open_table.py.
+inline constexpr double kMostSheet = 0.04;
+
 /// Limits of cost, and what counts as a component. tests/experiments/tools/shell_topology shows what a change
 /// of the defaults does.
 struct ShellOptions {
