@@ -21,8 +21,9 @@ namespace {
 
 /// A shell lies outside the cloud by its radius. This many signals per vertex bring it down.
 constexpr int kLandingSignals = 100;
-/// Of start meshes that the fit reduces. Thin walls need many (shell.h).
-constexpr int kMostStartVertices = 50000;
+/// Start vertices for each one asked for, where the fit reduces them: walls of half an edge need seven
+/// (shell.h).
+constexpr int kMostPerFinal = 8, kMostStartVertices = 50000;
 constexpr double kShellMade = 0.6;  // of the progress
 /// Openings of closed models (places without points on large faces, cavities) are narrower than this share of
 /// the diagonal, those of scans and cut models wider. Chosen by open_table.py.
@@ -57,7 +58,9 @@ void remove_repeated_points(LearningTask& task) {
 StartMesh make_shell(const TargetSpace& target, const Settings& settings, Progress& progress) {
     ShellOptions options;
     options.target_vertices = settings.target_vertices;
-    options.most_vertices = settings.redistributes_vertices() ? kMostStartVertices : settings.target_vertices;
+    options.most_vertices = settings.target_vertices;
+    if (settings.redistributes_vertices() && settings.target_vertices < kMostStartVertices)
+        options.most_vertices = std::min(kMostPerFinal * settings.target_vertices, kMostStartVertices);
     options.threads = settings.threads;
     options.learn_outliers = !settings.remove_outliers;
     Random random(stream_seed(settings.random_seed, Stream::shell));
