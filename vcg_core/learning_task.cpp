@@ -58,9 +58,9 @@ void remove_repeated_points(LearningTask& task) {
 StartMesh make_shell(const TargetSpace& target, const Settings& settings, Progress& progress) {
     ShellOptions options;
     options.target_vertices = settings.target_vertices;
-    options.most_vertices = settings.target_vertices;
-    if (settings.redistributes_vertices() && settings.target_vertices < kMostStartVertices)
-        options.most_vertices = std::min(kMostPerFinal * settings.target_vertices, kMostStartVertices);
+    // Without the fit, which takes vertices away again, more of them at the start would leave none to split.
+    const int most_wanted = std::min(settings.target_vertices, kMostStartVertices / kMostPerFinal);
+    options.most_vertices = settings.redistributes_vertices() ? kMostPerFinal * most_wanted : 0;
     options.threads = settings.threads;
     options.learn_outliers = !settings.remove_outliers;
     Random random(stream_seed(settings.random_seed, Stream::shell));
