@@ -11,6 +11,7 @@
 #include <string>
 
 #include "vcg_core/base/error.h"
+#include "vcg_core/base/even_mesh.h"
 #include "vcg_core/base/text.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/simplify.h"
@@ -34,8 +35,6 @@ constexpr int kMinMeshVertices = 4;
 constexpr int kMaxNodesPerSide = 1024;
 // Enough for a component or handle to keep its shape.
 constexpr int kVerticesPerFeature = 8;
-/// Area of an even mesh for each of its vertices, in squared edges: twice that of an equilateral triangle.
-constexpr double kAreaPerVertex = 0.8660254037844386;
 /// The points do not tell where more vertices of a start mesh are.
 constexpr double kPointsPerVertex = 8;
 /// Fewer additional vertices than a quarter come from the noise of the lattice.
@@ -107,11 +106,13 @@ void set_mesh(ClosedMesh& closed, const Lattice& lattice, std::size_t points, co
     result.fewest_vertices = kVerticesPerFeature * (result.components + result.genus);
     const int budget = std::min(options.max_vertices, options.target_vertices / 4);
     const int vertices = std::max(budget, result.fewest_vertices);
-    if (result.encloses_space) {
-        const double told = static_cast<double>(points) / kPointsPerVertex;
-        reduce(closed, lattice, vertices, std::min(told, static_cast<double>(options.most_vertices)));
+    const double told = static_cast<double>(points) / kPointsPerVertex;
+    const double most = std::min(told, static_cast<double>(options.most_vertices));
+    // A sheet is nowhere far from itself.
+    if (result.encloses_space && most > kWorthwhile * vertices) {
+        reduce(closed, lattice, vertices, most);
     } else {
-        simplify(network, vertices);  // a sheet is nowhere far from itself
+        simplify(network, vertices);
     }
     network.compact();
     for (const VertexId v : network.vertices()) result.positions.push_back(network.position(v));

@@ -44,7 +44,7 @@ struct ShellOptions {
     int max_vertices = 400;
     int target_vertices = 10000;
     /// Where walls or gaps are narrower than its edges, the start mesh gets shorter ones: in all up to this
-    /// many vertices, and one for every eight points, if the surface encloses space.
+    /// many vertices, and one for every eight points, if the surface encloses space. 0: none.
     int most_vertices = 0;
     /// Upper limit of the nodes of the first lattice. A node costs about 30 bytes and 0.3 microseconds. Where
     /// parts nearly touch, a further lattice has up to eight times as many nodes, and a node takes 9 bytes

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vcg_core/base/even_mesh.h"
 #include "vcg_core/base/median.h"
+#include "vcg_core/target/neighbour_scatter.h"
 
 namespace neuralmesh {
 
@@ -18,25 +20,14 @@ constexpr std::size_t kPlaces = 1000;
 /// noise, cost time.
 constexpr double kFewest = 12;
 constexpr double kMost = 60;
-/// Area of an even mesh for each of its vertices, in squared edges: twice that of an equilateral triangle.
-constexpr double kAreaPerVertex = 0.8660254037844386;
 constexpr double kPi = 3.141592653589793;
 
 /// Squared spread about the best plane of the point at \p place and its neighbours.
 double variance_about_plane(const NearestPoints& cloud, NearestPoints::Place place,
                             const std::vector<NearestPoints::Neighbour>& near) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-    for (const NearestPoints::Neighbour& n : near) {
-        const vcg::Point3f d = cloud.point(n.place) - cloud.point(place);
-        const Eigen::Vector3d p(static_cast<double>(d[0]), static_cast<double>(d[1]),
-                                static_cast<double>(d[2]));
-        sum += p;
-        squares += p * p.transpose();
-    }
     const double count = static_cast<double>(near.size()) + 1;
-    squares -= sum * sum.transpose() / count;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares, Eigen::EigenvaluesOnly);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(neighbour_scatter(cloud, place, near),
+                                                                Eigen::EigenvaluesOnly);
     constexpr double kParametersOfAPlane = 3;
     return std::max(0.0, solver.eigenvalues()[0]) / (count - kParametersOfAPlane);
 }

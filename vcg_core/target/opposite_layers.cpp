@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "vcg_core/target/neighbour_scatter.h"
+
 namespace neuralmesh {
 namespace {
 
@@ -24,17 +26,8 @@ constexpr int kLeastPoints = 3;
 
 Point3f normal_of(const NearestPoints& cloud, NearestPoints::Place place,
                   const std::vector<NearestPoints::Neighbour>& near) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-    for (const NearestPoints::Neighbour& n : near) {
-        const Point3f d = cloud.point(n.place) - cloud.point(place);
-        const Eigen::Vector3d p(static_cast<double>(d[0]), static_cast<double>(d[1]),
-                                static_cast<double>(d[2]));
-        sum += p;
-        squares += p * p.transpose();
-    }
-    squares -= sum * sum.transpose() / (static_cast<double>(near.size()) + 1);
-    const Eigen::Vector3d n = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(squares).eigenvectors().col(0);
+    const Eigen::Matrix3d scatter = neighbour_scatter(cloud, place, near);
+    const Eigen::Vector3d n = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
     return {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])};
 }
 

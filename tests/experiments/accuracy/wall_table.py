@@ -25,18 +25,14 @@ from scipy.spatial import cKDTree
 
 import evaluate
 import models
+import open_surfaces
 import peers
 import wall_shapes
 
 
-def area(vertices, faces):
-    corners = vertices[faces]
-    return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
-
-
 def mean_edge(surface, count):
     """Edge of an even mesh of that surface with 2 count faces."""
-    return np.sqrt(4 / np.sqrt(3) * area(*surface) / (2 * count))
+    return np.sqrt(4 / np.sqrt(3) * open_surfaces.area_of(*surface) / (2 * count))
 
 
 def walled(make, edges, count):
@@ -98,7 +94,7 @@ def main():
         for edges in options.walls:
             surface, wall = walled(make, edges, options.vertices)
             truth = evaluate.Truth(*surface)
-            spacings = wall / np.sqrt(area(*surface) / options.points)
+            spacings = wall / np.sqrt(open_surfaces.area_of(*surface) / options.points)
             for seed in options.seeds:
                 cloud = models.make_cloud(*surface, options.points, options.noise, seed)
                 with tempfile.TemporaryDirectory() as folder:

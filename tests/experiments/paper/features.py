@@ -335,15 +335,21 @@ def report(rows, chamfers):
     return "\n".join(text)
 
 
-def parse(arguments):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--learn", required=True, help="the core as a program (target learn)")
+def parser_of(description, default_models):
+    """The options that tables of features have in common."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
-    parser.add_argument("--models", type=numbers(str), default=MODELS)
+    parser.add_argument("--models", type=numbers(str), default=default_models)
     parser.add_argument("--noise", type=numbers(float), default=(0, 0.1, 0.3, 0.6), help="%% of the diagonal")
     parser.add_argument("--samples", type=int, default=200_000)
     parser.add_argument("--vertices", type=int, default=5000)
     parser.add_argument("--out", type=Path, default=Path("out/figures"))
+    return parser
+
+
+def parse(arguments):
+    parser = parser_of(__doc__, MODELS)
+    parser.add_argument("--learn", required=True, help="the core as a program (target learn)")
     return parser.parse_args(arguments)
 
 

@@ -13,11 +13,9 @@ other measures are those of selection_table.py. Prints the F1, mean over the mod
 signals, and writes OUT/given_meshes.md.
 """
 
-import argparse
 import json
 import os
 import sys
-from pathlib import Path
 
 import numpy as np
 import pymeshlab
@@ -27,7 +25,6 @@ import import_paths  # noqa: F401
 import models
 import peers
 import selection_table
-from compare_accuracy import numbers
 
 FILTER = "compute_scalar_by_neural_normal_counter_per_vertex"
 MESHES = ("poisson", "even")
@@ -94,14 +91,8 @@ def rows_of(name, noise, options):
 
 
 def parse(arguments):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = features.parser_of(__doc__, selection_table.MODELS)
     parser.add_argument("--plugin", required=True, help="the plugin for pymeshlab")
-    parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
-    parser.add_argument("--models", type=numbers(str), default=selection_table.MODELS)
-    parser.add_argument("--noise", type=numbers(float), default=(0, 0.1, 0.3, 0.6), help="%% of the diagonal")
-    parser.add_argument("--samples", type=int, default=200_000)
-    parser.add_argument("--vertices", type=int, default=5000)
-    parser.add_argument("--out", type=Path, default=Path("out/figures"))
     return parser.parse_args(arguments)
 
 
