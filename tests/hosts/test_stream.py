@@ -437,6 +437,37 @@ def test_processes_that_measure_end_with_a_killed_command(site, tmp_path):
     assert not psutil.wait_procs(children, timeout=10)[1]
 
 
+def test_the_folder_of_a_killed_command_is_removed_by_the_next(stream, site, small, tmp_path):
+    mesh, cloud = tmp_path / "mesh.ply", tmp_path / "cloud.ply"
+    bench.write_cloud(cloud, 300_000)
+    with subprocess.Popen([sys.executable, "-m", "neural_mesh", "stream", str(cloud), str(mesh), "target_vertices=3000"],
+                          stdout=subprocess.PIPE, text=True, env=dict(os.environ, PYTHONPATH=str(site))) as command:
+        while "Read" not in command.stdout.readline():
+            assert command.poll() is None
+        running = hidden(tmp_path)
+        assert len(running) == 1
+        results(stream(small, tmp_path / "other.ply", "target_vertices=100"))
+        assert hidden(tmp_path) == running and command.poll() is None
+        command.kill()
+    assert hidden(tmp_path) == running
+    results(stream(small, mesh, "target_vertices=100"))
+    assert hidden(tmp_path) == []
+
+
+def test_folders_that_are_not_provably_left_stay(stream, small, tmp_path):
+    for name, content in ((".neural-mesh-other", "another machine"), (".neural-mesh-empty", None)):
+        (tmp_path / name).mkdir()
+        if content:
+            (tmp_path / name / "lock").write_text(content)
+    before = hidden(tmp_path)
+    results(stream(small, tmp_path / "mesh.ply", "target_vertices=100"))
+    assert hidden(tmp_path) == before
+
+
+def hidden(folder):
+    return sorted(folder.glob(".*"))
+
+
 def test_counts_are_printed_in_full(site):
     from neural_mesh.parameters import line_of
     assert line_of({"points": 20_000_000, "rms": 1 / 3}) == "points=20000000 rms=0.333333"

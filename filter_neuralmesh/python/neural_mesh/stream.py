@@ -7,19 +7,20 @@ measures the distances of all its points to the mesh."""
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import signal
 import sys
-import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, Optional
+from typing import Any, Dict, Iterator, Optional
 
 import numpy as np
 import pymeshlab
 
 from neural_mesh import FILTER
+from neural_mesh.aside_folder import aside_folder
 from neural_mesh.averages import POINT_BYTES as AVERAGED_BYTES
 from neural_mesh.averages import Averages
 from neural_mesh.clouds import FORMATS, Cloud, CloudError, open_cloud
@@ -67,7 +68,7 @@ def run(given: argparse.Namespace) -> int:
         with _folder_beside(given.mesh) as folder:
             check_space(given.mesh.parent, plan.file_bytes(), "The sample and the mesh")
             print(plan.sentence(), flush=True)
-            _Stream(cloud, plan, meshes, Path(folder)).run(settings, given.mesh)
+            _Stream(cloud, plan, meshes, folder).run(settings, given.mesh)
     except (CloudError, NotWhole, Unmeasured) as error:
         sentence = str(error)
     except OSError as error:
@@ -136,15 +137,17 @@ def plan_for(memory: float, target: int, count: Optional[int], processors: int) 
     return plan
 
 
-def _folder_beside(mesh: Path) -> "tempfile.TemporaryDirectory[str]":
+@contextlib.contextmanager
+def _folder_beside(mesh: Path) -> Iterator[Path]:
     """A folder for files that are not whole yet, on the disk of the mesh. Throws WrongUsage."""
     if mesh.is_dir():
         raise WrongUsage(f"{mesh} is a folder: give the name of a file.")
-    parent = mesh.parent
-    try:
-        return tempfile.TemporaryDirectory(prefix=f".{mesh.stem}-", dir=parent)
-    except OSError as error:
-        raise WrongUsage(f"Nothing can be written into the folder {parent}: {error.strerror}.") from error
+    with contextlib.ExitStack() as stack:
+        try:
+            folder = stack.enter_context(aside_folder(mesh.parent))
+        except OSError as error:
+            raise WrongUsage(f"Nothing can be written into the folder {mesh.parent}: {error.strerror}.") from error
+        yield folder
 
 
 class _Stream:
