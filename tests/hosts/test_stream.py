@@ -292,7 +292,7 @@ def test_memory_stays_within_the_option_and_distances_are_those_of_the_whole_clo
     output, _, memory = bench.run_watched([sys.executable, "-m", "neural_mesh", "stream", str(cloud), str(mesh),
                                            "--memory", "300MB", "target_vertices=1500"],
                                           dict(os.environ, PYTHONPATH=str(site)))
-    announced = re.match(r"This will take up to ([\d.]+) GB of the 0.3 GB allowed: a sample of up to 150,000", output)
+    announced = re.match(r"This will take up to ([\d.]+) GB of the 0.3 GB allowed: a sample of about 150,000", output)
     assert memory / 1e9 <= float(announced[1]) <= .3
     found = last_line(output)
     meshes.load_new_mesh(str(mesh))

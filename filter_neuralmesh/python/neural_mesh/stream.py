@@ -113,7 +113,7 @@ class Plan:
 
     def sentence(self) -> str:
         return (f"This will take up to {gigabytes(self.bytes())} of the {gigabytes(self.memory)} allowed: a sample of "
-                f"up to {self.sample:,} points ({self.sample / self.target:.0f} per vertex), chunks of {self.chunk:,} "
+                f"about {self.sample:,} points ({self.sample / self.target:.0f} per vertex), chunks of {self.chunk:,} "
                 f"points, {self.workers} process{'es' * (self.workers > 1)} for distances.")
 
 
