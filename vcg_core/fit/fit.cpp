@@ -30,6 +30,8 @@ constexpr double kCrumpling = 3;
 /// The first round with a redistribution, and the number of rounds at the end without one.
 constexpr int kFirstRedistribution = 1;
 constexpr int kQuietRounds = 3;
+/// The first round after which vertices move to creases: before, they are too far from the points.
+constexpr int kFirstCreases = 1;
 /// The fit ends when two rounds lower the error by less than this share, but not in the first ones.
 constexpr double kLeastProgress = 0.001;
 constexpr int kFirstRounds = 5;
@@ -140,7 +142,10 @@ private:
         if (round >= kFirstRounds && error > (1 - kLeastProgress) * error_before_last_) return true;
         error_before_last_ = last_error_;
         last_error_ = error;
-        if (options_.flip_edges && round + 1 < rounds_) report_.flips += fitter_.flip_edges(surface, points);
+        if (options_.flip_edges && round + 1 < rounds_) {
+            if (round >= kFirstCreases) fitter_.move_to_creases(surface, points);
+            report_.flips += fitter_.flip_edges(surface, points);
+        }
         return false;
     }
 

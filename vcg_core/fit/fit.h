@@ -61,6 +61,7 @@ struct FitReport {
 /// Between rounds, edges are flipped and vertices redistributed where that lowers the distances. A boundary
 /// moves to where the points end, from both sides, and notches that hold points are filled.
 ///
+/// - Between rounds, vertices move to creases of the points (crease_moves.h), where flips then put edges.
 /// - What stays: components, handles, boundary loops, and the number of vertices unless options.reduce_to is
 ///   less. No face turns over, folds onto a neighbour or becomes a sliver.
 /// - Self-crossings are smoothed out first where possible; the fit adds none.

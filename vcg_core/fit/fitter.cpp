@@ -12,6 +12,7 @@
 
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
+#include "vcg_core/fit/crease_moves.h"
 #include "vcg_core/fit/edge_flips.h"
 #include "vcg_core/fit/layers.h"
 #include "vcg_core/fit/least_squares.h"
@@ -222,8 +223,22 @@ double Fitter::solve(const PointsByFace& points, Surface& surface) {
         surface.positions = limits.without_crossings(displacements, guard_, team_);
         best_error = held_out_.rms_error(surface, outlier_distance_, team_);
     }
-    for (VertexId v : network_.vertices()) network_.set_position(v, to_vcg(surface.positions[v]));
+    place_vertices(surface);
     return stiff_rounds_-- > 0 ? HUGE_VAL : best_error;
+}
+
+/// At the positions of \p surface.
+void Fitter::place_vertices(const Surface& surface) {
+    for (VertexId v : network_.vertices()) network_.set_position(v, to_vcg(surface.positions[v]));
+}
+
+void Fitter::move_to_creases(Surface& surface, const PointsByFace& points) {
+    const PerVertex<Vector3> moves = moves_to_creases(network_, surface, points, noise_variance_, team_);
+    if (std::all_of(moves.begin(), moves.end(), [](const Vector3& way) { return way.isZero(0); })) return;
+    const Surface start = surface;
+    const MoveLimits limits(network_, start);
+    surface.positions = limits.without_crossings(moves, guard_, team_);
+    place_vertices(surface);
 }
 
 /// The least gain that justifies an edge split, as a sum of squared distances.

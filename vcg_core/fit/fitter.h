@@ -70,6 +70,10 @@ public:
     /// Computes the feet of \p points again, then flips edges where that brings the points closer. \return
     /// the number of flips
     int flip_edges(const Surface& surface, PointsByFace& points);
+    /// Moves the vertices beside creases onto them, so that flip_edges() gives the creases edges. Moves \p
+    /// surface, that of the network, with them. \pre \p points were assigned to \p surface before it moved
+    /// last
+    void move_to_creases(Surface& surface, const PointsByFace& points);
     /// Fills the notches of the boundary that hold points. \return their number
     int fill_notches(const Surface& surface, const PointsByFace& points);
 
@@ -89,6 +93,7 @@ private:
     float least_split_gain(const Surface& surface) const;
     template <class Change>
     auto guarded(const Surface& surface, const Change& change);
+    void place_vertices(const Surface& surface);
     void redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses);
     void set_points_aside();
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count);
