@@ -59,6 +59,11 @@ template <class MeshType>
 void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& out,
                 const Coordinates& origin = {});
 
+/// Writes \p lines into the empty mesh \p out, whose type has edges: coordinates relative to \p origin,
+/// edges, and the crease measure as vertex quality. O(vertices + edges).
+template <class MeshType>
+void write_creases(const CreaseLines& lines, MeshType& out, const Coordinates& origin = {});
+
 /// Writes \p result into \p mesh, whose indexed_mesh_of() it was made of: the vertex quality and, if the
 /// settings ask for it, the selection of vertices. Skips deleted vertices. Throws nothing. O(vertices).
 template <class MeshType>
@@ -221,6 +226,23 @@ void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& ou
         for (int k = 0; k < 3; ++k)
             face->V(k) = &out.vert[static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])];
         ++face;
+    }
+}
+
+template <class MeshType>
+void write_creases(const CreaseLines& lines, MeshType& out, const Coordinates& origin) {
+    using Coord = typename MeshType::CoordType;
+    const vcg::Point3d from(origin[0], origin[1], origin[2]);
+    auto vertex = vcg::tri::Allocator<MeshType>::AddVertices(out, lines.positions.size());
+    for (std::size_t i = 0; i < lines.positions.size(); ++i, ++vertex) {
+        vertex->P() = Coord::Construct(lines.positions[i] - from);
+        if (vcg::tri::HasPerVertexQuality(out)) vertex->Q() = lines.measures[i];
+    }
+    auto edge = vcg::tri::Allocator<MeshType>::AddEdges(out, lines.edges.size());
+    for (const std::array<int, 2>& ends : lines.edges) {
+        for (int k = 0; k < 2; ++k)
+            edge->V(k) = &out.vert[static_cast<std::size_t>(ends[static_cast<std::size_t>(k)])];
+        ++edge;
     }
 }
 

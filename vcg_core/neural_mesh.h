@@ -31,6 +31,7 @@ struct Report {
     double topology_confidence = 0;
     int outliers = 0;          ///< points that were not learned because of settings.remove_outliers
     int feature_vertices = 0;  ///< number of ones in NeuralMesh::features
+    int crease_lines = 0;  ///< polylines in NeuralMesh::creases, each between two corners or ends, or closed
     /// Learned points to mesh, % of the diagonal of their bounding box; weighted by area if the cloud was
     /// sampled evenly (settings.even_sampling).
     double rms_error = 0;
@@ -41,6 +42,13 @@ struct Report {
     std::vector<std::string> notes;     ///< the same, of what is no reason for doubt
 };
 
+/// The creases of a mesh as an edge mesh, see crease_lines.h.
+struct CreaseLines {
+    std::vector<vcg::Point3d> positions;    ///< in the coordinates of the input
+    std::vector<std::array<int, 2>> edges;  ///< indices into positions
+    std::vector<float> measures;            ///< per vertex: the crease measure
+};
+
 /// An indexed triangle mesh, counter-clockwise seen from outside, with one number per vertex.
 struct NeuralMesh {
     std::vector<vcg::Point3d> positions;  ///< in the coordinates of the input
@@ -49,6 +57,7 @@ struct NeuralMesh {
     /// Per vertex: 1 if the measure that settings.select_by names is above settings.feature_threshold.
     std::vector<char> features;
     std::vector<Color> colors;  ///< per vertex; empty if settings.vertex_color is kNoColors
+    CreaseLines creases;        ///< empty unless settings.crease_lines is on and there are creases
     Report report;
 };
 

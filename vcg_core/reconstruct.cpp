@@ -11,6 +11,7 @@
 
 #include "vcg_core/cloud_colors.h"
 #include "vcg_core/counter_colors.h"
+#include "vcg_core/crease_lines.h"
 #include "vcg_core/feature_measures.h"
 #include "vcg_core/fit/rms_error.h"
 #include "vcg_core/learn_and_fit.h"
@@ -46,6 +47,21 @@ void write_features(const LearnedNetwork& learned, const Settings& settings, Neu
     mesh.report.mean_counter = mean(mesh.counters);
     mesh.report.feature_vertices =
         static_cast<int>(std::count(mesh.features.begin(), mesh.features.end(), 1));
+}
+
+void write_creases(const LearnedNetwork& learned, const Frame& frame, NeuralMesh& mesh) {
+    const PerVertex<float>& measure = learned.measures.creases;
+    const CreaseGraph graph = crease_lines(learned.network, measure);
+    for (std::size_t i = 0; i < graph.vertices.size(); ++i) {
+        mesh.creases.positions.push_back(frame.outside(graph.positions[i]));
+        mesh.creases.measures.push_back(measure[graph.vertices[i]]);
+    }
+    mesh.creases.edges = graph.edges;
+    mesh.report.crease_lines = graph.lines;
+    mesh.report.notes.push_back(
+        graph.lines == 0 ? "The mesh has no creases, so there is no layer with crease lines."
+                         : "The mesh has " + std::to_string(graph.lines) + " crease lines with " +
+                               std::to_string(graph.corners) + " corners; they are a layer of their own.");
 }
 
 void write_colors(const TargetSpace& target, const Network& network, const Settings& settings,
@@ -107,6 +123,7 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     mesh.report.outliers = task.outliers;
     write_geometry(learned.network, task.target().frame(), mesh);
     write_features(learned, settings, mesh);
+    if (settings.crease_lines) write_creases(learned, task.target().frame(), mesh);
     write_colors(task.target(), learned.network, settings, monotone, mesh);
     write_figures(learned, mesh.report);
     if (monotone.stopped()) mesh.report.stop_reason = StopReason::cancelled;

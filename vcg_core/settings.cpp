@@ -155,6 +155,13 @@ std::vector<SettingInfo> feature_rows() {
     };
 }
 
+SettingInfo crease_lines_row() {
+    return row(
+        &Settings::crease_lines, "crease_lines", "Crease lines",
+        "Add a second layer with the creases of the mesh as polylines, which meet at corners. The vertex "
+        "quality of that layer is the crease measure. The layer with the mesh stays the current one.");
+}
+
 std::vector<SettingInfo> run_rows() {
     using S = Settings;
     return {
@@ -251,7 +258,8 @@ void SettingInfo::store(Settings& settings, double value) const {
 
 const std::vector<SettingInfo>& setting_table() {
     static const std::vector<SettingInfo> table = [] {
-        std::vector<SettingInfo> rows = joined({mesh_rows(), color_rows(), feature_rows(), run_rows()});
+        std::vector<SettingInfo> rows =
+            joined({mesh_rows(), color_rows(), feature_rows(), {crease_lines_row()}, run_rows()});
         for (const SettingInfo& info : joined({paper_rows(), growth_rows()})) rows.push_back(advanced(info));
         return rows;
     }();

@@ -66,6 +66,7 @@ struct Settings {
     bool select_features = false;
     int feature_measure = kFeatureCounter;
     int select_by = kCreaseMeasure;
+    bool crease_lines = false;
     double feature_threshold = 1.0;  ///< of select_by; of the counter C_nc, eq 7
     int random_seed = 1;
     int threads = 0;  ///< 0: one per core
@@ -87,8 +88,11 @@ struct Settings {
     int signal_layer = 0;         ///< as start_layer
     int signals_per_vertex = 60;  ///< signals per vertex of the mesh
 
-    /// Whether the quality or the selection needs \p measure.
-    bool uses(FeatureMeasure measure) const { return feature_measure == measure || select_by == measure; }
+    /// Whether the quality, the selection or the crease lines need \p measure.
+    bool uses(FeatureMeasure measure) const {
+        return feature_measure == measure || select_by == measure ||
+               (crease_lines && measure == kCreaseMeasure);
+    }
     /// Whether the fit may take vertices away from one place and put them in another: only the number of
     /// vertices ends growth, and where they are follows the surface.
     bool redistributes_vertices() const {

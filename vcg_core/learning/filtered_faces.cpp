@@ -21,8 +21,6 @@ constexpr int kIterations = 4;
 constexpr float kWidth = 6;   ///< of the filter, in medians of the squared difference of adjacent normals
 constexpr float kWidest = 1;  ///< bound on the width, for meshes most of whose edges are creases
 
-bool has_corner(const Triangle& face, VertexId v) { return face[0] == v || face[1] == v || face[2] == v; }
-
 }  // namespace
 
 FilteredFaces::FilteredFaces(const Network& network, const PerVertex<Point3f>& positions)
@@ -68,7 +66,7 @@ float FilteredFaces::median_difference() const {
             const VertexId a = surface_.faces[f][k];
             const VertexId b = surface_.faces[f][(k + 1) % 3];
             for (const int g : around(a))
-                if (g > f && has_corner(surface_.faces[g], b))
+                if (g > f && has_corner(g, b))
                     differences.push_back((normals_[g] - normals_[f]).SquaredNorm());
         }
     return differences.empty() ? 0.0F : median(std::move(differences));

@@ -23,6 +23,10 @@ public:
     int count() const { return surface_.face_count(); }
     /// As Surface::faces_around().
     Span<const int> around(VertexId v) const { return surface_.faces_around(v); }
+    bool has_corner(int f, VertexId v) const {
+        const Triangle& face = surface_.faces[f];
+        return face[0] == v || face[1] == v || face[2] == v;
+    }
     const vcg::Point3f& normal(int f) const { return normals_[f]; }
     const vcg::Point3f& centre(int f) const { return centres_[f]; }
     float area(int f) const { return areas_[f]; }

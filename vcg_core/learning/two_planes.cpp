@@ -39,7 +39,9 @@ Crease TwoPlanes::crease_near(const Point3f& x, float edge, VertexId v) {
     const float least_squared_sine = cosine < 0 ? 1 - kOpposite * kOpposite : 1e-9F;
     const float squared_sine = std::max(1 - cosine * cosine, least_squared_sine);
     const float squared_distance = std::max(0.0F, e1 * e1 + e2 * e2 - 2 * e1 * e2 * cosine) / squared_sine;
-    return {std::max(0.0F, 2 - 2 * cosine), squared_distance / (edge * edge + kTiny)};
+    const Point3f to_line =
+        (normals_[0] * (cosine * e2 - e1) + normals_[1] * (cosine * e1 - e2)) / squared_sine;
+    return {std::max(0.0F, 2 - 2 * cosine), squared_distance / (edge * edge + kTiny), to_line};
 }
 
 /// The faces of the two-ring of v, each once.

@@ -17,6 +17,7 @@ namespace neuralmesh {
 struct Crease {
     float turn = 0;              ///< (2 sin(theta / 2))^2 = 2 - 2 cos(theta), theta the angle of the planes
     float squared_distance = 0;  ///< of the point from the line, in squared edge lengths
+    vcg::Point3f to_line{0, 0, 0};  ///< from the point to the nearest one of the line
 };
 
 /// Fits two planes to the faces around a point.

@@ -295,6 +295,19 @@ def all_rows(options):
     return rows, chamfers
 
 
+def kept_rows(row_of, options, file):
+    """row_of(case) for every model and noise level; those that an earlier run has kept in the file are not made again."""
+    kept = paper_runs.Kept(options.out / "features" / file, options.learn)
+    rows = []
+    for name in options.models:
+        for noise in options.noise:
+            case = Case(name, noise, options)
+            rows.append(kept.row(partial(row_of, case), name=name, noise=noise, samples=options.samples,
+                                 vertices=options.vertices))
+        print(f"{name}: done", file=sys.stderr, flush=True)
+    return rows
+
+
 def best_of(row, names):
     return max(row[name]["best"] for name in names)
 

@@ -75,15 +75,8 @@ def report(rows):
 
 def main(arguments=None):
     options = features.parse(["--models", ",".join(MODELS), *(sys.argv[1:] if arguments is None else arguments)])
-    kept = paper_runs.Kept(options.out / "features" / "selection.jsonl", options.learn)
-    rows = []
     try:
-        for name in options.models:
-            for noise in options.noise:
-                case = features.Case(name, noise, options)
-                rows.append(kept.row(lambda one=case: row_of(one), name=name, noise=noise, samples=options.samples,
-                                     vertices=options.vertices))
-            print(f"{name}: done", file=sys.stderr, flush=True)
+        rows = features.kept_rows(row_of, options, "selection.jsonl")
     except paper_runs.RunError as error:
         sys.exit(str(error))
     text = report(rows)

@@ -19,12 +19,16 @@ namespace neuralmesh {
 
 class PlyVertex;
 class PlyFace;
-struct PlyTypes : vcg::UsedTypes<vcg::Use<PlyVertex>::AsVertexType, vcg::Use<PlyFace>::AsFaceType> {};
+class PlyEdge;
+struct PlyTypes : vcg::UsedTypes<vcg::Use<PlyVertex>::AsVertexType, vcg::Use<PlyEdge>::AsEdgeType,
+                                 vcg::Use<PlyFace>::AsFaceType> {};
 /// The quality is double because vcglib's exporter declares it to be of the coordinates' type.
 class PlyVertex : public vcg::Vertex<PlyTypes, vcg::vertex::Coord3d, vcg::vertex::Normal3d,
                                      vcg::vertex::Color4b, vcg::vertex::Qualityd, vcg::vertex::BitFlags> {};
 class PlyFace : public vcg::Face<PlyTypes, vcg::face::VertexRef, vcg::face::Normal3d, vcg::face::BitFlags> {};
-class PlyMesh : public vcg::tri::TriMesh<std::vector<PlyVertex>, std::vector<PlyFace>> {};
+class PlyEdge : public vcg::Edge<PlyTypes, vcg::edge::VertexRef, vcg::edge::BitFlags> {};
+class PlyMesh : public vcg::tri::TriMesh<std::vector<PlyVertex>, std::vector<PlyEdge>, std::vector<PlyFace>> {
+};
 
 /// Reads the PLY file \p path into the empty \p mesh. \return the attributes in it, as bits of
 /// vcg::tri::io::Mask. \throws InputError if that fails

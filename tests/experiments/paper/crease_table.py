@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""The geometry of creases: how far the true creases are from the mesh, and whether its sharp edges follow them.
+
+    crease_table.py --learn build/tests/learn [--data FOLDER] [--out FOLDER]
+
+True creases are the edges of the true mesh with more than 30 degrees between their faces, as in features.py. Lengths
+are in mean edges of the result.
+- bevel: the distance of the true creases from the mesh, mean
+- recall: the share of the length of the true creases with a sharp edge (more than 30 degrees) within half a mean edge
+- precision: the share of the length of the sharp edges within half a mean edge of a true crease
+The same of the crease lines that the filter makes: recall, precision and their distance from the creases, both ways
+(means). Prints a table and writes OUT/crease.md and OUT/crease.json.
+"""
+
+import json
+import sys
+
+import numpy as np
+import pymeshlab
+from scipy.spatial import cKDTree
+
+import features
+import import_paths  # noqa: F401
+import paper_runs
+from compare_accuracy import table
+
+MODELS = ("fandisk", "block", "l-block", "crossed-cylinders", "half-filleted-cube", "stepped-shaft", "plate-with-bores",
+          "chamfered-wedge")
+NEAR = 0.5  # of a mean edge
+STEPS = 20  # points per mean edge along a line
+
+
+def along(ends, step):
+    """Points on the segments ends[:, 0] to ends[:, 1], at most step apart; each stands for the same length on its segment.
+    Returns the points and those lengths."""
+    points, lengths = [], []
+    for a, b in ends:
+        length = np.linalg.norm(b - a)
+        count = max(1, int(np.ceil(length / step)))
+        points.append(a + (b - a) * ((np.arange(count) + .5) / count)[:, None])
+        lengths.append(np.full(count, length / count))
+    return (np.vstack(points), np.concatenate(lengths)) if points else (np.empty((0, 3)), np.empty(0))
+
+
+def sharp_edges(vertices, faces):
+    """The edges with more than features.CREASE_DEGREES between their faces, as (n, 2, 3) places of ends."""
+    ends, sides = features.inner_edges(faces)
+    normals = features.unit_normals(vertices, faces)
+    cosine = (normals[sides[:, 0]] * normals[sides[:, 1]]).sum(axis=1)
+    return vertices[ends[cosine < np.cos(np.radians(features.CREASE_DEGREES))]]
+
+
+def distances(points, mesh):
+    """The distances of points from a mesh."""
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.add_mesh(pymeshlab.Mesh(*mesh))
+    meshes.add_mesh(pymeshlab.Mesh(points))
+    meshes.compute_scalar_by_distance_from_another_mesh_per_vertex(measuremesh=1, refmesh=0, signeddist=False)
+    return np.abs(meshes.current_mesh().vertex_scalar_array())
+
+
+def shares(truth, found, edge):
+    """Recall and precision of segments, and the mean distances of the true ones from those found and back; the latter in
+    edges. Both as (points, lengths)."""
+    if len(found[0]) == 0:
+        return {"recall": 0.0, "precision": 1.0, "missed": float("nan"), "strayed": float("nan")}
+    there, back = cKDTree(found[0]).query(truth[0])[0], cKDTree(truth[0]).query(found[0])[0]
+    return {"recall": float(np.average(there <= NEAR * edge, weights=truth[1])),
+            "precision": float(np.average(back <= NEAR * edge, weights=found[1])),
+            "missed": float(np.average(there, weights=truth[1]) / edge),
+            "strayed": float(np.average(back, weights=found[1]) / edge)}
+
+
+def true_creases(vertices, faces, step):
+    v, index = np.unique(np.round(vertices, 9), axis=0, return_inverse=True)
+    f = index.ravel()[faces]
+    n = np.cross(v[f[:, 1]] - v[f[:, 0]], v[f[:, 2]] - v[f[:, 0]])
+    return along(sharp_edges(v, f[np.linalg.norm(n, axis=1) > 1e-14]), step)
+
+
+def lines_of(case):
+    """The ends of the crease lines of the mesh, as sharp_edges()."""
+    out = case.folder / "lined.ply"
+    paper_runs.learn(case.options.learn, case.folder / "cloud.ply", out, target_vertices=case.options.vertices,
+                     utility_counter=features.UTILITY["adaptive"], crease_lines=1)
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.load_new_mesh(f"{out}.creases.ply")
+    lines = meshes.current_mesh()
+    return lines.vertex_matrix()[lines.edge_matrix()]
+
+
+def row_of(case):
+    mesh = case.learned("adaptive", True)
+    edge = float(np.linalg.norm(mesh.positions[mesh.ends[:, 0]] - mesh.positions[mesh.ends[:, 1]], axis=1).mean())
+    truth = true_creases(*case.surface, edge / STEPS)
+    bevel = distances(truth[0], (mesh.positions, mesh.faces))
+    found = {"edges": sharp_edges(mesh.positions, mesh.faces), "lines": lines_of(case)}
+    return {"model": case.name, "noise": case.noise, "bevel": float(np.average(bevel, weights=truth[1]) / edge),
+            **{kind: shares(truth, along(ends, edge / STEPS), edge) for kind, ends in found.items()}}
+
+
+def line_of(row):
+    return [row["model"], f"{row['noise']:g}", f"{row['bevel']:.4f}",
+            *(f"{row[kind][key]:.3f}" for kind in ("edges", "lines")
+              for key in ("recall", "precision", "missed", "strayed"))]
+
+
+def main(arguments=None):
+    parser = features.parser_of(__doc__, MODELS)
+    parser.set_defaults(noise=(0, 0.1))
+    parser.add_argument("--learn", required=True, help="the core as a program (target learn)")
+    options = parser.parse_args(sys.argv[1:] if arguments is None else arguments)
+    try:
+        rows = features.kept_rows(row_of, options, "crease.jsonl")
+    except paper_runs.RunError as error:
+        sys.exit(str(error))
+    text = table(["model", "noise %", "bevel", "sharp edges: recall", "precision", "missed by", "strayed by",
+                  "crease lines: recall", "precision", "missed by", "strayed by"], map(line_of, rows))
+    (options.out / "crease.md").write_text(text + "\n")
+    (options.out / "crease.json").write_text(json.dumps(rows))
+    print(text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Crease lines of cubes, whose creases are known, and of surfaces without any.
+#include "vcg_core/crease_lines.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "tests/unit/support/cube_edges.h"
+#include "tests/unit/support/referee.h"
+#include "tests/unit/support/shapes.h"
+
+namespace neuralmesh {
+namespace {
+
+constexpr int kPieces = 8;  ///< edges of the mesh along an edge of the cube
+
+/// The cube [-1, 1]^3, each side a grid of kPieces x kPieces squares.
+shapes::Shape fine_cube() {
+    shapes::Shape shape;
+    std::map<std::array<int, 3>, int> ids;
+    const auto id_of = [&](int axis, int side, int i, int j) {
+        std::array<int, 3> at{};
+        at[static_cast<std::size_t>(axis)] = side * kPieces;
+        at[static_cast<std::size_t>((axis + 1) % 3)] = i;
+        at[static_cast<std::size_t>((axis + 2) % 3)] = j;
+        const auto [entry, is_new] = ids.emplace(at, static_cast<int>(shape.positions.size()));
+        if (is_new)
+            shape.positions.emplace_back(2.0 * at[0] / kPieces - 1, 2.0 * at[1] / kPieces - 1,
+                                         2.0 * at[2] / kPieces - 1);
+        return entry->second;
+    };
+    for (int axis = 0; axis < 3; ++axis)
+        for (int side = 0; side < 2; ++side)
+            for (int i = 0; i < kPieces; ++i)
+                for (int j = 0; j < kPieces; ++j) {
+                    const int a = id_of(axis, side, i, j);
+                    const int b = id_of(axis, side, i + 1, j);
+                    const int c = id_of(axis, side, i + 1, j + 1);
+                    const int d = id_of(axis, side, i, j + 1);
+                    if (side == 1) {
+                        shape.faces.push_back({a, b, c});
+                        shape.faces.push_back({a, c, d});
+                    } else {
+                        shape.faces.push_back({a, c, b});
+                        shape.faces.push_back({a, d, c});
+                    }
+                }
+    return shape;
+}
+
+PerVertex<float> everywhere(const Network& network, float measure) {
+    return PerVertex<float>(network.slot_count(), measure);
+}
+
+/// The graph has each edge once, and its counts are right.
+void expect_consistent(const CreaseGraph& graph) {
+    ASSERT_EQ(graph.positions.size(), graph.vertices.size());
+    EXPECT_TRUE(std::is_sorted(graph.vertices.begin(), graph.vertices.end()));
+    std::map<VertexId, std::set<VertexId>> joined;
+    for (const auto& [i, j] : graph.edges) {
+        ASSERT_LT(i, j);
+        const VertexId a = graph.vertices.at(static_cast<std::size_t>(i));
+        const VertexId b = graph.vertices.at(static_cast<std::size_t>(j));
+        EXPECT_NE(a, b);
+        EXPECT_TRUE(joined[a].insert(b).second);
+        EXPECT_TRUE(joined[b].insert(a).second);
+    }
+    EXPECT_EQ(joined.size(), graph.vertices.size());
+    const auto corners = std::count_if(joined.begin(), joined.end(),
+                                       [](const auto& entry) { return entry.second.size() > 2; });
+    EXPECT_EQ(graph.corners, corners);
+}
+
+TEST(CreaseLines, ACubeHasTwelve) {
+    const Network cube = referee::network_of(fine_cube());
+    const CreaseGraph graph = crease_lines(cube, everywhere(cube, 2));
+    expect_consistent(graph);
+    EXPECT_EQ(graph.lines, 12);
+    EXPECT_EQ(graph.corners, 8);
+    EXPECT_EQ(graph.edges.size(), 12u * kPieces);
+    for (const vcg::Point3f& p : graph.positions) EXPECT_LT(distance_from_edge(p), 0.02);
+}
+
+TEST(CreaseLines, NoiseMovesThemLessThanTheVertices) {
+    const Network cube = referee::network_of(fine_cube(), 0.02);
+    const CreaseGraph graph = crease_lines(cube, everywhere(cube, 2));
+    expect_consistent(graph);
+    EXPECT_EQ(graph.lines, 12);
+    double of_lines = 0;
+    double of_vertices = 0;
+    for (std::size_t i = 0; i < graph.vertices.size(); ++i) {
+        of_lines += distance_from_edge(graph.positions[i]);
+        of_vertices += distance_from_edge(cube.position(graph.vertices[i]));
+    }
+    EXPECT_LT(of_lines, 0.8 * of_vertices);
+}
+
+TEST(CreaseLines, VerticesOfALowMeasureAreOnNone) {
+    const Network cube = referee::network_of(fine_cube());
+    const CreaseGraph graph = crease_lines(cube, everywhere(cube, 0.3F));
+    EXPECT_TRUE(graph.vertices.empty());
+    EXPECT_EQ(graph.lines, 0);
+}
+
+TEST(CreaseLines, AGapOfTwoEdgesIsBridged) {
+    const Network cube = referee::network_of(fine_cube());
+    PerVertex<float> measure = everywhere(cube, 2);
+    for (const VertexId v : cube.vertices()) {
+        const vcg::Point3f p = cube.position(v);
+        if (p[0] == 1 && p[1] == 1 && p[2] == 0) measure[v] = 0.5F;
+    }
+    const CreaseGraph graph = crease_lines(cube, measure);
+    EXPECT_EQ(graph.lines, 12);
+    EXPECT_EQ(graph.edges.size(), 12u * kPieces);
+}
+
+TEST(CreaseLines, RimsOfATubeAreTwoClosedOnesIfItHasLids) {
+    constexpr int kAround = 14;
+    shapes::Shape tube = shapes::tube(kAround, 6);
+    const Network open = referee::network_of(tube);
+    EXPECT_EQ(crease_lines(open, everywhere(open, 2)).lines, 0);
+
+    const auto last = static_cast<int>(tube.positions.size());
+    for (const auto& loop : {0, 1}) {
+        vcg::Point3d centre(0, 0, 0);
+        for (int i = 0; i < kAround; ++i)
+            centre += tube.positions[static_cast<std::size_t>(loop == 0 ? i : last - kAround + i)] / kAround;
+        tube.positions.push_back(centre);
+    }
+    for (int i = 0; i < kAround; ++i) {
+        const int next = (i + 1) % kAround;
+        tube.faces.push_back({last, next, i});
+        tube.faces.push_back({last + 1, last - kAround + i, last - kAround + next});
+    }
+    const Network closed = referee::network_of(tube);
+    ASSERT_EQ(closed.validate(), "");
+    const CreaseGraph graph = crease_lines(closed, everywhere(closed, 2));
+    expect_consistent(graph);
+    EXPECT_EQ(graph.lines, 2);
+    EXPECT_EQ(graph.corners, 0);
+    EXPECT_EQ(graph.edges.size(), 2u * kAround);
+}
+
+}  // namespace
+}  // namespace neuralmesh
