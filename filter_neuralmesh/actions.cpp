@@ -152,6 +152,7 @@ std::vector<Figure> figures(const Report& report, int action) {
             count("components", report.components),
             count("outliers", report.outliers),
             count("feature_vertices", report.feature_vertices),
+            count("crease_lines", report.crease_lines),
             count("warnings", static_cast<long long>(report.warnings.size())),
             {"rms_error", report.rms_error, false},
             {"mean_counter", report.mean_counter, false},

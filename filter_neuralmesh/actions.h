@@ -32,6 +32,7 @@ constexpr int kCounters = 1;
 constexpr const char* kPluginName = "FilterNeuralMesh";
 constexpr const char* kVendor = "The Neural Mesh authors";
 constexpr const char* kLayerLabel = "Neural Mesh";
+constexpr const char* kCreaseLabel = "Neural Mesh creases";
 constexpr const char* kNoLayer =
     "There is no current layer to learn: open or create a point cloud or a mesh first.";
 constexpr const char* kNoStartLayer =

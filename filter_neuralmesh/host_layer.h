@@ -27,18 +27,33 @@ inline int result_mask(const Settings& settings) {
     return mask;
 }
 
+/// Moves the layer \p added to \p origin, which its coordinates are relative to.
+inline void set_origin(MeshModel& added, const Coordinates& origin) {
+    for (int k = 0; k < 3; ++k)
+        added.cm.Tr.ElementAt(k, 3) = static_cast<MESHLAB_SCALAR>(origin[static_cast<std::size_t>(k)]);
+}
+
 /// Fills the new layer \p added except for box and normals. \p transform is the matrix of the layer that was
-/// learned. Adds a warning to \p result if the layer cannot store world coordinates.
+/// learned. Adds a warning to \p result if the layer cannot store world coordinates. \return the point that
+/// coordinates are relative to
 template <class Matrix>
-void fill_layer(NeuralMesh& result, const Settings& settings, const Matrix& transform, MeshModel& added) {
+Coordinates fill_layer(NeuralMesh& result, const Settings& settings, const Matrix& transform,
+                       MeshModel& added) {
     added.updateDataMask(result_mask(settings));
     const Coordinates origin = origin_of<CMeshO>(result, transform);
     write_mesh(result, settings, added.cm, origin);
     added.cm.svn = settings.select_features ? result.report.feature_vertices : 0;
-    if (origin == Coordinates{}) return;
-    for (int k = 0; k < 3; ++k)
-        added.cm.Tr.ElementAt(k, 3) = static_cast<MESHLAB_SCALAR>(origin[static_cast<std::size_t>(k)]);
-    result.report.warnings.push_back(sentence_on_origin(origin));
+    set_origin(added, origin);
+    if (origin != Coordinates{}) result.report.warnings.push_back(sentence_on_origin(origin));
+    return origin;
+}
+
+/// Fills the new layer \p added with \p lines, in the frame of the mesh that they belong to.
+inline void fill_crease_layer(const CreaseLines& lines, const Coordinates& origin, MeshModel& added) {
+    added.updateDataMask(MeshModel::MM_VERTQUALITY);
+    write_creases(lines, added.cm, origin);
+    set_origin(added, origin);
+    vcg::tri::UpdateBounding<CMeshO>::Box(added.cm);
 }
 
 /// The mesh that the settings want learning to start from, in world coordinates; empty if that is none.
@@ -50,9 +65,10 @@ inline IndexedMesh<double> start_in(MeshDocument& document, const Settings& sett
     return indexed_mesh_of(layer->cm, layer->cm.Tr);
 }
 
-/// Learns the current layer of \p document and adds the result as a new layer, which becomes the current one.
+/// Learns the current layer of \p document and adds the result as a new layer, which becomes the current one,
+/// and its crease lines, if there are any, as another.
 /// The hosts differ in two steps: \p complete(added, report) updates box and normals of the new layer and
-/// makes what the host returns, \p remove(added) deletes the layer if complete() throws.
+/// makes what the host returns, \p remove(added) deletes a layer if a later step throws.
 /// \throws InputError if there is no layer, and what run() throws; the document is then as before
 template <class Complete, class Remove>
 Report learn_current_layer(MeshDocument& document, const Settings& settings, vcg::CallBackPos* call_back,
@@ -66,10 +82,16 @@ Report learn_current_layer(MeshDocument& document, const Settings& settings, vcg
     NeuralMesh result = run(layer->cm, transform, settings, colored, start_in(document, settings), call_back);
 
     MeshModel* const added = document.addNewMesh("", kLayerLabel, true);
+    MeshModel* lines = nullptr;
     try {
-        fill_layer(result, settings, transform, *added);
+        const Coordinates origin = fill_layer(result, settings, transform, *added);
+        if (!result.creases.edges.empty()) {
+            lines = document.addNewMesh("", kCreaseLabel, false);
+            fill_crease_layer(result.creases, origin, *lines);
+        }
         complete(*added, result.report);
     } catch (...) {
+        if (lines != nullptr) remove(*lines);
         remove(*added);
         document.setCurrentMesh(current);
         throw;

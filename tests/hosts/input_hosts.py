@@ -187,13 +187,14 @@ def in_pymeshlab(pymeshlab, layer, folder):
 # --- the libraries of 2022.02 and 2025.07 ------------------------------------------------------------------------
 
 
-def in_library(build, release, layer, folder):
+def in_library(build, release, layer, folder, layers=3):
+    """layers: their number after the filter."""
     out = folder / "out.off"
     plugin = meshlabserver.plugin_path(build, f"meshlab-{release}")
     file = inputs.write_layer(layer, folder / "layer.txt")
     report, = library_hosts.outcomes(library_hosts.run(build, release, plugin, file, out))
     learned = not report["sentence"]
-    assert (report["layers"], report["current"]) == ((3, "Neural Mesh") if learned else (2, "layer"))
+    assert (report["layers"], report["current"]) == ((layers, "Neural Mesh") if learned else (2, "layer"))
     return Outcome(sentence=report["sentence"], host=f"library {release}", mesh=out if learned else None, report=report,
                    origin=_translation_in(np.array(report["matrix"]).reshape(4, 4)) if learned else (0, 0, 0),
                    unchanged=report["unchanged"])

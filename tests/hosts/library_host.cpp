@@ -2,8 +2,8 @@
 // Copyright the Neural Mesh authors
 
 // MeshLab 2022.02 or 2025.07 without its window: the plugin manager of libmeshlab-common checks and loads the
-// plugin, and the filter learns a layer, or the filter that the layer's file names. It is compiled once per release, with MeshLab's symbols left
-// undefined until run_library_host.cpp loads it. Arguments:
+// plugin, and the filter learns a layer, or the filter that the layer's file names. It is compiled once per
+// release, with MeshLab's symbols left undefined until run_library_host.cpp loads it. Arguments:
 //   LAYER OUT          learns the layer that inputs.py has written and writes the result to OUT
 //   LAYER OUT cancel   repeats this; the host asks to stop at a later call of the progress each time
 //   LAYER OUT memory   repeats this; a later allocation fails each time
@@ -85,7 +85,7 @@ public:
                 values.restore();
             } else {
                 write_off(document.mm()->cm, file);
-                document.delMesh(document.mm()->id());
+                for (unsigned added = 2; document.meshNumber() > 2; ++added) document.delMesh(added);
             }
         }
         std::cout << ", \"unchanged\": " << truth(bytes_of(document, layer) == before) << "}" << std::endl;
@@ -134,6 +134,11 @@ private:
         if (outcome.sentence.empty())
             std::cout << ", \"vn\": " << document.mm()->cm.vn
                       << ", \"matrix\": " << words_of(document.mm()->cm.Tr);
+        for (const MeshModel& layer : document.meshIterator())
+            if (layer.cm.en > 0)
+                std::cout << ", \"creases\": {\"label\": " << quoted(layer.label().toStdString())
+                          << ", \"vertices\": " << layer.cm.vn << ", \"edges\": " << layer.cm.en
+                          << ", \"matrix\": " << words_of(layer.cm.Tr) << "}";
     }
 
     PluginManager manager_;

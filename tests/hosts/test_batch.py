@@ -296,6 +296,7 @@ def test_the_slurm_job_ends_if_no_worker_starts(installed, few, tmp_path):
 @pytest.mark.parametrize("words, sentence", [
     ("{few} --out {out} target_vertices=1", "Target vertices) is 1: choose a value from 4 to"),
     ("{few} --out {out} vertices=5", "There is no parameter vertices."),
+    ("{few} --out {out} crease_lines=true", "writes the mesh only: leave crease_lines out."),
     ("{few} --out {out} --workers 0", "invalid positive int value: '0'"),
     ("{few} --out {out} --memory-limit lots", "invalid memory_size value: 'lots'"),
     ("{few} --out {out} --address localhost:1", "--address is for --engine dask."),

@@ -16,7 +16,7 @@ from conftest import CORNERS, MODELS, PYTHON_NAME, out_of_range, parameters
 from input_hosts import state
 
 COUNTS = ("vertices", "faces", "signals", "splits", "collapses", "genus", "boundary_loops", "components",
-          "outliers", "feature_vertices", "warnings", "stop_reason")
+          "outliers", "feature_vertices", "crease_lines", "warnings", "stop_reason")
 MEASURES = meshlabserver.MEASURES
 
 

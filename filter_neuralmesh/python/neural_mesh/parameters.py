@@ -107,6 +107,9 @@ def check(settings: Settings, meshes: pymeshlab.MeshSet) -> Dict[str, Any]:
         sentence = refusal(for_pymeshlab(settings))
         if sentence != accepted:
             raise WrongUsage(sentence)
+        if settings.get("crease_lines") is True:
+            raise WrongUsage("With crease_lines the filter makes a second layer, and this command writes the mesh only: "
+                             "leave crease_lines out.")
         return {**defaults, **settings}
     finally:
         meshes.clear()

@@ -39,6 +39,9 @@ fi
 say "Creases of noisy data"
 "$python" "$here/creases.py" "$pictures/creases.png" --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so" --out "$out"
 "$python" "$here/small_png.py" --width 1080 "$pictures/creases.png"
+say "Crease lines"
+"$python" "$here/crease_lines.py" "$pictures/crease_lines.png" --learn "$build/tests/learn" --out "$out"
+"$python" "$here/small_png.py" --width 1080 "$pictures/crease_lines.png"
 say "Screenshots"
 screenshots gui_2020_09.sh 2020.09
 if [ -e "$roots/trixie.complete" ]; then screenshots gui_2022_02.sh 2022.02; fi
@@ -47,6 +50,8 @@ say "Table 1 of the paper"
 "$python" "$here/../paper/paper_table1.py" --learn "$build/tests/learn" --check "$build/tests/check_mesh" --out "$out"
 say "Features by learning, by the final mesh and by the cloud"
 "$python" "$here/../paper/features.py" --learn "$build/tests/learn" --out "$out"
+say "Edges along creases"
+"$python" "$here/../paper/crease_table.py" --learn "$build/tests/learn" --out "$out"
 say "Creases of given meshes"
 "$python" "$here/../paper/given_meshes.py" --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so" --out "$out"
 say "Termination by eq 8"
