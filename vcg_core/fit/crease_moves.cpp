@@ -23,6 +23,7 @@ constexpr float kAlike = 0.9F;      ///< cosine above which two planes are one
 constexpr float kOpposite = -0.9F;  ///< and below which they are the two sides of a thin part
 constexpr float kTight = 0.03F;  ///< largest distance of the points from their planes, root mean square ...
 constexpr float kNoiseShare = 1.2F;   ///< ... besides this share of the variance of the noise
+constexpr float kNoisiest = 0.15F;    ///< with more noise nothing moves: planes follow it off the points
 constexpr float kBetter = 0.3F;       ///< largest share of the squared error of a quadratic height field ...
 constexpr float kMuchBetter = 0.04F;  ///< ... and of what noise leaves unexplained of it
 constexpr int kFewestPoints = 10;     ///< of a plane
@@ -42,6 +43,7 @@ public:
         collect_faces(v);
         if (!choose_seeds()) return Vector3::Zero();
         const float edge = mean_edge(v);
+        if (!(noise_variance < kNoisiest * kNoisiest * edge * edge)) return Vector3::Zero();
         collect_points(surface_.positions[v], kReach * edge);
         for (int i = 0; i < kRefinements; ++i)
             if (!refine()) return Vector3::Zero();

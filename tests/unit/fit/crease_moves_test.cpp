@@ -90,6 +90,12 @@ TEST(CreaseMoves, NoiseIsNoCrease) {
     EXPECT_EQ(count_moved(moves_of(scene, noise)), 0);
 }
 
+TEST(CreaseMoves, NothingMovesWithMuchNoise) {
+    const FitScene scene = roof_scene();
+    EXPECT_GT(count_moved(moves_of(scene, 0.1 * kEdge)), 0);
+    EXPECT_EQ(count_moved(moves_of(scene, 0.5 * kEdge)), 0);
+}
+
 TEST(CreaseMoves, FewPointsMoveNothing) {
     shapes::Shape mesh = shapes::grid(kColumns, kColumns);
     for (vcg::Point3d& p : mesh.positions) p[2] = roof(p[0]);
