@@ -91,7 +91,7 @@ public:
     PerVertex<Vector3> colors() const {
         PerVertex<float> weights(network_.slot_count(), 0);
         for (int f = 0; f < surface_.face_count(); ++f)
-            for (int k = 0; k < 3; ++k) weights[surface_.faces[f][k]] += moments_[f].row(k).sum();
+            for (int k = 0; k < 3; ++k) weights[corner(f, k)] += moments_[f].row(k).sum();
         PerVertex<Vector3> result(network_.slot_count(), Vector3::Zero());
         for (int time = 0; time < 2; ++time) {
             const PerVertex<Vector3> rest = left_of_sums(result);
@@ -103,12 +103,14 @@ public:
     }
 
 private:
+    VertexId corner(int f, int k) const { return surface_.faces[f][static_cast<std::size_t>(k)]; }
+
     void add(const Sample& sample, const Hit& hit) {
         const auto& w = hit.foot.weights;
         const Vector3 weights(w[0], w[1], w[2]);
         moments_[hit.face] += sample.weight * weights * weights.transpose();
         for (int k = 0; k < 3; ++k)
-            color_sums_[surface_.faces[hit.face][k]] += sample.weight * weights[k] * sample.color;
+            color_sums_[corner(hit.face, k)] += sample.weight * weights[k] * sample.color;
     }
 
     /// The sums that the samples would have without the colours interpolated between the vertices.
@@ -116,8 +118,7 @@ private:
         PerVertex<Vector3> rest = color_sums_;
         for (int f = 0; f < surface_.face_count(); ++f)
             for (int k = 0; k < 3; ++k)
-                for (int l = 0; l < 3; ++l)
-                    rest[surface_.faces[f][k]] -= moments_[f](k, l) * colors[surface_.faces[f][l]];
+                for (int l = 0; l < 3; ++l) rest[corner(f, k)] -= moments_[f](k, l) * colors[corner(f, l)];
         return rest;
     }
 

@@ -304,9 +304,7 @@ Point3f place_on_line(const Network& network, TwoPlanes& planes, VertexId v) {
 }  // namespace
 
 CreaseGraph crease_lines(const Network& network, const PerVertex<float>& measure) {
-    PerVertex<Point3f> positions(network.slot_count(), Point3f(0, 0, 0));
-    for (const VertexId v : network.vertices()) positions[v] = network.position(v);
-    const FilteredFaces faces(network, positions);
+    const FilteredFaces faces(network);
     Chosen chosen(network, faces, measure);
     chosen.add_sharp_edges();
     chosen.open_triangles();

@@ -23,17 +23,14 @@ struct CreaseGraph {
 };
 
 /// The creases of \p network, chained from its sharp edges:
-/// 1. Edges with more than 30 degrees between their faces, by normals from which most of the noise is
-/// filtered
-///    (FilteredFaces), if both ends have a \p measure, that of CreaseMeasure, of at least .7.
+/// 1. Edges count whose faces differ by more than 30 degrees and whose ends both have a \p measure, that of
+///    CreaseMeasure, of at least .7. The normals are those of FilteredFaces, without most of the noise.
 /// 2. Gaps of up to two mean edges of the mesh are bridged where a line goes on straight.
-/// 3. Edges shorter than half a mean edge are contracted: so strips of small faces along a crease become one
-/// line.
-/// 4. Ends beside a corner join it. Of two short lines between the same corners one stays, the creased one;
-///    branches of one or two edges and separate lines of up to three go.
-/// 5. Along a line, places are those where two planes meet (TwoPlanes), which noise moves less than the
-/// vertices.
-///    Corners and ends are where the vertices are.
+/// 3. Edges shorter than half a mean edge are contracted: strips of small faces along a crease become a line.
+/// 4. Ends beside a corner join it. Of two short lines between the same corners the more creased one stays.
+///    Branches of one or two edges and separate lines of up to three go.
+/// 5. Vertices along a line move to where two planes meet (TwoPlanes), which noise moves less than the mesh.
+///    Corners and ends stay where the vertices are.
 ///
 /// Boundaries are no creases. Two creases nearer to each other than half a mean edge may come out as one.
 /// O(vertices log vertices).

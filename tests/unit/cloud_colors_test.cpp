@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Vertex colours from those of a cloud: accuracy, the plain slow computation, places without points, and what
-// a whole run does with them.
+// Vertex colours from those of a cloud: accuracy, the plain slow computation, and places without points.
 #include "vcg_core/cloud_colors.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +12,6 @@
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/mesh/surface.h"
-#include "vcg_core/reconstruct.h"
 
 namespace neuralmesh {
 namespace {
@@ -190,53 +188,6 @@ TEST(CloudColors, AreWholeIfStopped) {
     Random random(1);
     const auto found = cloud_colors(target, targets::network_in_frame(target, sphere), 1, random, stop);
     for (const Color& color : found) EXPECT_EQ(color, kBlue);
-}
-
-NeuralMesh learn(const TargetSpace& target, int vertex_color) {
-    Settings settings;
-    settings.target_vertices = 300;
-    settings.vertex_color = vertex_color;
-    NoProgress progress;
-    return reconstruct(target, settings, progress);
-}
-
-/// Red points on a sphere whose density varies; some are given twice, and then blue; blue outliers.
-TargetSpace red_ball_in_blue_dust() {
-    Cloud cloud = shapes::uneven_sphere_cloud(6000, 10, 0.01);
-    const std::size_t red = cloud.size();
-    cloud.insert(cloud.end(), cloud.begin(), cloud.begin() + 1500);
-    Random random(2);
-    for (int i = 0; i < 60; ++i) cloud.push_back(shapes::in_ball(random).Normalize() * 1.5);
-    TargetSpace target = targets::target_of(cloud);
-    std::vector<Color> colors(cloud.size(), kBlue);
-    std::fill_n(colors.begin(), red, kRed);
-    target.set_colors(colors);
-    return target;
-}
-
-TEST(CloudColors, OfOutliersDoNotCount) {
-    const NeuralMesh mesh = learn(red_ball_in_blue_dust(), kCloudColors);
-    EXPECT_TRUE(soundness::has_warning(mesh, "repeat others"));
-    EXPECT_GT(mesh.report.outliers, 20);
-    ASSERT_EQ(mesh.colors.size(), mesh.positions.size());
-    for (const Color& color : mesh.colors) {
-        EXPECT_GT(color[0], 250);
-        EXPECT_LT(color[2], 5);
-    }
-    EXPECT_TRUE(mesh.report.notes.empty());
-}
-
-TEST(CloudColors, GiveWayToTheCounterOrToNone) {
-    const TargetSpace red = red_ball_in_blue_dust();
-    const NeuralMesh counter = learn(red, kCounterColors);
-    const Cloud plain = shapes::sphere_cloud(2000);
-    const NeuralMesh without = learn(targets::target_of(plain), kCloudColors);
-    ASSERT_EQ(without.report.notes.size(), 1U);
-    EXPECT_EQ(without.report.notes.front().find("The layer has no colours"), 0U);
-    EXPECT_EQ(without.colors, learn(targets::target_of(plain), kCounterColors).colors);
-    EXPECT_EQ(counter.colors.size(), counter.positions.size());
-    EXPECT_NE(counter.colors, std::vector<Color>(counter.colors.size(), counter.colors.front()));
-    EXPECT_TRUE(learn(red, kNoColors).colors.empty());
 }
 
 }  // namespace

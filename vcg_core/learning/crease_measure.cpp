@@ -33,20 +33,12 @@ float normal_spread(const Network& network, VertexId v) {
     return std::max(0.0F, 1 - sum.Norm() / static_cast<float>(ring.face_count()));
 }
 
-PerVertex<Point3f> positions_of(const Network& network) {
-    PerVertex<Point3f> positions(network.slot_count(), Point3f(0, 0, 0));
-    for (const VertexId v : network.vertices()) positions[v] = network.position(v);
-    return positions;
-}
-
 VertexId source_of(const PerVertex<VertexId>& source, VertexId v) { return source.empty() ? v : source[v]; }
 
-/// f of every vertex of \p shown, by the planes of the mesh of \p base with its vertices at \p positions.
-/// Vertex v of \p shown lies near source[v] of \p base and has the normal spread spreads[v].
-PerVertex<float> crease_strengths(const Network& base, const PerVertex<Point3f>& positions,
-                                  const Network& shown, const PerVertex<VertexId>& source,
-                                  const PerVertex<float>& spreads) {
-    const FilteredFaces faces(base, positions);
+/// f of every vertex of \p shown, by the planes of \p faces, those of \p base. Vertex v of \p shown lies near
+/// source[v] of \p base and has the normal spread spreads[v].
+PerVertex<float> crease_strengths(const Network& base, const FilteredFaces& faces, const Network& shown,
+                                  const PerVertex<VertexId>& source, const PerVertex<float>& spreads) {
     TwoPlanes planes(base, faces);
     PerVertex<float> result(shown.slot_count(), 0);
     for (const VertexId v : shown.vertices()) {
@@ -95,9 +87,9 @@ PerVertex<float> CreaseMeasure::values(const Network& learned, const Network& sh
     PerVertex<float> spreads(shown.slot_count(), 0);
     for (const VertexId v : shown.vertices()) spreads[v] = spread_sums_[source_of(source, v)] / moments;
 
-    PerVertex<float> result = crease_strengths(learned, means, shown, source, spreads);  // f
+    PerVertex<float> result = crease_strengths(learned, {learned, means}, shown, source, spreads);  // f
     if (!source.empty()) {
-        const PerVertex<float> g = crease_strengths(shown, positions_of(shown), shown, {}, spreads);
+        const PerVertex<float> g = crease_strengths(shown, FilteredFaces(shown), shown, {}, spreads);
         for (VertexId v = 0; v < result.size(); ++v)
             result[v] = std::sqrt(result[v] * std::sqrt(result[v] * g[v]));
     }

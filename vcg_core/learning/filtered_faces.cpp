@@ -21,7 +21,15 @@ constexpr int kIterations = 4;
 constexpr float kWidth = 6;   ///< of the filter, in medians of the squared difference of adjacent normals
 constexpr float kWidest = 1;  ///< bound on the width, for meshes most of whose edges are creases
 
+PerVertex<Point3f> positions_of(const Network& network) {
+    PerVertex<Point3f> positions(network.slot_count(), Point3f(0, 0, 0));
+    for (const VertexId v : network.vertices()) positions[v] = network.position(v);
+    return positions;
+}
+
 }  // namespace
+
+FilteredFaces::FilteredFaces(const Network& network) : FilteredFaces(network, positions_of(network)) {}
 
 FilteredFaces::FilteredFaces(const Network& network, const PerVertex<Point3f>& positions)
     : surface_(network) {

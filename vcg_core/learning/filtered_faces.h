@@ -19,6 +19,8 @@ class FilteredFaces {
 public:
     /// The faces of \p network with its vertices at \p positions. O(vertices).
     FilteredFaces(const Network& network, const PerVertex<vcg::Point3f>& positions);
+    /// The same with the vertices where they are.
+    explicit FilteredFaces(const Network& network);
 
     int count() const { return surface_.face_count(); }
     /// As Surface::faces_around().

@@ -14,7 +14,6 @@ signals, and writes OUT/given_meshes.md.
 """
 
 import json
-import os
 import sys
 
 import numpy as np

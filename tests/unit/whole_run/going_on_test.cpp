@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Learning that goes on from a mesh of the user's: what it saves, and what stays.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/unit/support/open_shapes.h"
+#include "tests/unit/support/soundness.h"
+#include "vcg_core/reconstruct.h"
+
+namespace neuralmesh {
+namespace {
+
+using shapes::Shape;
+
+Settings going_on(int vertices) {
+    Settings settings;
+    settings.start_mesh = kGivenMesh;
+    settings.target_vertices = vertices;
+    return settings;
+}
+
+NeuralMesh learn(const TargetSpace& target, const Settings& settings, const Shape& start) {
+    NoProgress progress;
+    return reconstruct(target, settings, progress, start);
+}
+
+/// A coarse result as the start of a finer one: as good as a new run, with fewer splits.
+TEST(GoingOn, RefinesAnEarlierResult) {
+    const TargetSpace torus = targets::target_of(shapes::torus_cloud(20000));
+    Settings settings;
+    settings.target_vertices = 2500;
+    NoProgress progress;
+    const NeuralMesh coarse = reconstruct(torus, settings, progress);
+    const NeuralMesh fine = learn(torus, going_on(5000), {coarse.positions, coarse.faces});
+    soundness::expect_exact(fine, going_on(5000));
+    EXPECT_EQ(fine.report.genus, 1);
+    settings.target_vertices = 5000;
+    const NeuralMesh anew = reconstruct(torus, settings, progress);
+    // Most of the splits that made the vertices of the earlier result are saved.
+    EXPECT_LT(static_cast<double>(fine.report.splits), static_cast<double>(anew.report.splits) - 0.7 * 2500);
+    EXPECT_LT(fine.report.rms_error, 1.05 * anew.report.rms_error);
+    const NeuralMesh same = learn(torus, going_on(2500), {coarse.positions, coarse.faces});
+    soundness::expect_exact(same, going_on(2500));
+    EXPECT_LT(same.report.rms_error, 1.1 * coarse.report.rms_error);
+}
+
+/// A ring without its two discs: the boundaries stay though the points enclose space there.
+TEST(GoingOn, KeepsBoundariesHandlesAndComponents) {
+    Shape start = shapes::torus_grid(16, 8);
+    start.faces.resize(start.faces.size() - 2);
+    const auto census = referee::census(start.faces);
+    const TargetSpace torus = targets::target_of(shapes::torus_cloud(20000));
+    const NeuralMesh mesh = learn(torus, going_on(600), start);
+    soundness::expect_exact(mesh, going_on(600));
+    EXPECT_EQ(mesh.report.boundary_loops, census.loops);
+    EXPECT_EQ(mesh.report.components, 1);
+    EXPECT_EQ(mesh.report.genus, 1);
+    EXPECT_EQ(mesh.report.topology_confidence, 0);
+    Settings closed = going_on(600);
+    closed.surface = kClosedSurface;
+    EXPECT_TRUE(soundness::has_warning(learn(torus, closed, start), "because the start layer is"));
+}
+
+TEST(GoingOn, MayNotHaveMoreVerticesThanTheTarget) {
+    try {
+        learn(targets::target_of(shapes::sphere_cloud(4000)), going_on(100), shapes::icosphere(3));
+        FAIL() << "learned";
+    } catch (const SettingError& error) {
+        EXPECT_NE(std::string(error.what()).find("642 vertices: raise target_vertices from 100"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace neuralmesh
