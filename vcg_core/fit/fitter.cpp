@@ -56,10 +56,10 @@ constexpr float kLayerStiffness = 3;
 constexpr int kStiffRounds = 3;
 constexpr float kStiffWeight = 50;
 constexpr float kWeightAfterStiff = 1;
-/// Noise variances that an edge split has to gain. kMaxSplitVariances holds in general: the best of ten
-/// thousand splits that follow only noise seem to gain about this much. kMinSplitVariances holds if the noise
-/// is well below kSmallNoise edge lengths: then the surface crumples little, and right splits win more than
-/// wrong ones lose.
+/// Noise variances that an edge split has to gain. kMinSplitVariances holds where the noise is well below
+/// kSmallNoise of the edge: there the surface crumples little, and right splits win more than wrong ones
+/// lose. kMaxSplitVariances holds for noisier edges: the best of ten thousand splits that follow only noise
+/// seem to gain about this much. Edges longer than the mean one count as of mean length.
 constexpr float kMinSplitVariances = 4;
 constexpr float kMaxSplitVariances = 16;
 constexpr float kSmallNoise = 0.06F;
@@ -241,12 +241,9 @@ void Fitter::move_to_creases(Surface& surface, const PointsByFace& points) {
     place_vertices(surface);
 }
 
-/// The least gain that justifies an edge split, as a sum of squared distances.
-float Fitter::least_split_gain(const Surface& surface) const {
-    const float small = kSmallNoise * mean_edge_length(surface);
-    return noise_variance_ *
-           std::min(kMaxSplitVariances,
-                    kMinSplitVariances * (1 + noise_variance_ / std::max(small * small, 1e-20F)));
+LeastSplitGain Fitter::least_split_gain(const Surface& surface) const {
+    return {kMinSplitVariances * noise_variance_, kMaxSplitVariances * noise_variance_,
+            std::sqrt(noise_variance_) / kSmallNoise, mean_edge_length(surface)};
 }
 
 /// Carries out \p change(barred) on the network, whose surface is \p surface. If the guard objects to the

@@ -13,6 +13,7 @@
 #include "vcg_core/fit/point_choice.h"
 #include "vcg_core/fit/points_by_face.h"
 #include "vcg_core/fit/redistribute.h"
+#include "vcg_core/fit/split_gains.h"
 
 namespace neuralmesh {
 
@@ -90,7 +91,7 @@ private:
     PerVertex<float> stiffness_by(PerVertex<float> variances, const Surface& surface,
                                   const PointsByFace& points) const;
     std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
-    float least_split_gain(const Surface& surface) const;
+    LeastSplitGain least_split_gain(const Surface& surface) const;
     template <class Change>
     auto guarded(const Surface& surface, const Change& change);
     void place_vertices(const Surface& surface);

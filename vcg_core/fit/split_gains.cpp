@@ -43,9 +43,9 @@ FaceHatSums hat_sums(const Surface& surface, const PointsByFace& points, int fac
 }
 
 /// The split of the edge a-b by its faces; its gain is negative if no point is near, or if it is less than \p
-/// least_gain for points of weight 1.
+/// least_gain.
 EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const PerFace<FaceHatSums>& sums,
-                   float least_gain, VertexId a, VertexId b) {
+                   const LeastSplitGain& least_gain, VertexId a, VertexId b) {
     HatSums both;
     Vector3 normal = Vector3::Zero();
     std::array<int, 2> faces{};
@@ -69,7 +69,8 @@ EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const Per
     const float bound = kMaxOffset * (at_a - at_b).norm();
     const float offset = std::min(std::max(both.phi_residual / both.phi_phi, -bound), bound);
     const float gain = both.phi_residual * both.phi_residual / both.phi_phi;
-    const bool enough = gain >= least_gain * points.mean_weight(faces[0], faces[1]);
+    const bool enough =
+        gain >= least_gain.of((at_a - at_b).squaredNorm()) * points.mean_weight(faces[0], faces[1]);
     return {enough ? gain : -1, a, b, 0.5F * (at_a + at_b) + offset * normal.normalized()};
 }
 
@@ -114,7 +115,7 @@ void add_boundary_gain(EdgeSplit& split, const BoundaryTarget& target) {
 }  // namespace
 
 std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surface, const PointsByFace& points,
-                                   float least_gain, ThreadTeam& team) {
+                                   const LeastSplitGain& least_gain, ThreadTeam& team) {
     PerFace<FaceHatSums> sums(surface.face_count());
     parallel_for(sums.size(), kChunk, team, [&](int f) { sums[f] = hat_sums(surface, points, f); });
     std::vector<EdgeSplit> splits;
@@ -128,9 +129,10 @@ std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surfac
         }
     }
     for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) {
-        EdgeSplit split = split_of(surface, points, sums, 0, target.a, target.b);
+        EdgeSplit split = split_of(surface, points, sums, {}, target.a, target.b);
         add_boundary_gain(split, target);
-        if (split.gain >= least_gain * points.mean_weight(target.face, target.face)) splits.push_back(split);
+        const float least = least_gain.of(target.length * target.length);
+        if (split.gain >= least * points.mean_weight(target.face, target.face)) splits.push_back(split);
     }
     std::stable_sort(splits.begin(), splits.end(),
                      [](const EdgeSplit& x, const EdgeSplit& y) { return x.gain > y.gain; });

@@ -4,6 +4,7 @@
 // What a new vertex on each edge gains in distance to the points.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "vcg_core/base/thread_team.h"
@@ -18,12 +19,27 @@ struct EdgeSplit {
     Vector3 position;
 };
 
-/// The splits of edges that gain at least \p least_gain (>= 0), most gain first, by linear least
+/// What the split of an edge has to gain, as a sum of squared distances of points of weight 1. It is more for
+/// short edges: where they are little longer than the noise, new vertices crumple the surface, and follow the
+/// noise most of all.
+struct LeastSplitGain {
+    float least = 0;         ///< at any length, >= 0
+    float most = 0;          ///< at any length, >= least
+    float short_length = 0;  ///< of edges that have to gain twice the least
+    float long_length = 0;   ///< of edges longer than this as of those as long
+
+    float of(float squared_length) const {
+        const float squared = std::min(squared_length, long_length * long_length);
+        return squared > 0 ? std::min(most, least * (1 + short_length * short_length / squared)) : most;
+    }
+};
+
+/// The splits of edges that gain at least \p least_gain, most gain first, by linear least
 /// squares over the offset of the new vertex from the middle of its edge, along the mean normal of the edge's
 /// faces. The new vertex of a boundary edge also follows the edge's BoundaryTarget, which counts the distance
 /// between the boundary and where the points end; such an edge is that of a face (a, b, c). \p surface is
 /// that of the network. O(points + vertices). The result does not depend on the number of threads.
 std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surface, const PointsByFace& points,
-                                   float least_gain, ThreadTeam& team);
+                                   const LeastSplitGain& least_gain, ThreadTeam& team);
 
 }  // namespace neuralmesh
