@@ -60,13 +60,14 @@ def output_of(command):
     return run
 
 
-def learn(program, cloud, out, **settings):
-    """Runs the core on a PLY file; returns its report, with the warnings as "warnings" and the processor time, including
-    reading and writing, as "processor_seconds". Processor time depends less on other load than wall time."""
+def learn(program, cloud, out, start=None, **settings):
+    """Runs the core on a PLY file, from the mesh of the file start if any; returns its report, with the warnings as
+    "warnings" and the processor time, including reading and writing, as "processor_seconds". Processor time depends less on other load than wall time."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     # The paper draws its signals evenly over the points.
     settings = {"even_sampling": 0, **settings}
-    run = output_of([program, cloud, out, *(f"{key}={value}" for key, value in settings.items())])
+    files = [cloud, out] if start is None else [cloud, out, start]
+    run = output_of([program, *files, *(f"{key}={value}" for key, value in settings.items())])
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return {**json.loads(run.stdout), "warnings": run.stderr.splitlines(),
             "processor_seconds": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime}

@@ -42,6 +42,9 @@ say "Creases of noisy data"
 say "Crease lines"
 "$python" "$here/crease_lines.py" "$pictures/crease_lines.png" --learn "$build/tests/learn" --out "$out"
 "$python" "$here/small_png.py" --width 1080 "$pictures/crease_lines.png"
+say "A start of one's own"
+"$python" "$here/going_on.py" "$pictures/going_on.png" --learn "$build/tests/learn" --out "$out"
+"$python" "$here/small_png.py" --width 1080 "$pictures/going_on.png"
 say "Screenshots"
 screenshots gui_2020_09.sh 2020.09
 if [ -e "$roots/trixie.complete" ]; then screenshots gui_2022_02.sh 2022.02; fi
