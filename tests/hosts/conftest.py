@@ -141,3 +141,13 @@ def out_of_range(build, filter_name=PYTHON_NAME):
         elif kind == "RichAbsPerc":
             cases += [(name, high * 2), (name, NAN)]
     return cases
+
+
+@pytest.fixture(scope="module")
+def site(build, tmp_path_factory):
+    """The Python package as installed: the folder for PYTHONPATH, in this process's path, too."""
+    from stream_clouds import bench
+    folder = bench.install(meshlabserver.plugin_path(build, "pymeshlab-2025.7"), tmp_path_factory.mktemp("site"))
+    sys.path.insert(0, str(folder))
+    yield folder
+    sys.path.remove(str(folder))
