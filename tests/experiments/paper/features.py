@@ -262,7 +262,6 @@ class Case:
         mesh = self.learned(utility, STAGES[fit])
         return {"model": self.name, "noise": self.noise, "mesh": utility, "stage": fit, **judge(mesh, *self.truth)}
 
-
     def chamfer(self):
         """Whether the creases are edges of the true mesh: medians of the angle at an edge that counts as a crease, and
         of the turn of the surface within .5 % of the diagonal around it. None without creases."""
