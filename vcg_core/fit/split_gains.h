@@ -19,14 +19,14 @@ struct EdgeSplit {
     Vector3 position;
 };
 
-/// What the split of an edge has to gain, as a sum of squared distances of points of weight 1. It is more for
-/// short edges: where they are little longer than the noise, new vertices crumple the surface, and follow the
-/// noise most of all.
+/// What the split of an edge has to gain, as a sum of squared distances of points of weight 1. Short edges
+/// have to gain more: a new vertex on an edge little longer than the noise crumples the surface, and mostly
+/// follows the noise.
 struct LeastSplitGain {
-    float least = 0;         ///< at any length, >= 0
-    float most = 0;          ///< at any length, >= least
-    float short_length = 0;  ///< of edges that have to gain twice the least
-    float long_length = 0;   ///< of edges longer than this as of those as long
+    float least = 0;         ///< for any edge, >= 0
+    float most = 0;          ///< for any edge, >= least
+    float short_length = 0;  ///< an edge of this length has to gain twice the least
+    float long_length = 0;   ///< longer edges have to gain as much as one of this length
 
     float of(float squared_length) const {
         const float squared = std::min(squared_length, long_length * long_length);
