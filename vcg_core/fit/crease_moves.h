@@ -12,8 +12,7 @@ namespace neuralmesh {
 
 /// For every vertex the way to the line where two planes meet, if the points of the faces of its two-ring lie
 /// on two planes and the line is nearer than a third of its edges; else 0, as on boundaries and one edge from
-/// them. \p noise_variance is that of the points;
-/// if its root exceeds .15 edges, nothing moves.
+/// them. \p noise_variance is that of the points; if its root exceeds .15 edges, nothing moves.
 ///
 /// Least squares do not find these places: edges that cut a crease off hold the vertices beside it, and no
 /// flip of such an edge gains before a vertex lies on the crease. Two planes are preferred to a smooth

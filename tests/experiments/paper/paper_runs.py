@@ -62,7 +62,8 @@ def output_of(command):
 
 def learn(program, cloud, out, start=None, **settings):
     """Runs the core on a PLY file, from the mesh of the file start if any; returns its report, with the warnings as
-    "warnings" and the processor time, including reading and writing, as "processor_seconds". Processor time depends less on other load than wall time."""
+    "warnings" and the processor time, including reading and writing, as "processor_seconds". Processor time depends less on
+    other load than wall time."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     # The paper draws its signals evenly over the points.
     settings = {"even_sampling": 0, **settings}

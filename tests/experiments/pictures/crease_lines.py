@@ -77,6 +77,13 @@ def picture(name, noise, options):
     return image.resize((SIZE, SIZE), Image.LANCZOS)
 
 
+def side_by_side(pictures):
+    sheet = Image.new("RGB", (len(pictures) * SIZE, SIZE), "white")
+    for column, image in enumerate(pictures):
+        sheet.paste(image, (column * SIZE, 0))
+    return sheet
+
+
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("picture")
@@ -85,10 +92,7 @@ def main(arguments=None):
     parser.add_argument("--out", type=Path, default=Path("out/figures"))
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
-    sheet = Image.new("RGB", (len(PARTS) * SIZE, SIZE), "white")
-    for column, (name, noise) in enumerate(PARTS):
-        sheet.paste(picture(name, noise, options), (column * SIZE, 0))
-    sheet.save(options.picture)
+    side_by_side([picture(name, noise, options) for name, noise in PARTS]).save(options.picture)
 
 
 if __name__ == "__main__":

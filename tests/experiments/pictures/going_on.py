@@ -21,7 +21,7 @@ from PIL import Image, ImageDraw  # noqa: E402
 import features  # noqa: E402
 import models  # noqa: E402
 import paper_runs  # noqa: E402
-from crease_lines import SIZE, View, draw_mesh  # noqa: E402
+from crease_lines import SIZE, View, draw_mesh, side_by_side  # noqa: E402
 
 PART, POINTS, COARSE, FINE = "stepped-shaft", 100_000, 300, 3000
 
@@ -56,16 +56,12 @@ def main(arguments=None):
     points = models.make_cloud(*surface, POINTS, 0)
     models.save_ply(cloud, points)
     paper_runs.learn(options.learn, cloud, mesh, target_vertices=COARSE)
-    pictures = [models.load_mesh(mesh)]
-    pictures.append(without_upper_end(*pictures[0]))
-    models.save_ply(start, *pictures[1])
+    coarse = models.load_mesh(mesh)
+    edited = without_upper_end(*coarse)
+    models.save_ply(start, *edited)
     models.save_ply(cloud, points[is_below(points, points[:, 2].max())])
     paper_runs.learn(options.learn, cloud, mesh, start=start, target_vertices=FINE, start_mesh=2)
-    pictures.append(models.load_mesh(mesh))
-    sheet = Image.new("RGB", (len(pictures) * SIZE, SIZE), "white")
-    for column, shown in enumerate(pictures):
-        sheet.paste(picture(*shown), (column * SIZE, 0))
-    sheet.save(options.picture)
+    side_by_side([picture(*shown) for shown in (coarse, edited, models.load_mesh(mesh))]).save(options.picture)
 
 
 if __name__ == "__main__":
