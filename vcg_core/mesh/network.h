@@ -122,8 +122,9 @@ public:
     int component_count() const;
     /// Per slot the number of its component, in the order of their smallest vertices; -1 for free slots.
     PerVertex<int> components() const;
-    /// Reverses the orientation of every closed component with a negative enclosed volume, so faces are
-    /// counter-clockwise seen from outside.
+    /// Orients every closed component so that its faces are counter-clockwise seen from outside of the body:
+    /// the enclosed volume becomes positive, and negative for components within an odd number of others,
+    /// which are hollows.
     void orient_outward();
     int boundary_loop_count() const;
     /// Sum over the components, from the Euler characteristic: components - (euler + loops) / 2.

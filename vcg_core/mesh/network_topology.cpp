@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "vcg_core/mesh/nesting.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
@@ -125,6 +126,8 @@ int Network::component_count() const {
 
 void Network::orient_outward() {
     const PerVertex<int> component = components();
+    const int count = component.empty() ? 0 : 1 + *std::max_element(component.begin(), component.end());
+    const std::vector<int> depths = nesting_depths(*this, component, count);
     Indexed<double> volume(slot_count(), 0.0);  // of each component, times 6
     Indexed<char> open(slot_count(), 0);
     for (const Triangle& f : faces()) {
@@ -134,7 +137,8 @@ void Network::orient_outward() {
     for (const VertexId v : vertices())
         if (ring(v).open != 0) open[component[v]] = 1;
     for (const VertexId v : vertices()) {
-        if (volume[component[v]] >= 0 || open[component[v]] != 0) continue;
+        const bool hollow = depths[static_cast<std::size_t>(component[v])] % 2 != 0;
+        if (open[component[v]] != 0 || (hollow ? -volume[component[v]] : volume[component[v]]) >= 0) continue;
         Ring& r = ring_of(v);
         std::reverse(r.begin(), r.end());
         r.pad_cyclically();

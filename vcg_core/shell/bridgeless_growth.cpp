@@ -144,11 +144,10 @@ std::vector<TopologyAt> grown_topologies(const Region& region, ThreadTeam& team)
     for (const int level : kGrownFromLevels) {
         const LevelTopology& plain = region.topologies[level];
         if (is_fragmented(region, level) || (level == 0 && plain.specks > 0)) continue;
-        result.push_back({level, plain.components, 0});
+        result.push_back({level, plain.components + region.topologies[grown_level(level)].cavities, 0});
     }
     for_chunks(result.size(), 1, team, [&](std::size_t i, std::size_t, std::size_t) {
         const NodeSet solid = grown_solid(region, result[i].level);
-        // There are no cavities, so the Euler characteristic is components minus handles.
         result[i].genus = result[i].components - euler_characteristic(region.lattice, solid);
     });
     return result;

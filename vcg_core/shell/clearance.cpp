@@ -80,7 +80,7 @@ PerNode<SquaredRadius> squared_distances(const Lattice& lattice, const PerNode<s
 }
 
 PerNode<SquaredRadius> clearances(const Lattice& lattice, const PerNode<SquaredRadius>& distances,
-                                  int max_radius, const NodeSet& inside) {
+                                  int max_radius, const NodeSet& inside, const std::vector<NodeId>& hollows) {
     const int far = beyond(max_radius);
     constexpr SquaredRadius kUnknown = -1, kInside = 0;
     PerNode<SquaredRadius> out(lattice.size(), kUnknown);
@@ -93,6 +93,7 @@ PerNode<SquaredRadius> clearances(const Lattice& lattice, const PerNode<SquaredR
     };
     for (NodeId i = 0; i < inside.size(); ++i)
         if (inside[i] != 0) wait(i, far, true);
+    for (const NodeId i : hollows) wait(i, far, false);
     for_each_wall_node(lattice, [&](NodeId i) {
         if (out[i] == kUnknown) wait(i, far, false);
     });

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "vcg_core/shell/lattice.h"
 
@@ -25,13 +26,14 @@ PerNode<SquaredRadius> squared_distances(const Lattice& lattice, const PerNode<s
 
 /// The clearance of every node: over all paths to it from outside the lattice, the largest of the smallest
 /// squared distances along the path. A ball of squared radius l reaches the nodes with clearance > l; the
-/// others are the solid at level l, which has no cavities.
+/// others are the solid at level l, which has no cavities but the hollows.
 ///
 /// The nodes of \p inside (empty: none) are solid at every level. They grow against the outside as in a
 /// watershed transform (Vincent and Soille 1991): nodes reached from inside at a higher level than from
-/// outside get clearance 0. O(nodes).
+/// outside get clearance 0. The balls also start from the nodes \p hollows, one in each hollow. O(nodes).
 PerNode<SquaredRadius> clearances(const Lattice& lattice, const PerNode<SquaredRadius>& distances,
-                                  int max_radius, const NodeSet& inside);
+                                  int max_radius, const NodeSet& inside,
+                                  const std::vector<NodeId>& hollows = {});
 
 struct SealedSpaces {
     NodeSet inside;

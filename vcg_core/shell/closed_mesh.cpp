@@ -91,7 +91,7 @@ ClosedMesh closed_mesh(const Region& region, const TopologyVote& vote) {
     // The smallest radius, about the geometric mean, and the largest one.
     for (const int level : {levels.front(), levels[levels.size() / 3], levels.back()}) {
         const LevelTopology& plain = region.topologies[level];
-        if (has_topology(vote, plain.components, plain.genus) &&
+        if (has_topology(vote, plain.surfaces(), plain.genus) &&
             close_with_stride(region, vote, level, false, closed))
             return closed;
     }

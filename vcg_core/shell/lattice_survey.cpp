@@ -53,14 +53,19 @@ std::vector<TopologyAt> plain_topologies(const Region& region) {
     std::vector<TopologyAt> result;
     for (int level = 1; level < region.topologies.size(); ++level)
         if (!is_fragmented(region, level))
-            result.push_back({level, region.topologies[level].components, region.topologies[level].genus});
+            result.push_back({level, region.topologies[level].surfaces(), region.topologies[level].genus});
     return result;
 }
 
 class Surveyor {
 public:
-    Surveyor(const std::vector<Point3f>& points, const Box3f& box, const ShellOptions& options)
-        : points_(points), box_(box), options_(options), team_(thread_count(options.threads)) {
+    Surveyor(const std::vector<Point3f>& points, const std::vector<LayerPlace>& places, const Box3f& box,
+             const ShellOptions& options)
+        : points_(points),
+          places_(places),
+          box_(box),
+          options_(options),
+          team_(thread_count(options.threads)) {
         survey_.step =
             step_for(points, box, options.max_nodes_per_side, options.max_nodes, options.points_per_node);
     }
@@ -74,11 +79,12 @@ public:
 
 private:
     Region region_at(float step) const {
-        return examine(points_, box_, step, options_.component_share, ShellOptions::kSpeckPoints);
+        return examine(points_, box_, step, options_.component_share, ShellOptions::kSpeckPoints, places_);
     }
     void count_votes(bool grown);
 
     const std::vector<Point3f>& points_;
+    const std::vector<LayerPlace>& places_;
     const Box3f& box_;
     const ShellOptions& options_;
     ThreadTeam team_;
@@ -137,9 +143,9 @@ LatticeSurvey Surveyor::take() {
 
 }  // namespace
 
-LatticeSurvey survey_lattices(const std::vector<Point3f>& points, const Box3f& box,
-                              const ShellOptions& options) {
-    Surveyor surveyor(points, box, options);
+LatticeSurvey survey_lattices(const std::vector<Point3f>& points, const std::vector<LayerPlace>& places,
+                              const Box3f& box, const ShellOptions& options) {
+    Surveyor surveyor(points, places, box, options);
     surveyor.examine_plain();
     if (surveyor.confidence() >= kPlainConfidence) return surveyor.take();
     surveyor.grow();

@@ -34,8 +34,8 @@ struct LatticeSurvey {
 /// 3. a finer lattice, for surfaces close to each other;
 /// 4. coarser lattices, for clouds with noise and gaps.
 /// If no lattice has a topology, the choice is the largest ball on the coarsest one. Uses
-/// options.threads threads; the result does not depend on them.
-LatticeSurvey survey_lattices(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box,
-                              const ShellOptions& options);
+/// options.threads threads. \p places tell hollows (hollows.h). The result does not depend on the threads.
+LatticeSurvey survey_lattices(const std::vector<vcg::Point3f>& points, const std::vector<LayerPlace>& places,
+                              const vcg::Box3f& box, const ShellOptions& options);
 
 }  // namespace neuralmesh

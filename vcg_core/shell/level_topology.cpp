@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Nodes join the solid in order of their clearance. Union-find counts the components on the way. The Euler
-// characteristic gives the handles: the solids have no cavities, so it is components minus handles.
+// characteristic gives the handles: it is components minus handles plus cavities.
 #include "vcg_core/shell/level_topology.h"
 
 #include <algorithm>
@@ -142,7 +142,7 @@ private:
 
 PerLevel<LevelTopology> topology_of_levels(const Lattice& lattice, const PerNode<SquaredRadius>& clearance,
                                            const PerNode<std::uint32_t>& counts, int max_radius,
-                                           long long min_points) {
+                                           long long min_points, const std::vector<NodeId>& hollows) {
     const int levels = max_radius * max_radius + 1;  // a clearance of this much is outside at every level
     const PerLevel<int> changes = euler_changes(lattice, clearance, levels);
     const NodesByLevel order = nodes_by_level(clearance, levels);
@@ -154,7 +154,8 @@ PerLevel<LevelTopology> topology_of_levels(const Lattice& lattice, const PerNode
             components.add(order.nodes[static_cast<std::size_t>(k)]);
         euler += changes[l];
         result[l] = components.topology();
-        result[l].genus = result[l].components + result[l].specks - euler;
+        for (const NodeId i : hollows) result[l].cavities += clearance[i] > l ? 1 : 0;
+        result[l].genus = result[l].surfaces() + result[l].specks - euler;
     }
     return result;
 }

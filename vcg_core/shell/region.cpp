@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vcg_core/shell/hollows.h"
+
 namespace neuralmesh {
 namespace {
 
@@ -111,15 +113,19 @@ void seal_wide_openings(const std::vector<vcg::Point3f>& points, const vcg::Box3
     region.widest_opening = std::max(region.widest_opening, radius_of_opening(sealed, coarse));
 }
 
-/// Fills clearance, encloses_space and widest_opening.
-void seal(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, Region& region) {
+/// Fills clearance, encloses_space, widest_opening and hollows.
+void seal(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box,
+          const std::vector<LayerPlace>& places, Region& region) {
     region.clearance = clearances(region.lattice, region.distances, Region::kMaxRadius, {});
     SealedSpaces sealed = enclosed_spaces(region.lattice, region.distances, region.clearance, kWidthRatio, 0);
     region.encloses_space = sealed.nodes > 0;
     region.widest_opening = radius_of_opening(sealed, region.lattice);
     seal_wide_openings(points, box, region, sealed.inside);
-    if (region.encloses_space)
-        region.clearance = clearances(region.lattice, region.distances, Region::kMaxRadius, sealed.inside);
+    if (!region.encloses_space) return;
+    region.hollows =
+        take_hollows_out(region.lattice, region.distances, region.clearance, places, sealed.inside);
+    region.clearance =
+        clearances(region.lattice, region.distances, Region::kMaxRadius, sealed.inside, region.hollows);
 }
 
 long long points_of_component(long long total, double share, long long least) {
@@ -170,15 +176,16 @@ double points_per_occupied_node(const PerNode<std::uint32_t>& counts) {
 }
 
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step,
-               double component_share, long long min_component_points) {
+               double component_share, long long min_component_points,
+               const std::vector<LayerPlace>& places) {
     Region region(Lattice(box, step, Region::kMargin));
     region.counts = without_fringe(region.lattice, count_points(region.lattice, points));
     region.distances = squared_distances(region.lattice, region.counts, Region::kMaxRadius);
-    seal(points, box, region);
+    seal(points, box, places, region);
     region.total_points = static_cast<long long>(points.size());
     region.min_points = points_of_component(region.total_points, component_share, min_component_points);
     region.topologies = topology_of_levels(region.lattice, region.clearance, region.counts,
-                                           Region::kMaxRadius, region.min_points);
+                                           Region::kMaxRadius, region.min_points, region.hollows);
     return region;
 }
 

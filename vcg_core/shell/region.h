@@ -14,6 +14,7 @@
 #include "vcg_core/shell/clearance.h"
 #include "vcg_core/shell/lattice.h"
 #include "vcg_core/shell/level_topology.h"
+#include "vcg_core/target/opposite_layers.h"
 
 namespace neuralmesh {
 
@@ -30,7 +31,8 @@ struct Region {
     bool encloses_space = false;
     double widest_opening = 0;  ///< radius of the widest sealed opening, in the unit of the points; 0: none
     long long total_points = 0;
-    long long min_points = 0;  ///< that a component holds
+    long long min_points = 0;     ///< that a component holds
+    std::vector<NodeId> hollows;  ///< a node in each
     PerLevel<LevelTopology> topologies;
 
     /// The other members are empty until examine() fills them.
@@ -48,9 +50,12 @@ struct Region {
 /// they are (a head scanned down to the neck).
 ///
 /// A component holds at least \p component_share of the points and at least \p min_component_points, or a
-/// quarter of the points if that is less. O(nodes + points).
+/// quarter of the points if that is less.
+///
+/// Hollows, told from the sealed spaces by \p places (hollows.h), are outside as well. O(nodes + points).
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step,
-               double component_share, long long min_component_points);
+               double component_share, long long min_component_points,
+               const std::vector<LayerPlace>& places = {});
 
 /// True if the solid at \p level is in pieces because the radius is smaller than the distance between points:
 /// no component is large enough, or 5 % of the points are in specks that join something larger within four

@@ -129,9 +129,9 @@ void set_figures(const LatticeSurvey& survey, int level, StartMesh& result) {
 }
 
 /// Whether the points lie on the two sides of walls too thin for the lattice to show the space between them.
-bool is_walled(const std::vector<Point3f>& points, const StartMesh& start, int threads) {
+bool is_walled(const std::vector<LayerPlace>& places, const StartMesh& start) {
     if (start.encloses_space && start.sheet_share <= kMostSheet) return false;
-    return share_with_opposite_layer(CloudSurvey(points, threads)) > kWalled;
+    return share_with_opposite_layer(places) > kWalled;
 }
 
 void set_outliers(const TargetSpace& target, const std::vector<Point3f>& points, const Region& region,
@@ -177,7 +177,8 @@ StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Rando
     const Box3f box = main_box(points);
 
     progress(0.2, "Start mesh: counting components and handles");
-    const LatticeSurvey survey = survey_lattices(points, box, options);
+    const std::vector<LayerPlace> places = layer_places(CloudSurvey(points, options.threads));
+    const LatticeSurvey survey = survey_lattices(points, places, box, options);
     const Region& region = survey.chosen_region();
 
     progress(0.7, "Start mesh: building the mesh");
@@ -188,7 +189,7 @@ StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Rando
     StartMesh result;
     result.encloses_space = region.encloses_space;
     result.sheet_share = sheet_share(survey.regions.front());
-    result.walled = is_walled(points, result, options.threads);
+    result.walled = is_walled(places, result);
     result.encloses_space |= result.walled;
     set_mesh(closed, region.lattice, points.size(), options, result);
     set_figures(survey, closed.level, result);

@@ -1,17 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Whether the points of a cloud lie on the two sides of thin walls, or on one layer as in a single scan.
+// Places of a cloud, each with the layers of points opposite to it: whether the points lie on the two sides
+// of thin walls, or on one layer as in a single scan.
 #pragma once
+
+#include <vcg/space/point3.h>
+
+#include <vector>
 
 #include "vcg_core/target/cloud_survey.h"
 
 namespace neuralmesh {
 
-/// The share of places of the cloud that have a second layer of points above or below them, up to some eight
-/// spacings away, with nothing between: the other side of a thin wall, or of a narrow gap. Layers less than
-/// some three spacings apart, or closer than the noise lets tell, count as one. Estimated from 500 places.
-/// O(places x 1,000 points).
-double share_with_opposite_layer(const CloudSurvey& survey);
+/// A point of the cloud, the normal of the plane through its neighbours (of unit length, to either side), and
+/// the distances of the layers above and below that plane, with nothing between; 0: there is none.
+struct LayerPlace {
+    vcg::Point3f position;
+    vcg::Point3f normal;
+    float above = 0;
+    float below = 0;
+    bool on_thin_wall = false;  ///< one of the layers is at most some eight spacings away
+};
+
+/// About 1,000 places of the cloud, in the order of space. Opposite layers are looked for up to some twenty
+/// spacings away: the other side of a wall, or of a gap. Layers less than some three spacings apart, or
+/// closer than the noise lets tell, count as one. Points with too few neighbours for a plane are no places.
+/// O(places x 2,000 points).
+std::vector<LayerPlace> layer_places(const CloudSurvey& survey);
+
+/// The share of \p places that have an opposite layer at most some eight spacings away.
+double share_with_opposite_layer(const std::vector<LayerPlace>& places);
 
 }  // namespace neuralmesh

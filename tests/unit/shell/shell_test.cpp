@@ -237,6 +237,49 @@ TEST(Shell, MeshAsTarget) {
     expect_topology(shell_of(target, options, random, progress), 1, 1);
 }
 
+/// Spheres of the given radii about one centre, with \p count points on all.
+std::vector<vcg::Point3d> spheres(const std::vector<double>& radii, std::size_t count, double noise = 0) {
+    Random random(7);
+    double area = 0;
+    for (const double r : radii) area += r * r;
+    std::vector<vcg::Point3d> cloud;
+    for (const double r : radii) {
+        const auto share = static_cast<std::size_t>(static_cast<double>(count) * r * r / area);
+        const auto part = shell_shapes::sample(shell_shapes::sphere(r), share, random, noise);
+        cloud.insert(cloud.end(), part.begin(), part.end());
+    }
+    return cloud;
+}
+
+TEST(Shell, HollowsAreKept) {
+    // Walls of 4, 6, 12 and 40 spacings of the points.
+    for (const double inner : {0.93, 0.9, 0.8, 0.4}) {
+        const StartMesh mesh = shell(spheres({1, inner}, 50000));
+        EXPECT_EQ(mesh.components, 2) << inner;
+        EXPECT_EQ(mesh.genus, 0) << inner;
+        EXPECT_EQ(Network(mesh.positions, mesh.faces).validate(), "");
+        EXPECT_TRUE(mesh.encloses_space);
+    }
+}
+
+TEST(Shell, BodiesInHollowsAreKept) {
+    const StartMesh mesh = shell(spheres({1, 0.8, 0.5}, 50000));
+    expect_topology(mesh, 3, 0);
+}
+
+TEST(Shell, LayersThatDoNotMeetEncloseNoHollow) {
+    // Two views of a sphere, shifted by 5 spacings: in front and behind one layer is before the other.
+    std::vector<vcg::Point3d> cloud = spheres({1}, 25000);
+    for (const vcg::Point3d& p : spheres({1}, 25000)) cloud.push_back({-p[1], p[2], p[0] + 0.1});
+    const StartMesh mesh = shell(cloud);
+    EXPECT_EQ(mesh.components, 1);
+    // A sphere within noise of its own, and one with a few points inside.
+    expect_topology(shell(spheres({1}, 50000, 0.01)), 1, 0);
+    std::vector<vcg::Point3d> dirty = spheres({1}, 50000);
+    for (const vcg::Point3d& p : spheres({0.5}, 300)) dirty.push_back(p);
+    EXPECT_EQ(shell(dirty).components, 1);
+}
+
 TEST(Shell, BadOptionsAreRefused) {
     Random random(2);
     const auto cloud = shell_shapes::sample(shell_shapes::sphere(1), 100, random);

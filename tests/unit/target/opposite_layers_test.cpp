@@ -19,7 +19,7 @@ constexpr int kPoints = 20000;
 double share_of(const shapes::Cloud& cloud) {
     std::vector<vcg::Point3f> points;
     for (const vcg::Point3d& p : cloud) points.push_back(vcg::Point3f::Construct(p));
-    return share_with_opposite_layer(CloudSurvey(points, 1));
+    return share_with_opposite_layer(layer_places(CloudSurvey(points, 1)));
 }
 
 /// A sphere of \p kPoints points and another one within it, \p spacings spacings of the points away.

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Bodies within hollows of bodies: depth and orientation of their surfaces.
+#include "vcg_core/mesh/nesting.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace neuralmesh {
+namespace {
+
+using vcg::Point3f;
+
+/// Octahedra, each given by its centre and its radius; those with a negative radius are inside out.
+struct Octahedron {
+    Point3f centre;
+    float radius;
+};
+
+Network octahedra(const std::vector<Octahedron>& all) {
+    std::vector<Point3f> positions;
+    std::vector<Triangle> faces;
+    for (const Octahedron& each : all) {
+        const int first = static_cast<int>(positions.size());
+        for (int k = 0; k < 6; ++k) {
+            Point3f p(0, 0, 0);
+            p[k / 2] = k % 2 == 0 ? each.radius : -each.radius;
+            positions.push_back(each.centre + p);
+        }
+        for (const int x : {0, 1})
+            for (const int y : {2, 3})
+                for (const int z : {4, 5}) {
+                    const bool even = (x + y + z) % 2 == 0;
+                    faces.push_back({first + x, first + (even ? y : z), first + (even ? z : y)});
+                }
+    }
+    return {positions, faces};
+}
+
+std::vector<int> depths_of(const Network& network) {
+    return nesting_depths(network, network.components(), network.component_count());
+}
+
+double volume_of(const Network& network, int of) {
+    const PerVertex<int> component = network.components();
+    double volume = 0;
+    for (const Triangle& f : network.faces()) {
+        if (component[f[0]] != of) continue;
+        const auto p = [&](std::size_t k) { return vcg::Point3d::Construct(network.position(f[k])); };
+        volume += p(0) * (p(1) ^ p(2)) / 6;
+    }
+    return volume;
+}
+
+TEST(Nesting, CountsTheSurfacesAround) {
+    const Point3f o(0, 0, 0), aside(9, 0, 0), here(0.5F, 0, 0);
+    EXPECT_EQ(depths_of(octahedra({{o, 1}})), (std::vector<int>{0}));
+    EXPECT_EQ(depths_of(octahedra({{o, 1}, {aside, 1}})), (std::vector<int>{0, 0}));
+    EXPECT_EQ(depths_of(octahedra({{o, 1}, {o, 4}, {aside, 1}, {here, 0.2F}})),
+              (std::vector<int>{1, 0, 0, 2}));
+}
+
+TEST(Nesting, IsFoundWhereRaysMeetEdgesAndVertices) {
+    // The ray along x from a vertex of the inner octahedron meets the vertex, and from others the edges, of
+    // the outer one.
+    const Point3f o(0, 0, 0);
+    for (const Point3f& at : {Point3f(-0.1F, 0, 0), Point3f(-0.1F, 0.2F, 0), Point3f(-0.1F, 0, -0.2F)})
+        EXPECT_EQ(depths_of(octahedra({{o, 1}, {at, 0.1F}})), (std::vector<int>{0, 1})) << at[1];
+    EXPECT_EQ(depths_of(octahedra({{o, 1}, {Point3f(-3, 0, 0), 0.1F}})), (std::vector<int>{0, 0}));
+}
+
+TEST(Nesting, OrientsHollowsInward) {
+    const Point3f o(0, 0, 0);
+    for (const float sign : {1.0F, -1.0F}) {
+        Network network = octahedra({{o, 4 * sign}, {o, 2 * sign}, {o, sign}, {Point3f(9, 0, 0), sign}});
+        network.orient_outward();
+        EXPECT_EQ(network.validate(), "");
+        EXPECT_GT(volume_of(network, 0), 0);
+        EXPECT_LT(volume_of(network, 1), 0);
+        EXPECT_GT(volume_of(network, 2), 0);
+        EXPECT_GT(volume_of(network, 3), 0);
+    }
+}
+
+}  // namespace
+}  // namespace neuralmesh
