@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "vcg_core/base/text.h"
+#include "vcg_core/shell/face_boundary.h"
 #include "vcg_core/shell/given_start.h"
 #include "vcg_core/shell/open_start.h"
 #include "vcg_core/shell/shell.h"
@@ -143,25 +144,32 @@ void remove_groups_without_component(LearningTask& task, const std::vector<std::
     for (vcg::Point3f& p : positions) p = task.target().frame().inside(before.outside(p));
 }
 
+/// The widest hole of the open start mesh that is closed. That of a layer with faces opens what is wider in
+/// its faces; points drawn from them leave narrower holes.
+double widest_closed(const TargetSpace& target) {
+    return target.has_faces() ? kWidestClosed / 2 : kWidestClosed;
+}
+
 OpenStart make_open_start(const TargetSpace& target, const Settings& settings, Progress& progress) {
     OpenStartOptions options;
     options.target_vertices = settings.target_vertices;
     options.close_holes_up_to = settings.close_holes_up_to / target.frame().diagonal;
     options.learn_outliers = !settings.remove_outliers;
     if (settings.surface == kAutomatic && settings.close_holes_up_to < 0)
-        options.closed_up_to = kWidestClosed;
+        options.closed_up_to = widest_closed(target);
     Random random(stream_seed(settings.random_seed, Stream::shell));
     return open_start(target, options, random, progress);
 }
 
 /// Whether the cloud may be open: the shell closed wide openings, or a part of it has no space inside, and is
-/// no thin wall.
+/// no thin wall. A layer with faces is open where they end.
 /// \param spacing of the points, 0 if it is not known yet
 bool may_be_open(const StartMesh& shell, const TargetSpace& target, const Settings& settings,
                  double spacing) {
-    const double widest = settings.close_holes_up_to >= 0
-                              ? settings.close_holes_up_to / target.frame().diagonal
-                              : std::max(kWidestClosed, kOpeningSpacings * spacing);
+    const bool chosen = settings.close_holes_up_to >= 0;
+    const double asked = settings.close_holes_up_to / target.frame().diagonal;
+    if (target.has_faces()) return widest_face_boundary(target) > (chosen ? asked : kWidestClosed);
+    const double widest = chosen ? asked : std::max(kWidestClosed, kOpeningSpacings * spacing);
     if (shell.walled) return false;
     return !shell.encloses_space || 2 * shell.widest_opening > widest ||
            shell.sheet_share > std::max(kMostSheet, kSheetSpacings * spacing);
@@ -175,8 +183,8 @@ std::optional<OpenStart> try_open_start(const TargetSpace& target, const StartMe
         OpenStart start = make_open_start(target, settings, progress);
         const auto vertices = static_cast<int>(start.positions.size());
         const bool open = start.loops > 0 && !start.two_layers &&
-                          may_be_open(shell, target, settings, start.spacing) &&
-                          (settings.close_holes_up_to >= 0 || start.widest_loop > kWidestClosed);
+                          (target.has_faces() || may_be_open(shell, target, settings, start.spacing)) &&
+                          (settings.close_holes_up_to >= 0 || start.widest_loop > widest_closed(target));
         if (open && start.thickness < kTooThick && vertices <= settings.target_vertices &&
             start.genus <= kMostHandles * vertices)
             return start;

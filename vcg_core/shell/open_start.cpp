@@ -38,6 +38,12 @@ constexpr double kMostWithoutSurface = 0.5;
 /// So many links between planes contradict each other along a cut; fewer do at rough places.
 constexpr std::size_t kManyContradictions = 20;
 
+/// A part with fewer points than options.component_share counts if it is a sheet of at least so many planes,
+/// most of them thin, and its share of the vertices is enough to show its shape.
+constexpr int kPlanesOfSheet = 40;
+constexpr float kThinPart = 0.35F, kThinShare = 0.9F;
+constexpr double kLeastPartVertices = 8;
+
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 void check(const OpenStartOptions& o) {
@@ -46,6 +52,19 @@ void check(const OpenStartOptions& o) {
         throw SettingError(
             "The options of the open start mesh are out of range: at least 4 vertices and 4 samples are "
             "needed, and a component share in [0, 1).");
+}
+
+/// The points that a part needs, and a part that is a sheet of surface.
+struct Enough {
+    long long points, on_sheet;
+};
+
+Enough enough_points(std::size_t points, const OpenStartOptions& options) {
+    const auto all = static_cast<double>(points);
+    const auto share = static_cast<long long>(options.component_share * all);
+    const auto carrying = static_cast<long long>(kLeastPartVertices * all / options.target_vertices);
+    return {std::max<long long>(OpenStartOptions::kLeastPoints, share),
+            std::max<long long>(OpenStartOptions::kLeastCloud, carrying)};
 }
 
 /// \throws InputError if most planes are none
@@ -112,27 +131,57 @@ void spread_parts(const TangentPlanes& planes, std::vector<int>& part_of_plane) 
     }
 }
 
-/// Drops the parts of \p contour whose planes have fewer than \p enough points. \return for every plane
-/// whether its points are in what is kept
-std::vector<char> drop_small_parts(Contour& contour, const TangentPlanes& planes, long long enough) {
+/// Outliers lie in clumps; a piece of surface is thin, wide and spans many cells.
+class PartsThatCount {
+public:
+    PartsThatCount(const TangentPlanes& planes, const std::vector<int>& part_of_plane, int parts,
+                   const Enough& enough)
+        : enough_(enough), sums_(at(parts)) {
+        for (std::size_t i = 0; i < part_of_plane.size(); ++i) {
+            if (part_of_plane[i] < 0) continue;
+            Sum& sum = sums_[at(part_of_plane[i])];
+            const TangentPlane& plane = planes.planes[i];
+            sum.points += plane.points;
+            ++sum.planes;
+            sum.thin += plane.thickness < kThinPart && !plane.on_curve ? 1 : 0;
+        }
+    }
+    bool operator()(int part) const {
+        const Sum& sum = sums_[at(part)];
+        return sum.points >= enough_.points ||
+               (sum.points >= enough_.on_sheet && sum.planes >= kPlanesOfSheet &&
+                static_cast<float>(sum.thin) >= kThinShare * static_cast<float>(sum.planes));
+    }
+
+private:
+    struct Sum {
+        long long points = 0;
+        int planes = 0;
+        int thin = 0;
+    };
+    const Enough enough_;
+    std::vector<Sum> sums_;
+};
+
+/// Drops the parts of \p contour that do not count. \return for every plane whether its points are in what is
+/// kept
+std::vector<char> drop_small_parts(Contour& contour, const TangentPlanes& planes, const Enough& enough) {
     IndexedMesh<float>& mesh = contour.mesh;
     const Parts parts = parts_of(mesh);
     std::vector<int> part_of_plane(planes.planes.size(), -1);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v)
         part_of_plane[at(contour.plane[v])] = parts.of[static_cast<VertexId>(v)];
     spread_parts(planes, part_of_plane);
-    std::vector<long long> points(at(parts.count), 0);
-    for (std::size_t i = 0; i < part_of_plane.size(); ++i)
-        if (part_of_plane[i] >= 0) points[at(part_of_plane[i])] += planes.planes[i].points;
+    const PartsThatCount counts(planes, part_of_plane, parts.count, enough);
     // Crumbs beside a part that is kept are its fringe.
     for (int& part : part_of_plane)
-        if (part >= 0 && points[at(part)] < enough) part = -1;
+        if (part >= 0 && !counts(part)) part = -1;
     spread_parts(planes, part_of_plane);
     std::vector<char> kept(part_of_plane.size(), 0);
     for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = part_of_plane[i] >= 0 ? 1 : 0;
     std::vector<Triangle> faces;
     for (const Triangle& f : mesh.faces)
-        if (points[at(parts.of[f[0]])] >= enough) faces.push_back(f);
+        if (counts(parts.of[f[0]])) faces.push_back(f);
     mesh.faces = std::move(faces);
     return kept;
 }
@@ -305,8 +354,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
 
     progress(0.5, "Start mesh: building an open mesh");
     Contour contour = one_layer_contour(box, planes);
-    const auto share = static_cast<long long>(options.component_share * static_cast<double>(points.size()));
-    const long long enough = std::max<long long>(OpenStartOptions::kLeastPoints, share);
+    const Enough enough = enough_points(points.size(), options);
     const std::vector<char> kept = drop_small_parts(contour, planes, enough);
     drop_unused_vertices(contour);
     if (contour.mesh.faces.empty())
@@ -325,7 +373,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     result.thickness = static_cast<double>(planes.thickness);
     result.spacing = static_cast<double>(planes.step);
     result.two_layers = median_kurtosis(points, planes) < kTwoLayers;
-    set_outliers(outliers_of(planes, kept), static_cast<long long>(points.size()), enough,
+    set_outliers(outliers_of(planes, kept), static_cast<long long>(points.size()), enough.points,
                  options.learn_outliers || target.is_exact(), result);
     warn_of_cuts(target, planes, result);
     progress(1.0, "Start mesh: done");

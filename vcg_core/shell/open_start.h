@@ -35,7 +35,8 @@ struct OpenStartOptions {
     double closed_up_to = 0;
     /// Outliers get no component, but are to be learned.
     bool learn_outliers = false;
-    /// A component counts with this share of the points and at least kLeastPoints of them.
+    /// A component counts with this share of the points and at least kLeastPoints of them. A sheet of surface
+    /// counts with fewer, if the mesh has vertices for it.
     double component_share = 0.01;
     /// Points drawn from a target that is a mesh.
     int samples = 100000;

@@ -167,5 +167,21 @@ TEST(OpenStart, RepeatsItself) {
     EXPECT_TRUE(first.positions == second.positions);
 }
 
+TEST(OpenStart, KeepsASmallSheetButNoClump) {
+    // Half a sphere, and apart from it .7 % of the points: on a small square, or in a ball.
+    Cloud half =
+        open_shapes::cut(shapes::sphere_cloud(40000), [](const vcg::Point3d& p) { return p[2] < 0; });
+    Cloud sheet = half, clump = half;
+    Random random(1);
+    for (const vcg::Point3d& p : shapes::plane_cloud(140)) sheet.push_back(p * 0.3 + vcg::Point3d(0, 0, 1));
+    for (int i = 0; i < 140; ++i) clump.push_back(shapes::in_ball(random) * 0.05 + vcg::Point3d(0, 0, 1));
+    EXPECT_EQ(start_of(sheet).components, 2);
+    EXPECT_TRUE(start_of(sheet).outliers.empty());
+    EXPECT_EQ(start_of(clump).components, 1);
+    OpenStartOptions few;
+    few.target_vertices = 500;  // of which the square would get three
+    EXPECT_EQ(start_of(sheet, few).components, 1);
+}
+
 }  // namespace
 }  // namespace neuralmesh

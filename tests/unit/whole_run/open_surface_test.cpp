@@ -4,6 +4,8 @@
 // Whole runs on surfaces with boundary, and the choice between open and closed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <string>
 
 #include "tests/unit/support/open_shapes.h"
@@ -151,6 +153,36 @@ TEST(OpenSurface, OfALayerWithFacesEndsWhereTheyEnd) {
     const NeuralMesh mesh = reconstruct(target, settings, progress);
     soundness::expect_exact(mesh, settings);
     EXPECT_EQ(mesh.report.boundary_loops, 1);
+}
+
+/// A sphere of faces without those above \p height.
+TargetSpace faces_below(double height) {
+    shapes::Shape cap = shapes::icosphere(4);
+    const auto is_above = [&](const std::array<int, 3>& f) {
+        return std::any_of(f.begin(), f.end(),
+                           [&](int v) { return cap.positions[static_cast<std::size_t>(v)][2] > height; });
+    };
+    cap.faces.erase(std::remove_if(cap.faces.begin(), cap.faces.end(), is_above), cap.faces.end());
+    return TargetSpace::triangles(cap.faces.size(), [&](std::size_t f, int k) {
+        return cap.positions[static_cast<std::size_t>(cap.faces[f][static_cast<std::size_t>(k)])];
+    });
+}
+
+int loops_of_faces_below(double height, double close_holes_up_to) {
+    const TargetSpace target = faces_below(height);
+    NoProgress progress;
+    Settings settings = settings_with(300, kAutomatic);
+    settings.close_holes_up_to = close_holes_up_to;
+    return reconstruct(target, settings, progress).report.boundary_loops;
+}
+
+TEST(OpenSurface, OfALayerWithFacesIsDecidedByTheirLoops) {
+    EXPECT_EQ(loops_of_faces_below(2, -1), 0);
+    EXPECT_EQ(loops_of_faces_below(2, 0), 0);
+    EXPECT_EQ(loops_of_faces_below(0.8, -1), 1);  // 1.2 wide, a third of the diagonal
+    EXPECT_EQ(loops_of_faces_below(0.8, 2), 0);
+    EXPECT_EQ(loops_of_faces_below(0.97, 0), 1);  // .5 wide
+    EXPECT_EQ(loops_of_faces_below(0.97, 1), 0);
 }
 
 TEST(OpenSurface, IsAnErrorWhereThereIsNone) {

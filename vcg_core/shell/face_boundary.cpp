@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/shell/face_boundary.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <numeric>
+#include <tuple>
+#include <vector>
+
+#include "vcg_core/mesh/boundary_loops.h"
+
+namespace neuralmesh {
+namespace {
+
+using vcg::Point3f;
+using Edge = std::array<std::size_t, 2>;
+
+/// By corner, the first corner at the same place.
+std::vector<std::size_t> places_of(const std::vector<Point3f>& corners) {
+    std::vector<std::size_t> order(corners.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto key = [&](std::size_t i) {
+        return std::make_tuple(corners[i][0], corners[i][1], corners[i][2], i);
+    };
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return key(i) < key(j); });
+    std::vector<std::size_t> places(corners.size());
+    for (std::size_t k = 0; k < order.size(); ++k)
+        places[order[k]] =
+            k > 0 && corners[order[k]] == corners[order[k - 1]] ? places[order[k - 1]] : order[k];
+    return places;
+}
+
+/// The edges that one face has; faces without area have none.
+std::vector<Edge> boundary_edges(const std::vector<std::size_t>& places) {
+    std::vector<Edge> edges;
+    for (std::size_t f = 0; f + 2 < places.size(); f += 3) {
+        const std::array<std::size_t, 3> at{places[f], places[f + 1], places[f + 2]};
+        if (at[0] == at[1] || at[1] == at[2] || at[2] == at[0]) continue;
+        for (std::size_t k = 0; k < 3; ++k)
+            edges.push_back({std::min(at[k], at[(k + 1) % 3]), std::max(at[k], at[(k + 1) % 3])});
+    }
+    std::sort(edges.begin(), edges.end());
+    std::vector<Edge> alone;
+    for (std::size_t i = 0; i < edges.size(); ++i)
+        if ((i == 0 || edges[i - 1] != edges[i]) && (i + 1 == edges.size() || edges[i + 1] != edges[i]))
+            alone.push_back(edges[i]);
+    return alone;
+}
+
+}  // namespace
+
+double widest_face_boundary(const TargetSpace& target) {
+    const std::vector<Point3f>& corners = target.positions();
+    const std::vector<Edge> edges = boundary_edges(places_of(corners));
+    std::vector<std::size_t> root(corners.size());
+    std::iota(root.begin(), root.end(), std::size_t{0});
+    const auto find = [&root](std::size_t v) {
+        while (root[v] != v) v = root[v] = root[root[v]];
+        return v;
+    };
+    for (const Edge& edge : edges) root[find(edge[0])] = find(edge[1]);
+    std::vector<std::array<std::size_t, 2>> members;  // root and place
+    for (const Edge& edge : edges)
+        for (const std::size_t v : edge) members.push_back({find(v), v});
+    std::sort(members.begin(), members.end());
+    float widest = 0;
+    std::vector<Point3f> points;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        points.push_back(corners[members[i][1]]);
+        if (i + 1 < members.size() && members[i + 1][0] == members[i][0]) continue;
+        widest = std::max(widest, smallest_sphere_diameter(points));
+        points.clear();
+    }
+    return static_cast<double>(widest);
+}
+
+}  // namespace neuralmesh
