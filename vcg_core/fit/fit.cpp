@@ -115,7 +115,7 @@ private:
     bool next_round(int round) {
         Surface surface(network_);
         PointsByFace points = fitter_.assign_faces(surface);
-        if (fitter_.fill_notches(surface, points) > 0) {
+        if (fitter_.mend_boundary(surface, points) > 0) {
             surface = Surface(network_);
             points = fitter_.assign_faces(surface);
         }

@@ -21,6 +21,7 @@
 #include "vcg_core/fit/notches.h"
 #include "vcg_core/fit/stray_points.h"
 #include "vcg_core/fit/untangle.h"
+#include "vcg_core/fit/webs.h"
 
 namespace neuralmesh {
 
@@ -299,11 +300,12 @@ int Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
     });
 }
 
-int Fitter::fill_notches(const Surface& surface, const PointsByFace& points) {
+int Fitter::mend_boundary(const Surface& surface, const PointsByFace& points) {
+    if (!surface.has_boundary()) return 0;
     const std::vector<VertexId> notches = find_notches(network_, surface, points);
-    if (notches.empty()) return 0;
     return guarded(surface, [&](const PerVertex<char>& barred) {
-        return neuralmesh::fill_notches(network_, notches, barred);
+        const int opened = open_webs(network_, surface, points, barred);
+        return opened + neuralmesh::fill_notches(network_, notches, barred);
     });
 }
 
@@ -326,6 +328,8 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
     while (network_.vertex_count() > vertices) {
         if (stopped()) return false;
         Surface surface(network_);
+        if (surface.has_boundary() && mend_boundary(surface, assign_faces(surface)) > 0)
+            surface = Surface(network_);
         const int max_count = std::min(network_.vertex_count() - vertices,
                                        1 + static_cast<int>(kRemovedShare * network_.vertex_count()));
         if (!remove_vertices(surface, assign_faces(surface), max_count)) return false;

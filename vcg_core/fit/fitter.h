@@ -75,8 +75,9 @@ public:
     /// surface, that of the network, with them. \pre \p points were assigned to \p surface before it moved
     /// last
     void move_to_creases(Surface& surface, const PointsByFace& points);
-    /// Fills the notches of the boundary that hold points. \return their number
-    int fill_notches(const Surface& surface, const PointsByFace& points);
+    /// Fills the notches of the boundary that hold points, and opens the faces there that hold none. \return
+    /// the number of faces filled and opened
+    int mend_boundary(const Surface& surface, const PointsByFace& points);
 
     const HeldOut& held_out() const { return held_out_; }
     /// For every slot of the network: itself, or for an inserted vertex one that was near it.

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/fit/webs.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace neuralmesh {
+
+namespace {
+
+// Chosen by tests/experiments/accuracy/open_table.py.
+constexpr int kSpreads = 3;           ///< of the density, over the rings
+constexpr float kFewestExpected = 8;  ///< fewer say nothing
+constexpr float kMostShare = 0.1F;    ///< of the points expected
+
+struct Supported {
+    float points = 0;
+    float area = 0;
+    void operator+=(const Supported& other) {
+        points += other.points;
+        area += other.area;
+    }
+};
+
+/// Points per area around every vertex. Faces without points do not count, since those of a web have none.
+PerVertex<float> supported_density(const Network& network, const Surface& surface,
+                                   const PointsByFace& points) {
+    PerVertex<Supported> sums(surface.positions.size());
+    for (int f = 0; f < surface.face_count(); ++f) {
+        if (points.of(f).size() == 0) continue;
+        const Supported of_face{static_cast<float>(points.of(f).size()), area_vector(surface, f).norm() / 2};
+        for (const VertexId v : surface.faces[f]) sums[v] += of_face;
+    }
+    spread_over_rings(network, sums, kSpreads);
+    PerVertex<float> density(sums.size(), 0);
+    for (VertexId v = 0; v < sums.size(); ++v)
+        if (sums[v].area > 0) density[v] = sums[v].points / sums[v].area;
+    return density;
+}
+
+/// Whether the face lacks the points that the least dense of its corners lets expect. Points whose foot is on
+/// an edge lie beyond it, on other surface.
+bool is_web(const Surface& surface, const PointsByFace& points, const PerVertex<float>& density, int f) {
+    const Triangle& corners = surface.faces[f];
+    const float least = std::min({density[corners[0]], density[corners[1]], density[corners[2]]});
+    const float expected = least * area_vector(surface, f).norm() / 2;
+    if (!(expected >= kFewestExpected)) return false;
+    int count = 0;
+    for (const PointsByFace::Assignment& assigned : points.of(f)) {
+        const auto& w = assigned.foot.weights;
+        if (w[0] > 0 && w[1] > 0 && w[2] > 0) ++count;
+    }
+    return static_cast<float>(count) <= kMostShare * expected;
+}
+
+int face_of(const Surface& surface, VertexId a, VertexId b, VertexId c) {
+    for (const int f : surface.faces_around(a)) {
+        const Triangle& face = surface.faces[f];
+        if (std::count_if(face.begin(), face.end(), [&](VertexId v) { return v == b || v == c; }) == 2)
+            return f;
+    }
+    return -1;
+}
+
+}  // namespace
+
+int open_webs(Network& network, const Surface& surface, const PointsByFace& points,
+              const PerVertex<char>& barred) {
+    if (!surface.has_boundary()) return 0;
+    const PerVertex<float> density = supported_density(network, surface, points);
+    std::vector<VertexId> starts;  // of the boundary edges to look at
+    for (const VertexId v : network.vertices())
+        if (network.ring(v).open != 0) starts.push_back(v);
+    int opened = 0;
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+        const VertexId v = starts[i];
+        if (!network.can_open_face(v)) continue;
+        const VertexId after = network.ring(v)[0], corner = network.ring(v)[1];
+        if (barred[v] + barred[after] + barred[corner] > 0) continue;
+        const int f = face_of(surface, v, after, corner);
+        if (f < 0 || !is_web(surface, points, density, f)) continue;
+        network.open_face(v);
+        ++opened;
+        starts.push_back(v);
+        starts.push_back(corner);
+    }
+    return opened;
+}
+
+}  // namespace neuralmesh
