@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Groups are connected components of occupied octree cells, level by level from coarse to fine.
+// Groups are connected components of occupied octree cells, level by level from coarse to fine. Neighbouring
+// cells are connected if the boxes around their points are close: a gap that is wider than a cell shows at
+// that level, wherever the borders of the cells lie.
 #include "vcg_core/target/isolated_groups.h"
 
 #include <Eigen/Dense>
@@ -20,6 +22,8 @@ constexpr int kCoarsestLevel = 4;
 constexpr std::size_t kPointsPerCell = 4;   ///< finer levels part the points of a surface
 constexpr std::size_t kCheapCells = 20000;  ///< of a level that takes a few milliseconds
 constexpr std::size_t kSmallest = 6;        ///< points of a group; fewer are suspects by their spacing
+constexpr Place kFewInCell = 48;            ///< points; of more, a finer level tells
+constexpr float kApart = 0.8F;              ///< in cells: boxes farther from each other are not connected
 constexpr double kLargestShare = 0.01;      ///< of all points
 constexpr double kSmallShare = 0.002;       ///< of all points; larger groups need a wider gap
 constexpr double kMostInClumps = 0.05;      ///< of all points; above, the cloud as a whole consists of clumps
@@ -52,6 +56,7 @@ struct Extent {
 struct Cell {
     std::uint64_t code;
     Place begin, end;
+    vcg::Box3f box;  ///< of its points if they are few, else null
 };
 
 /// The code of the cell one step along \p axis (0: the lowest bit of each triple), by arithmetic on the bits
@@ -71,14 +76,29 @@ std::vector<Cell> occupied_cells(const NearestPoints& cloud, const std::vector<s
     for (Place p = 0; p < cloud.size(); ++p) {
         if (out[p] != 0) continue;
         const std::uint64_t code = cloud.cell(p, level);
-        if (cells.empty() || cells.back().code != code) cells.push_back({code, p, p});
+        if (cells.empty() || cells.back().code != code) cells.push_back({code, p, p, {}});
         cells.back().end = p + 1;
     }
+    for (Cell& cell : cells)
+        for (Place p = cell.begin; p < cell.end && cell.end - cell.begin <= kFewInCell; ++p)
+            if (out[p] == 0) cell.box.Add(cloud.point(p));
     return cells;
 }
 
-/// The first cell of the component of each, by union-find with path halving.
-std::vector<std::size_t> components(const std::vector<Cell>& cells, int level) {
+/// Are neighbouring cells so far apart that they are not connected?
+bool are_apart(const Cell& a, const Cell& b, float limit) {
+    if (a.box.IsNull() || b.box.IsNull()) return false;
+    float sum = 0;
+    for (int k = 0; k < 3; ++k) {
+        const float d = std::max(std::max(a.box.min[k] - b.box.max[k], b.box.min[k] - a.box.max[k]), 0.0F);
+        sum += d * d;
+    }
+    return sum > limit * limit;
+}
+
+/// The first cell of the component of each, by union-find with path halving. Cells farther apart than \p
+/// limit are not connected.
+std::vector<std::size_t> components(const std::vector<Cell>& cells, int level, float limit) {
     std::vector<std::size_t> parent(cells.size());
     std::iota(parent.begin(), parent.end(), std::size_t{0});
     const auto root = [&parent](std::size_t c) {
@@ -96,7 +116,7 @@ std::vector<std::size_t> components(const std::vector<Cell>& cells, int level) {
             const auto at =
                 std::lower_bound(cells.begin(), cells.end(), code,
                                  [](const Cell& cell, std::uint64_t key) { return cell.code < key; });
-            if (at == cells.end() || at->code != code) continue;
+            if (at == cells.end() || at->code != code || are_apart(cells[c], *at, limit)) continue;
             const std::size_t a = root(c), b = root(static_cast<std::size_t>(at - cells.begin()));
             parent[std::max(a, b)] = std::min(a, b);
         }
@@ -105,9 +125,10 @@ std::vector<std::size_t> components(const std::vector<Cell>& cells, int level) {
 }
 
 /// The points of every component that is small but not tiny, by ascending places.
-std::vector<std::vector<Place>> small_groups(const std::vector<Cell>& cells, int level, std::size_t largest,
+std::vector<std::vector<Place>> small_groups(const NearestPoints& cloud, const std::vector<Cell>& cells,
+                                             int level, std::size_t largest,
                                              const std::vector<std::uint8_t>& out) {
-    const std::vector<std::size_t> component = components(cells, level);
+    const std::vector<std::size_t> component = components(cells, level, kApart * cloud.cell_side(level));
     std::vector<std::size_t> size(cells.size());
     for (std::size_t c = 0; c < cells.size(); ++c) size[component[c]] += cells[c].end - cells[c].begin;
     std::vector<std::vector<Place>> groups(cells.size());
@@ -192,7 +213,7 @@ void mark_isolated_clumps(const NearestPoints& cloud, std::vector<std::uint8_t>&
     for (int level = kCoarsestLevel; level <= cloud.finest_level(); ++level) {
         const std::vector<Cell> cells = occupied_cells(cloud, marked, level);
         if (cells.size() > most_cells && level > kCoarsestLevel) break;
-        for (const std::vector<Place>& group : small_groups(cells, level, largest, marked)) {
+        for (const std::vector<Place>& group : small_groups(cloud, cells, level, largest, marked)) {
             if (!is_clump(cloud, group, marked)) continue;
             for (const Place p : group) marked[p] = 1;
             in_clumps += group.size();

@@ -53,6 +53,8 @@ public:
     /// root is a cube around all points or, if most lie in a hundredth of it, around these; points outside
     /// belong to its outermost cells. Ascends with the place.
     std::uint64_t cell(Place place, int level) const { return keys_[place] >> (64 - 3 * level); }
+    /// The length of the sides of the cells at \p level.
+    float cell_side(int level) const { return side_ / static_cast<float>(std::uint64_t{1} << level); }
     /// The finest level that cell() knows.
     int finest_level() const { return levels_; }
 

@@ -47,13 +47,14 @@ std::size_t count_of(const std::vector<std::uint8_t>& out, std::size_t begin, st
                                                out.begin() + static_cast<std::ptrdiff_t>(end), 1));
 }
 
-/// A sphere of 20,000 points, then \p more points: how many of them are found; no point of the sphere may be.
-std::size_t found_beside_a_sphere(const Cloud& more, Random& random) {
-    Cloud cloud = sphere(20000, random);
+/// A sphere of \p count points, then \p more points: how many of them are found; no point of the sphere may
+/// be.
+std::size_t found_beside_a_sphere(const Cloud& more, Random& random, std::size_t count = 20000) {
+    Cloud cloud = sphere(count, random);
     cloud.insert(cloud.end(), more.begin(), more.end());
     const std::vector<std::uint8_t> out = outliers_of(cloud, 1);
-    EXPECT_LE(count_of(out, 0, 20000), 20u) << "at most .1 % of the surface";
-    return count_of(out, 20000, cloud.size());
+    EXPECT_LE(count_of(out, 0, count), count / 1000) << "at most .1 % of the surface";
+    return count_of(out, count, cloud.size());
 }
 
 TEST(OutlierRemoval, FindsNoneInCleanClouds) {
@@ -105,6 +106,23 @@ TEST(OutlierRemoval, FindsPairsAndClumps) {
     }
     EXPECT_GE(found_beside_a_sphere(pairs, random), pairs.size() * 95 / 100);
     EXPECT_GE(found_beside_a_sphere(clumps, random), clumps.size() * 9 / 10) << "two may touch";
+}
+
+// Clumps as dense as the surface, three of their spacings (.006) off it: whether the surface and a clump
+// share neighbouring octree cells is chance, at any place and size of the cells.
+TEST(OutlierRemoval, FindsClumpsThreeSpacingsOffTheSurface) {
+    Random random(12);
+    constexpr float kRadius = 0.008F, kGap = 0.019F;
+    Cloud clumps;
+    for (int clump = 0; clump < 16; ++clump) {
+        const float height = (static_cast<float>(clump) - 7.5F) / 8, turn = 2.4F * static_cast<float>(clump);
+        const float ring = std::sqrt(1 - height * height);
+        const vcg::Point3f off(ring * std::cos(turn), ring * std::sin(turn), height);
+        const vcg::Point3f centre = off * (0.3F + kGap + kRadius);
+        for (int i = 0; i < 40; ++i)
+            clumps.push_back(centre + direction(random) * (kRadius * std::cbrt(random.unit())));
+    }
+    EXPECT_GE(found_beside_a_sphere(clumps, random, 100000), clumps.size() * 98 / 100);
 }
 
 TEST(OutlierRemoval, KeepsAWire) {
