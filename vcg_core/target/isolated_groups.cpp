@@ -2,8 +2,8 @@
 // Copyright the Neural Mesh authors
 
 // Groups are connected components of occupied octree cells, level by level from coarse to fine. Neighbouring
-// cells are connected if the boxes around their points are close: a gap that is wider than a cell shows at
-// that level, wherever the borders of the cells lie.
+// cells are connected if two of their points are close: whether a gap shows does not depend on where cells
+// end.
 #include "vcg_core/target/isolated_groups.h"
 
 #include <Eigen/Dense>
@@ -19,11 +19,11 @@ namespace {
 using Place = NearestPoints::Place;
 
 constexpr int kCoarsestLevel = 4;
+constexpr float kApart = 0.75F;             ///< in cells: points of connected cells are closer
+constexpr std::size_t kMostPairs = 10000;   ///< of points that are compared; of more a finer level tells
 constexpr std::size_t kPointsPerCell = 4;   ///< finer levels part the points of a surface
 constexpr std::size_t kCheapCells = 20000;  ///< of a level that takes a few milliseconds
 constexpr std::size_t kSmallest = 6;        ///< points of a group; fewer are suspects by their spacing
-constexpr Place kFewInCell = 48;            ///< points; of more, a finer level tells
-constexpr float kApart = 0.8F;              ///< in cells: boxes farther from each other are not connected
 constexpr double kLargestShare = 0.01;      ///< of all points
 constexpr double kSmallShare = 0.002;       ///< of all points; larger groups need a wider gap
 constexpr double kMostInClumps = 0.05;      ///< of all points; above, the cloud as a whole consists of clumps
@@ -56,7 +56,6 @@ struct Extent {
 struct Cell {
     std::uint64_t code;
     Place begin, end;
-    vcg::Box3f box;  ///< of its points if they are few, else null
 };
 
 /// The code of the cell one step along \p axis (0: the lowest bit of each triple), by arithmetic on the bits
@@ -76,29 +75,26 @@ std::vector<Cell> occupied_cells(const NearestPoints& cloud, const std::vector<s
     for (Place p = 0; p < cloud.size(); ++p) {
         if (out[p] != 0) continue;
         const std::uint64_t code = cloud.cell(p, level);
-        if (cells.empty() || cells.back().code != code) cells.push_back({code, p, p, {}});
+        if (cells.empty() || cells.back().code != code) cells.push_back({code, p, p});
         cells.back().end = p + 1;
     }
-    for (Cell& cell : cells)
-        for (Place p = cell.begin; p < cell.end && cell.end - cell.begin <= kFewInCell; ++p)
-            if (out[p] == 0) cell.box.Add(cloud.point(p));
     return cells;
 }
 
-/// Are neighbouring cells so far apart that they are not connected?
-bool are_apart(const Cell& a, const Cell& b, float limit) {
-    if (a.box.IsNull() || b.box.IsNull()) return false;
-    float sum = 0;
-    for (int k = 0; k < 3; ++k) {
-        const float d = std::max(std::max(a.box.min[k] - b.box.max[k], b.box.min[k] - a.box.max[k]), 0.0F);
-        sum += d * d;
-    }
-    return sum > limit * limit;
+/// Are all points of two cells, those in \p out left aside, farther apart than kApart cells?
+bool are_apart(const NearestPoints& cloud, const Cell& a, const Cell& b, int level,
+               const std::vector<std::uint8_t>& out) {
+    if (std::size_t{a.end - a.begin} * (b.end - b.begin) > kMostPairs) return false;
+    const float limit = kApart * cloud.cell_side(level);
+    for (Place p = a.begin; p < a.end; ++p)
+        for (Place q = b.begin; q < b.end && out[p] == 0; ++q)
+            if (out[q] == 0 && (cloud.point(p) - cloud.point(q)).SquaredNorm() <= limit * limit) return false;
+    return true;
 }
 
-/// The first cell of the component of each, by union-find with path halving. Cells farther apart than \p
-/// limit are not connected.
-std::vector<std::size_t> components(const std::vector<Cell>& cells, int level, float limit) {
+/// The first cell of the component of each, by union-find with path halving.
+std::vector<std::size_t> components(const NearestPoints& cloud, const std::vector<Cell>& cells, int level,
+                                    const std::vector<std::uint8_t>& out) {
     std::vector<std::size_t> parent(cells.size());
     std::iota(parent.begin(), parent.end(), std::size_t{0});
     const auto root = [&parent](std::size_t c) {
@@ -116,8 +112,9 @@ std::vector<std::size_t> components(const std::vector<Cell>& cells, int level, f
             const auto at =
                 std::lower_bound(cells.begin(), cells.end(), code,
                                  [](const Cell& cell, std::uint64_t key) { return cell.code < key; });
-            if (at == cells.end() || at->code != code || are_apart(cells[c], *at, limit)) continue;
+            if (at == cells.end() || at->code != code) continue;
             const std::size_t a = root(c), b = root(static_cast<std::size_t>(at - cells.begin()));
+            if (a == b || are_apart(cloud, cells[c], *at, level, out)) continue;
             parent[std::max(a, b)] = std::min(a, b);
         }
     for (std::size_t c = 0; c < cells.size(); ++c) parent[c] = root(c);
@@ -128,7 +125,7 @@ std::vector<std::size_t> components(const std::vector<Cell>& cells, int level, f
 std::vector<std::vector<Place>> small_groups(const NearestPoints& cloud, const std::vector<Cell>& cells,
                                              int level, std::size_t largest,
                                              const std::vector<std::uint8_t>& out) {
-    const std::vector<std::size_t> component = components(cells, level, kApart * cloud.cell_side(level));
+    const std::vector<std::size_t> component = components(cloud, cells, level, out);
     std::vector<std::size_t> size(cells.size());
     for (std::size_t c = 0; c < cells.size(); ++c) size[component[c]] += cells[c].end - cells[c].begin;
     std::vector<std::vector<Place>> groups(cells.size());
