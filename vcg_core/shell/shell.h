@@ -7,8 +7,8 @@
 // 1. A lattice is laid over the cloud, as fine as the density of the points allows (lattice.h).
 // 2. The solid at radius r is the set of nodes that the centre of a ball of radius r cannot reach from
 //    outside without the ball touching a point. Spaces much wider than their opening are sealed: they are
-//    the inside of a surface with gaps between its points (clearance.h, region.h). Those that a wall separates
-//    from the outside are hollows, and not of the solid (hollows.h).
+//    the inside of a surface with gaps between its points (clearance.h, region.h). Those that a wall
+//    separates from the outside are hollows, and not of the solid (hollows.h).
 // 3. Components and handles are counted at all radii (level_topology.h), on two lattices. The topology that
 //    persists over the largest range of radii is chosen (topology_vote.h).
 // 4. If the vote is unclear, the solids are grown without bridging gaps, on more lattices. This tells
