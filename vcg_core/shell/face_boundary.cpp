@@ -33,8 +33,12 @@ std::vector<std::size_t> places_of(const std::vector<Point3f>& corners) {
     return places;
 }
 
-/// The edges that one face has; faces without area have none.
-std::vector<Edge> boundary_edges(const std::vector<std::size_t>& places) {
+/// Edges by the number of their faces; faces without area have none.
+struct Edges {
+    std::vector<Edge> of_one, of_many;  ///< many: three or more
+};
+
+Edges edges_of(const std::vector<std::size_t>& places) {
     std::vector<Edge> edges;
     for (std::size_t f = 0; f + 2 < places.size(); f += 3) {
         const std::array<std::size_t, 3> at{places[f], places[f + 1], places[f + 2]};
@@ -43,28 +47,34 @@ std::vector<Edge> boundary_edges(const std::vector<std::size_t>& places) {
             edges.push_back({std::min(at[k], at[(k + 1) % 3]), std::max(at[k], at[(k + 1) % 3])});
     }
     std::sort(edges.begin(), edges.end());
-    std::vector<Edge> alone;
-    for (std::size_t i = 0; i < edges.size(); ++i)
-        if ((i == 0 || edges[i - 1] != edges[i]) && (i + 1 == edges.size() || edges[i + 1] != edges[i]))
-            alone.push_back(edges[i]);
-    return alone;
+    Edges result;
+    for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
+        while (end < edges.size() && edges[end] == edges[i]) ++end;
+        if (end - i == 1) result.of_one.push_back(edges[i]);
+        if (end - i > 2) result.of_many.push_back(edges[i]);
+    }
+    return result;
 }
 
 }  // namespace
 
 double widest_face_boundary(const TargetSpace& target) {
     const std::vector<Point3f>& corners = target.positions();
-    const std::vector<Edge> edges = boundary_edges(places_of(corners));
+    const Edges edges = edges_of(places_of(corners));
     std::vector<std::size_t> root(corners.size());
     std::iota(root.begin(), root.end(), std::size_t{0});
     const auto find = [&root](std::size_t v) {
         while (root[v] != v) v = root[v] = root[root[v]];
         return v;
     };
-    for (const Edge& edge : edges) root[find(edge[0])] = find(edge[1]);
+    for (const Edge& edge : edges.of_one) root[find(edge[0])] = find(edge[1]);
+    std::vector<char> of_fin(corners.size(), 0);  // by root
+    for (const Edge& edge : edges.of_many)
+        for (const std::size_t v : edge) of_fin[find(v)] = 1;
     std::vector<std::array<std::size_t, 2>> members;  // root and place
-    for (const Edge& edge : edges)
-        for (const std::size_t v : edge) members.push_back({find(v), v});
+    for (const Edge& edge : edges.of_one)
+        for (const std::size_t v : edge)
+            if (of_fin[find(v)] == 0) members.push_back({find(v), v});
     std::sort(members.begin(), members.end());
     float widest = 0;
     std::vector<Point3f> points;

@@ -42,5 +42,15 @@ TEST(FaceBoundary, JoinsCornersAtTheSamePlace) {
     EXPECT_EQ(widest(soup), 0);
 }
 
+TEST(FaceBoundary, IsNotThatOfAFin) {
+    shapes::Shape finned = shapes::icosphere(1);
+    const auto edge = finned.faces.front();
+    finned.positions.emplace_back(3, 3, 3);
+    finned.faces.push_back({edge[0], edge[1], static_cast<int>(finned.positions.size()) - 1});
+    for (int repeated = 5; repeated < 9; ++repeated)
+        finned.faces.push_back(finned.faces[static_cast<std::size_t>(repeated)]);
+    EXPECT_EQ(widest(finned), 0);
+}
+
 }  // namespace
 }  // namespace neuralmesh
