@@ -28,6 +28,7 @@ constexpr float kBetter = 0.3F;       ///< largest share of the squared error of
 constexpr float kMuchBetter = 0.04F;  ///< ... and of what noise leaves unexplained of it
 constexpr int kFewestPoints = 10;     ///< of a plane
 constexpr int kRefinements = 4;
+constexpr float kHopeless = 4;  ///< times the largest squared error, after which no refinement helps
 constexpr int kVerticesAtATime = 64;
 
 /// The two planes around one vertex after another.
@@ -45,9 +46,10 @@ public:
         const float edge = mean_edge(v);
         if (!(noise_variance < kNoisiest * kNoisiest * edge * edge)) return Vector3::Zero();
         collect_points(surface_.positions[v], kReach * edge);
+        const float noise = kNoiseShare * noise_variance;
         for (int i = 0; i < kRefinements; ++i)
-            if (!refine()) return Vector3::Zero();
-        if (!are_better_than_smooth(edge, kNoiseShare * noise_variance)) return Vector3::Zero();
+            if (!refine() || error_ > kHopeless * largest_error(edge, noise)) return Vector3::Zero();
+        if (!are_better_than_smooth(edge, noise)) return Vector3::Zero();
         const Vector3 way = way_to_line();
         return way.norm() < kFarthest * edge ? way : Vector3::Zero();
     }
@@ -143,12 +145,15 @@ private:
             int count = 0;
         };
         std::array<Sums, 2> sums;
+        double error = 0;
         for (const Sample& s : samples_) {
             Sums& of_plane = sums[nearer_plane(s)];
             const Eigen::Vector3d p = s.place.cast<double>();
             const auto w = static_cast<double>(s.weight);
-            of_plane.squares += w * p * p.transpose();
-            of_plane.places += w * p;
+            const Eigen::Vector3d wp = w * p;
+            for (int j = 0; j < 3; ++j)  // the solver reads the lower triangle only
+                for (int i = j; i < 3; ++i) of_plane.squares(i, j) += wp[i] * p[j];
+            of_plane.places += wp;
             of_plane.weight += w;
             ++of_plane.count;
         }
@@ -159,10 +164,15 @@ private:
             const Eigen::Matrix3d scatter = s.squares - s.weight * mean * mean.transpose();
             const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
             const Vector3 normal = solver.eigenvectors().col(0).cast<float>();
+            error += solver.eigenvalues()[0];
             planes_[k] = {normal.dot(planes_[k].normal) < 0 ? Vector3(-normal) : normal, mean.cast<float>()};
         }
+        error_ = static_cast<float>(error / (sums[0].weight + sums[1].weight));
         return planes_[0].normal.dot(planes_[1].normal) < kAlike;
     }
+
+    /// Of the points from the two planes of a crease, squared.
+    static float largest_error(float edge, float noise) { return kTight * kTight * edge * edge + noise; }
 
     /// Mean squared distance of the points from the nearer plane.
     float squared_error() const {
@@ -180,7 +190,7 @@ private:
     /// noise explains.
     bool are_better_than_smooth(float edge, float noise) const {
         const float error = squared_error();
-        if (!(error < kTight * kTight * edge * edge + noise)) return false;
+        if (!(error < largest_error(edge, noise))) return false;
         const float smooth = squared_error_if_smooth();
         return smooth > noise && error < kBetter * smooth && error - noise < kMuchBetter * (smooth - noise);
     }
@@ -232,6 +242,7 @@ private:
     std::vector<Sample> samples_;
     double reach_ = 0;
     std::array<Plane, 2> planes_;
+    float error_ = 0;  ///< mean squared distance of the points from the planes last fitted to them
 };
 
 /// There, points beyond the boundary belong to the faces, too.

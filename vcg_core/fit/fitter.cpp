@@ -321,20 +321,23 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
     };
     if (stopped()) return false;
     set_points_aside();
-    Surface start(network_);
-    const PointsByFace points_at_start = locate_points(start);
-    set_directions(start);
-    solve(points_at_start, start);
+    Surface surface(network_);
+    PointsByFace points = locate_points(surface);
+    set_directions(surface);
+    solve(points, surface);
     while (network_.vertex_count() > vertices) {
         if (stopped()) return false;
-        Surface surface(network_);
-        if (surface.has_boundary() && mend_boundary(surface, assign_faces(surface)) > 0)
-            surface = Surface(network_);
+        if (surface.has_boundary()) {
+            if (mend_boundary(surface, assign_faces(surface)) > 0) surface = Surface(network_);
+            points = assign_faces(surface);
+        } else {
+            points.update_feet(surface, team_);  // the next search follows once the vertices are removed
+        }
         const int max_count = std::min(network_.vertex_count() - vertices,
                                        1 + static_cast<int>(kRemovedShare * network_.vertex_count()));
-        if (!remove_vertices(surface, assign_faces(surface), max_count)) return false;
+        if (!remove_vertices(surface, points, max_count)) return false;
         surface = Surface(network_);
-        const PointsByFace points = assign_faces(surface);
+        points = assign_faces(surface);
         set_directions(surface);
         solve(points, surface);
     }
