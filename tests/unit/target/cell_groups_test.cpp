@@ -117,5 +117,22 @@ TEST(CellGroups, PartsWhatTouchesOnlyByItsCells) {
     EXPECT_EQ(first_of_a_group, 3u) << "two planes and the far corner";
 }
 
+// Neighbouring cells whose points are far apart: of many points in both, a finer level tells.
+TEST(CellGroups, DoNotComparePointsOfFullCells) {
+    for (const int count : {90, 150}) {
+        Cloud cloud{{0, 0, 0}, {1, 1, 1}};
+        for (int i = 0; i < count; ++i)
+            for (const float x : {0.51F, 0.735F})
+                cloud.emplace_back(x + 0.00003F * static_cast<float>(i), 0.55F, 0.55F);
+        const NearestPoints index(cloud);
+        const std::vector<std::uint8_t> out(cloud.size());
+        const std::vector<OccupiedCell> cells = occupied_cells(index, out, 3);
+        ASSERT_EQ(cells.size(), 4u);
+        const std::vector<std::size_t> label = connected_cells(index, cells, 3, out);
+        EXPECT_EQ(label, plainly_connected(index, cells, 3, out));
+        EXPECT_EQ(label[1] == label[2], count > 100);
+    }
+}
+
 }  // namespace
 }  // namespace neuralmesh
