@@ -94,6 +94,17 @@ PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& su
     add_bending(surface, stiffness);
     for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) add_target(target);
     add_boundary_bending(surface);
+    find_coupled();
+}
+
+void PointToPlaneSystem::find_coupled() {
+    coupled_.assign(network_.slot_count(), 0);
+    for (VertexId v = 0; v < network_.slot_count(); ++v)
+        coupled_[v] = std::any_of(block_.begin() + static_cast<std::ptrdiff_t>(row_[v]),
+                                  block_.begin() + static_cast<std::ptrdiff_t>(row_[v + 1]),
+                                  [](const Symmetric3& block) { return !block.is_zero(); })
+                          ? 1
+                          : 0;
 }
 
 void PointToPlaneSystem::gather(const PerFace<FaceSums>& sums, const Surface& surface, VertexId v) {
@@ -253,7 +264,8 @@ void PointToPlaneSystem::multiply(float lambda, const PerVertex<Vector3>& u,
         const Ring& ring = network_.ring(v);
         Vector3 sum = diagonal_[v] * u[v];
         const Symmetric3* block = row(v);
-        for (int i = 0; i < ring.valence; ++i) sum += block[i] * u[ring[i]];
+        if (coupled_[v] != 0)
+            for (int i = 0; i < ring.valence; ++i) sum += block[i] * u[ring[i]];
         result[v] = sum;
     }
     for (const BendingTerm& term : bending_terms_) {

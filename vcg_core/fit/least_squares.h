@@ -81,6 +81,7 @@ private:
     void add_bending(const Surface& surface, const PerVertex<float>& stiffness);
     void stiffen(BendingTerm& term, const PerVertex<float>& stiffness);
     void add_target(const BoundaryTarget& target);
+    void find_coupled();
     void add_boundary_bending(const Surface& surface);
     void centre_along(const Vector3& direction, const Vector3& away, VertexId v);
     Symmetric3* row(VertexId v) { return block_.data() + row_[v]; }
@@ -92,6 +93,7 @@ private:
     // A by block rows, and f.
     PerVertex<std::size_t> row_;  ///< row(v)[i] is the block of v and its neighbour at ring position i
     std::vector<Symmetric3> block_;
+    PerVertex<char> coupled_;  ///< 0 for rows of zeros: of vertices around which no points are
     PerVertex<Symmetric3> diagonal_;
     PerVertex<Vector3> force_;
     // B by terms, its diagonal, and g.

@@ -23,18 +23,24 @@ float quality_of(const Surface& surface, int f, const PerVertex<Vector3>& positi
     return triangle_quality(positions[face[0]], positions[face[1]], positions[face[2]]);
 }
 
-bool share_edge(const Triangle& f, const Triangle& g) {
-    int shared = 0;
-    for (VertexId a : f)
-        for (VertexId b : g) shared += a == b ? 1 : 0;
-    return shared == 2;
+/// The face across the edge from corner \p k of \p face to the next, if its number is higher and it has
+/// another third corner; -1 if not.
+int higher_face_across(const Surface& surface, int face, std::size_t k) {
+    const Triangle& own = surface.faces[face];
+    const VertexId a = own[k], b = own[(k + 1) % 3], c = own[(k + 2) % 3];
+    for (const int other : surface.faces_around(b)) {
+        if (other <= face) continue;
+        const Triangle& t = surface.faces[other];
+        for (std::size_t i = 0; i < 3; ++i)
+            if (t[i] == b && t[(i + 1) % 3] == a) return t[(i + 2) % 3] == c ? -1 : other;
+    }
+    return -1;
 }
 
 }  // namespace
 
 MoveLimits::MoveLimits(const Network& network, const Surface& surface)
-    : network_(network),
-      surface_(surface),
+    : surface_(surface),
       normals_(normals_of(surface, surface.positions)),
       qualities_(normals_.size(), 0),
       folded_(normals_.size(), 0),
@@ -45,6 +51,9 @@ MoveLimits::MoveLimits(const Network& network, const Surface& surface)
         for (std::size_t k = 0; k < 3; ++k)
             if (kMoveRules.is_folded(normals_[f].dot(normal_beyond(surface_, face[k], face[(k + 1) % 3]))))
                 folded_[f] = 1;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (const int other = higher_face_across(surface_, f, k); other >= 0)
+                neighbours_.push_back({f, other, normals_[f].dot(normals_[other])});
     }
     for (VertexId v : network.vertices()) {
         float length = 0;
@@ -120,22 +129,12 @@ private:
         };
         for (int f = 0; f < normals.size(); ++f)
             if (is_spoiled(f, normals)) mark(f);
-        for (VertexId v : limits_.network_.vertices()) {
-            const Span<const int> around = surface_.faces_around(v);
-            for (int i = 0; i < around.size(); ++i)
-                for (int j = i + 1; j < around.size(); ++j)
-                    if (fold(around[i], around[j], normals)) {
-                        mark(around[i]);
-                        mark(around[j]);
-                    }
-        }
+        for (const Neighbours& n : limits_.neighbours_)
+            if (kMoveRules.folds(n.cosine, normals[n.face].dot(normals[n.other]))) {
+                mark(n.face);
+                mark(n.other);
+            }
         return offending;
-    }
-
-    /// Whether two faces around a vertex are neighbours and fold.
-    bool fold(int f, int g, const PerFace<Vector3>& normals) const {
-        return kMoveRules.folds(limits_.normals_[f].dot(limits_.normals_[g]), normals[f].dot(normals[g])) &&
-               share_edge(surface_.faces[f], surface_.faces[g]);
     }
 
     const MoveLimits& limits_;

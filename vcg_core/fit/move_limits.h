@@ -4,6 +4,8 @@
 // Limits displacements of vertices so that they do not break the surface.
 #pragma once
 
+#include <vector>
+
 #include "vcg_core/fit/crossing_guard.h"
 #include "vcg_core/mesh/network.h"
 
@@ -14,7 +16,7 @@ namespace neuralmesh {
 /// up to five times, then set to 0.
 class MoveLimits {
 public:
-    /// Keeps references to the arguments; they must not change meanwhile. O(vertices).
+    /// Keeps a reference to \p surface, that of \p network; it must not change meanwhile. O(vertices).
     MoveLimits(const Network& network, const Surface& surface);
 
     /// The positions after the \p displacements, shortened where they break a limit. O(vertices) per halving.
@@ -26,10 +28,16 @@ public:
 private:
     class Moves;
 
-    const Network& network_;
+    /// Faces with a common edge, and the cosine between their normals before the move.
+    struct Neighbours {
+        int face, other;
+        float cosine;
+    };
+
     const Surface& surface_;
     PerFace<Vector3> normals_;
     PerFace<float> qualities_;
+    std::vector<Neighbours> neighbours_;  ///< every pair once
     PerFace<char> folded_;  ///< 1: folded onto a neighbour before the move, so it must be free to turn
     PerVertex<float> max_move_;
 };

@@ -33,6 +33,7 @@ struct Symmetric3 {
         yy += s;
         zz += s;
     }
+    bool is_zero() const { return xx == 0 && xy == 0 && xz == 0 && yy == 0 && yz == 0 && zz == 0; }
     Vector3 operator*(const Vector3& v) const {
         return {xx * v[0] + xy * v[1] + xz * v[2], xy * v[0] + yy * v[1] + yz * v[2],
                 xz * v[0] + yz * v[1] + zz * v[2]};

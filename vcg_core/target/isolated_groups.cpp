@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Groups are connected components of occupied octree cells, level by level from coarse to fine. Neighbouring
-// cells are connected if two of their points are close: whether a gap shows does not depend on where cells
-// end.
+// Groups are connected components of occupied octree cells, level by level from coarse to fine.
 #include "vcg_core/target/isolated_groups.h"
 
 #include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
+
+#include "vcg_core/target/cell_groups.h"
 
 namespace neuralmesh {
 namespace {
@@ -19,8 +18,6 @@ namespace {
 using Place = NearestPoints::Place;
 
 constexpr int kCoarsestLevel = 4;
-constexpr float kApart = 0.75F;             ///< in cells: points of connected cells are closer
-constexpr std::size_t kMostPairs = 10000;   ///< of points that are compared; of more a finer level tells
 constexpr std::size_t kPointsPerCell = 4;   ///< finer levels part the points of a surface
 constexpr std::size_t kCheapCells = 20000;  ///< of a level that takes a few milliseconds
 constexpr std::size_t kSmallest = 6;        ///< points of a group; fewer are suspects by their spacing
@@ -52,80 +49,11 @@ struct Extent {
     }
 };
 
-/// Of consecutive places in one octree cell.
-struct Cell {
-    std::uint64_t code;
-    Place begin, end;
-};
-
-/// The code of the cell one step along \p axis (0: the lowest bit of each triple), by arithmetic on the bits
-/// of that axis alone. At the border of the cube it is the cell at the opposite border.
-std::uint64_t stepped(std::uint64_t code, int axis, int step, int level) {
-    const std::uint64_t mask =
-        (std::uint64_t{0x1249249249249249} << axis) & ((std::uint64_t{1} << 3 * level) - 1);
-    const std::uint64_t one = std::uint64_t{1} << axis;
-    if (step == 0) return code;
-    const std::uint64_t moved = step > 0 ? (code | ~mask) + one : (code & mask) - one;
-    return (moved & mask) | (code & ~mask);
-}
-
-std::vector<Cell> occupied_cells(const NearestPoints& cloud, const std::vector<std::uint8_t>& out,
-                                 int level) {
-    std::vector<Cell> cells;
-    for (Place p = 0; p < cloud.size(); ++p) {
-        if (out[p] != 0) continue;
-        const std::uint64_t code = cloud.cell(p, level);
-        if (cells.empty() || cells.back().code != code) cells.push_back({code, p, p});
-        cells.back().end = p + 1;
-    }
-    return cells;
-}
-
-/// Are all points of two cells, those in \p out left aside, farther apart than kApart cells?
-bool are_apart(const NearestPoints& cloud, const Cell& a, const Cell& b, int level,
-               const std::vector<std::uint8_t>& out) {
-    if (std::size_t{a.end - a.begin} * (b.end - b.begin) > kMostPairs) return false;
-    const float limit = kApart * cloud.cell_side(level);
-    for (Place p = a.begin; p < a.end; ++p)
-        for (Place q = b.begin; q < b.end && out[p] == 0; ++q)
-            if (out[q] == 0 && (cloud.point(p) - cloud.point(q)).SquaredNorm() <= limit * limit) return false;
-    return true;
-}
-
-/// The first cell of the component of each, by union-find with path halving.
-std::vector<std::size_t> components(const NearestPoints& cloud, const std::vector<Cell>& cells, int level,
-                                    const std::vector<std::uint8_t>& out) {
-    std::vector<std::size_t> parent(cells.size());
-    std::iota(parent.begin(), parent.end(), std::size_t{0});
-    const auto root = [&parent](std::size_t c) {
-        while (parent[c] != c) c = parent[c] = parent[parent[c]];
-        return c;
-    };
-    constexpr std::size_t kFilterBits = std::size_t{1} << 21;
-    std::vector<bool> filter(kFilterBits);  // of codes that may be occupied: most neighbours are not
-    for (const Cell& cell : cells) filter[cell.code % kFilterBits] = true;
-    for (std::size_t c = 0; c < cells.size(); ++c)
-        for (int around = 0; around < 13; ++around) {  // the other half of the 26 look at this one
-            const int dx = around % 3 - 1, dy = around / 3 % 3 - 1, dz = around / 9 - 1;
-            const std::uint64_t code =
-                stepped(stepped(stepped(cells[c].code, 0, dx, level), 1, dy, level), 2, dz, level);
-            const auto at =
-                std::lower_bound(cells.begin(), cells.end(), code,
-                                 [](const Cell& cell, std::uint64_t key) { return cell.code < key; });
-            if (at == cells.end() || at->code != code) continue;
-            const std::size_t a = root(c), b = root(static_cast<std::size_t>(at - cells.begin()));
-            if (a == b || are_apart(cloud, cells[c], *at, level, out)) continue;
-            parent[std::max(a, b)] = std::min(a, b);
-        }
-    for (std::size_t c = 0; c < cells.size(); ++c) parent[c] = root(c);
-    return parent;
-}
-
 /// The points of every component that is small but not tiny, by ascending places.
-std::vector<std::vector<Place>> small_groups(const NearestPoints& cloud, const std::vector<Cell>& cells,
-                                             int level, std::size_t largest,
-                                             const std::vector<std::uint8_t>& out) {
-    const std::vector<std::size_t> component = components(cloud, cells, level, out);
+std::vector<std::vector<Place>> small_groups(const NearestPoints& cloud,
+                                             const std::vector<OccupiedCell>& cells, int level,
+                                             std::size_t largest, const std::vector<std::uint8_t>& out) {
+    const std::vector<std::size_t> component = connected_cells(cloud, cells, level, out);
     std::vector<std::size_t> size(cells.size());
     for (std::size_t c = 0; c < cells.size(); ++c) size[component[c]] += cells[c].end - cells[c].begin;
     std::vector<std::vector<Place>> groups(cells.size());
@@ -208,7 +136,7 @@ void mark_isolated_clumps(const NearestPoints& cloud, std::vector<std::uint8_t>&
     std::vector<std::uint8_t> marked = out;
     std::size_t in_clumps = 0;
     for (int level = kCoarsestLevel; level <= cloud.finest_level(); ++level) {
-        const std::vector<Cell> cells = occupied_cells(cloud, marked, level);
+        const std::vector<OccupiedCell> cells = occupied_cells(cloud, marked, level);
         if (cells.size() > most_cells && level > kCoarsestLevel) break;
         for (const std::vector<Place>& group : small_groups(cloud, cells, level, largest, marked)) {
             if (!is_clump(cloud, group, marked)) continue;

@@ -49,6 +49,9 @@ def parse(arguments):
     parser.add_argument("--peers", type=numbers(str), default=[], help=f"of {', '.join(PEERS)}")
     parser.add_argument("--vertices", type=int, default=5000)
     parser.add_argument("--samples", type=int, default=100_000, help="points of the clouds with outliers")
+    parser.add_argument("--per-vertex", type=numbers(float), default=list(PER_VERTEX), help="points per vertex")
+    parser.add_argument("--noise", type=numbers(float), default=list(NOISE), help="%% of the diagonal, of these clouds")
+    parser.add_argument("--timeout", type=float, default=300, help="seconds for one mesh")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a parameter of ours")
     options = parser.parse_args(arguments)
     options.models = options.models or list(TABLE_MODELS if options.data else models.PUBLIC_MODELS)
@@ -73,8 +76,8 @@ def clouds(name, truth, options):
         for ratio in DENSITIES:
             yield f"density {ratio}:1", scans.thinned(vertices, faces, ratio), 0
     if "points" in options.groups:
-        for noise in NOISE:
-            for ratio in PER_VERTEX:
+        for noise in options.noise:
+            for ratio in options.per_vertex:
                 cloud = models.make_cloud(vertices, faces, int(ratio * options.vertices), noise)
                 yield f"{ratio:g} points per vertex" + (f", noise {noise:g} %" if noise else ""), cloud, 0
 
@@ -142,7 +145,8 @@ def measured(method, points, truth, options, folder):
     folder.mkdir(parents=True, exist_ok=True)
     models.save_ply(folder / "cloud.ply", points)
     ours = {"plugin": options.plugin, "settings": options.settings} if method == "neural" else {}
-    figures = peers.run("neural" if ours else "poisson", folder / "cloud.ply", folder, [options.vertices], **ours)
+    figures = peers.run("neural" if ours else "poisson", folder / "cloud.ply", folder, [options.vertices],
+                        timeout=options.timeout, **ours)
     mesh = models.load_mesh(folder / f"{options.vertices}.ply")
     return {**evaluate.evaluate(*mesh, truth), **where(mesh, truth), **figures[options.vertices]}
 

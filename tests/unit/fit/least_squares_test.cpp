@@ -77,6 +77,36 @@ TEST_F(LeastSquares, IsSolvedAsByDirectSolvers) {
     }
 }
 
+// Most vertices have no points around them, so their rows couple by the bending alone.
+TEST(FewerPointsThanVertices, AreSolvedForAsByDirectSolvers) {
+    const Network network = referee::network_of(shapes::icosphere(2), 0.02);
+    const Surface surface(network);
+    PointsByFace all = points_on(surface, 1, sine);
+    ThreadTeam team(2);
+    int with_points = 0;
+    for (int f = 0; f < surface.face_count(); ++f)
+        for (PointsByFace::Assignment& a : all.of(f)) {
+            a.influence = f % 16 == 0 ? 1.0F : 0.0F;
+            with_points += f % 16 == 0 ? 1 : 0;
+        }
+    ASSERT_LT(with_points, network.vertex_count() / 4);
+    const PointToPlaneSystem system(network, surface, all, team);
+    const Matrix matrix = matrix_of(system, network.slot_count(), 1);
+    EXPECT_LT((matrix - matrix.transpose()).norm(), 1e-5 * matrix.norm());
+    const Vector direct = Eigen::LDLT<Matrix>(matrix).solve(flat(system.right_side(1)));
+    EXPECT_LT((flat(system.solve(1, {1e-6, 5000})) - direct).norm(), 5e-3 * direct.norm());
+    // Only the corners of faces with points are coupled without bending.
+    PerVertex<char> near_points(network.slot_count(), 0);
+    for (int f = 0; f < surface.face_count(); f += 16)
+        for (const VertexId v : surface.faces[f]) near_points[v] = 1;
+    const Matrix unbent = matrix_of(system, network.slot_count(), 0);
+    for (VertexId v = 0; v < network.slot_count(); ++v)
+        for (VertexId u = 0; u < network.slot_count(); ++u) {
+            if (u == v || (near_points[u] != 0 && near_points[v] != 0)) continue;
+            EXPECT_TRUE((unbent.block<3, 3>(3 * v, 3 * u).isZero(0)));
+        }
+}
+
 // The energy of the points, without bending: sum of w ((n.e)^2 + kTangential |e_t|^2), as the header defines.
 TEST_F(LeastSquares, MeasuresThePointsAsDefined) {
     constexpr double kTangential = 0.03;
