@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "vcg_core/base/text.h"
+#include "vcg_core/layer_normals.h"
 #include "vcg_core/shell/face_boundary.h"
 #include "vcg_core/shell/given_start.h"
 #include "vcg_core/shell/open_start.h"
@@ -129,6 +130,14 @@ void measure_noise(LearningTask& task, Survey& survey, int vertices) {
     task.noise = noise_in_edges(survey.of(points), static_cast<double>(points.size()) / vertices);
 }
 
+/// Whether the points have normals that are to be used; a warning, if theirs cannot.
+bool normals_serve(LearningTask& task, Survey& survey, const Settings& settings) {
+    if (!settings.use_normals || !task.target().has_normals()) return false;
+    const std::string why_not = why_normals_do_not_serve(task.target(), survey.of(task.target().positions()));
+    if (!why_not.empty()) task.warnings.push_back(why_not);
+    return why_not.empty();
+}
+
 /// Gives the points weights by which signals are even over the surface.
 void weigh_points(LearningTask& task, Survey& survey) {
     std::optional<TargetSpace> even = task.target().evenly(survey.of(task.target().positions()));
@@ -157,6 +166,7 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, P
     options.learn_outliers = !settings.remove_outliers;
     if (settings.surface == kAutomatic && settings.close_holes_up_to < 0)
         options.closed_up_to = widest_closed(target);
+    options.use_normals = settings.use_normals;
     Random random(stream_seed(settings.random_seed, Stream::shell));
     return open_start(target, options, random, progress);
 }
@@ -206,6 +216,7 @@ void begin_open(LearningTask& task, OpenStart start, const Settings& settings) {
             "The points enclose no space, or openings too wide to close: the surface ends "
             "where they end. Choose surface 1 to close it.");
     remove_groups_without_component(task, start.outliers, start.positions);
+    task.parts_faced_by_normals = start.faced_by_normals;
     task.network = Network(start.positions, start.faces);
     task.landing_signals = kLandingSignals;
 }
@@ -296,7 +307,11 @@ LearningTask prepare(const TargetSpace& given, const Settings& settings, const I
                      Progress& progress) {
     Survey survey(settings.threads);
     LearningTask task = points_to_learn(given, settings, survey);
-    begin(task, settings, start, progress);
+    Settings trusted = settings;
+    trusted.use_normals = normals_serve(task, survey, settings);
+    begin(task, trusted, start, progress);
+    if (trusted.use_normals && settings.start_mesh == kShell && task.landing_signals > 0)
+        report_normals(task.network, task.target(), task.parts_faced_by_normals, task.notes, task.warnings);
     if (!given.has_faces()) measure_noise(task, survey, settings.target_vertices);
     if (settings.even_sampling && settings.utility_counter != kSignalCount && !given.is_exact())
         weigh_points(task, survey);

@@ -38,6 +38,9 @@ struct OpenStartOptions {
     /// A component counts with this share of the points and at least kLeastPoints of them. A sheet of surface
     /// counts with fewer, if the mesh has vertices for it.
     double component_share = 0.01;
+    /// Parts with a boundary face the side to which most normals of the target point, if it has any, instead
+    /// of facing out where they are convex.
+    bool use_normals = false;
     /// Points drawn from a target that is a mesh.
     int samples = 100000;
 
@@ -53,8 +56,9 @@ struct OpenStart {
     std::vector<vcg::Point3f> positions;
     std::vector<Triangle> faces;
     int components = 0;
-    int genus = 0;  ///< of all components together
-    int loops = 0;  ///< boundary loops
+    int genus = 0;             ///< of all components together
+    int loops = 0;             ///< boundary loops
+    int faced_by_normals = 0;  ///< components with a boundary that face the side of the target's normals
     /// of the smallest sphere around the widest hole, as share of the mesh's diagonal
     double widest_loop = 0;
     double spacing = 0;        ///< of the points, in the core's frame: the step of the lattice of cells
