@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <locale>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "vcg_core/base/text.h"
@@ -34,6 +36,8 @@ constexpr double kWidestClosed = 0.066;
 /// as 2.3 spacings and a sheet share of 4.4 times the spacing were found with 500 to 15,000 points of five
 /// closed models. Of the same models cut by a plane one of the two is above these bounds.
 constexpr double kOpeningSpacings = 3, kSheetSpacings = 5;
+/// The sides of walls thicker than this, in spacings of the points, are told apart (opposite_layers.h).
+constexpr double kToldSpacings = 4;
 /// Planes that are thicker than this say nothing about where the cloud is open.
 constexpr double kTooThick = 0.45;
 /// An open start mesh with more handles than this share of its vertices follows gaps between the points.
@@ -185,14 +189,37 @@ bool may_be_open(const StartMesh& shell, const TargetSpace& target, const Settin
            shell.sheet_share > std::max(kMostSheet, kSheetSpacings * spacing);
 }
 
+/// What becomes of walls whose sides cannot be told apart.
+constexpr const char* kSidesMayCross = "The sides of the mesh may cross there.";
+constexpr const char* kOneSheetClosed = "They were learned as one sheet, closed around both sides.";
+constexpr const char* kOneSheet = "They were learned as one sheet.";
+
+/// Warns if the points lie on the two sides of walls too thin to tell the sides apart.
+void warn_of_thin_walls(LearningTask& task, const LayerFigures& layers, const char* outcome) {
+    if (!layers.are_two() || layers.thickness > kToldSpacings * layers.spacing) return;
+    const double diagonal = task.target().frame().diagonal;
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text.precision(2);
+    text
+        << "The points lie on the two sides of walls about " << layers.thickness * diagonal
+        << " thick, which cannot be told apart: the points of each side are about "
+        << layers.spacing * diagonal << " from each other. " << outcome
+        << " For both sides take points a quarter of the thickness from each other; for one, the points of one "
+           "side only.";
+    task.warnings.push_back(text.str());
+}
+
 /// The start mesh of one layer of a cloud that may be open; nothing if the cloud has none that learning can
 /// begin with, or if it is closed and its shell is the better start.
-std::optional<OpenStart> try_open_start(const TargetSpace& target, const StartMesh& shell,
-                                        const Settings& settings, Progress& progress) {
+std::optional<OpenStart> try_open_start(LearningTask& task, const StartMesh& shell, const Settings& settings,
+                                        Progress& progress) {
+    const TargetSpace& target = task.target();
     try {
         OpenStart start = make_open_start(target, settings, progress);
+        warn_of_thin_walls(task, start.layers, shell.encloses_space ? kSidesMayCross : kOneSheetClosed);
         const auto vertices = static_cast<int>(start.positions.size());
-        const bool open = start.loops > 0 && !start.two_layers &&
+        const bool open = start.loops > 0 && !start.layers.are_two() &&
                           (target.has_faces() || may_be_open(shell, target, settings, start.spacing)) &&
                           (settings.close_holes_up_to >= 0 || start.widest_loop > widest_closed(target));
         if (open && start.thickness < kTooThick && vertices <= settings.target_vertices &&
@@ -280,14 +307,16 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
         return;
     }
     if (settings.surface == kOpenSurface) {
-        begin_open(task, make_open_start(task.target(), settings, progress), settings);
+        OpenStart start = make_open_start(task.target(), settings, progress);
+        warn_of_thin_walls(task, start.layers, kOneSheet);
+        begin_open(task, std::move(start), settings);
         return;
     }
     PartOf closing(progress, 0, kShellMade);
     PartOf opening(progress, kShellMade, 1);
     StartMesh shell = make_shell(task.target(), settings, closing);
     if (settings.surface == kAutomatic && may_be_open(shell, task.target(), settings, 0)) {
-        std::optional<OpenStart> start = try_open_start(task.target(), shell, settings, opening);
+        std::optional<OpenStart> start = try_open_start(task, shell, settings, opening);
         if (start) {
             begin_open(task, std::move(*start), settings);
             return;

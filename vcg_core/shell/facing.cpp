@@ -90,12 +90,15 @@ int orient_by_normals(Network& network, const TargetSpace& target) {
     for (const auto& loop : boundary_loops(network.slot_count(), network.faces()))
         open[static_cast<std::size_t>(component[loop.front()])] = 1;
     int clear = 0;
+    bool any_over = false;
     for (std::size_t i = 0; i < votes.size(); ++i) {
         if (open[i] == 0 || !votes[i].is_clear()) continue;
         ++clear;
         over[i] = votes[i].against > votes[i].along ? 1 : 0;
+        any_over = any_over || over[i] != 0;
     }
-    turn(network, [&](VertexId v) { return over[static_cast<std::size_t>(component[v])] != 0; });
+    if (any_over)
+        turn(network, [&](VertexId v) { return over[static_cast<std::size_t>(component[v])] != 0; });
     return clear;
 }
 

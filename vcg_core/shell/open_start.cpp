@@ -18,7 +18,6 @@
 #include "vcg_core/shell/outliers.h"
 #include "vcg_core/shell/start_points.h"
 #include "vcg_core/shell/tangent_planes.h"
-#include "vcg_core/shell/two_layers.h"
 
 namespace neuralmesh {
 namespace {
@@ -349,7 +348,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     write_mesh(network, result);
     result.thickness = static_cast<double>(planes.thickness);
     result.spacing = static_cast<double>(planes.step);
-    result.two_layers = median_kurtosis(points, planes) < kTwoLayers;
+    result.layers = layer_figures(points, planes);
     set_outliers(outliers_of(planes, kept), static_cast<long long>(points.size()), enough.points,
                  options.learn_outliers || target.is_exact(), result);
     warn_of_cuts(target, planes, result);

@@ -18,6 +18,7 @@
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/mesh/ring.h"
+#include "vcg_core/shell/two_layers.h"
 #include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
@@ -64,7 +65,7 @@ struct OpenStart {
     double spacing = 0;        ///< of the points, in the core's frame: the step of the lattice of cells
     double widest_filled = 0;  ///< diameter of the widest hole that was filled
     double thickness = 0;      ///< median of that of the tangent planes (tangent_planes.h)
-    bool two_layers = false;   ///< most of the points lie on the two sides of a thin wall (two_layers.h)
+    LayerFigures layers;       ///< whether most of the points lie on the two sides of a thin wall
     /// 1 for each point of the cloud that is not to be learned; empty if there are none, too many, or if the
     /// target has faces.
     std::vector<std::uint8_t> outliers;

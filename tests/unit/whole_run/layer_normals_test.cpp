@@ -54,7 +54,7 @@ void expect_same(const NeuralMesh& a, const NeuralMesh& b) {
 }
 
 TEST(LayerNormals, OrientAnOpenSurface) {
-    const Cloud cloud = bowl(20000);
+    const Cloud cloud = bowl(8000);
     for (const int surface : {kAutomatic, kOpenSurface}) {
         for (const bool in : {false, true}) {
             const NeuralMesh mesh = learn(target_of(cloud, in ? inward(cloud) : outward(cloud)), surface);
@@ -63,7 +63,7 @@ TEST(LayerNormals, OrientAnOpenSurface) {
             EXPECT_TRUE(has_note(mesh, kFollowed));
             EXPECT_FALSE(has_warning(mesh, "normals"));
             const double out = share_facing_out(mesh);
-            EXPECT_GT(in ? 1 - out : out, 0.99);
+            EXPECT_GT(in ? 1 - out : out, 0.98);
         }
     }
 }
@@ -83,7 +83,7 @@ TEST(LayerNormals, OrientASheetToBothSides) {
 }
 
 TEST(LayerNormals, OfRepeatedPointsAndOutliersComeAlong) {
-    Cloud cloud = bowl(20000);
+    Cloud cloud = bowl(8000);
     const std::size_t once = cloud.size();
     cloud.insert(cloud.end(), cloud.begin(), cloud.begin() + static_cast<std::ptrdiff_t>(once / 2));
     std::vector<PackedNormal> normals = inward(cloud);
@@ -96,11 +96,11 @@ TEST(LayerNormals, OfRepeatedPointsAndOutliersComeAlong) {
     EXPECT_TRUE(has_warning(mesh, "repeat others"));
     EXPECT_GT(mesh.report.outliers, 20);
     EXPECT_TRUE(has_note(mesh, kFollowed));
-    EXPECT_LT(share_facing_out(mesh), 0.01);
+    EXPECT_LT(share_facing_out(mesh), 0.02);
 }
 
 TEST(LayerNormals, AreNotUsedIfTheyAreWrong) {
-    const Cloud cloud = bowl(20000);
+    const Cloud cloud = bowl(8000);
     const NeuralMesh without = learn(targets::target_of(cloud));
     const NeuralMesh sides = learn(target_of(cloud, flipped(outward(cloud), 2)));
     EXPECT_TRUE(has_warning(sides, "point to either side of the surface"));
@@ -112,7 +112,7 @@ TEST(LayerNormals, AreNotUsedIfTheyAreWrong) {
 }
 
 TEST(LayerNormals, OfPartsThatDisagreeAreNotUsed) {
-    const Cloud cloud = bowl(20000);
+    const Cloud cloud = bowl(8000);
     std::vector<PackedNormal> normals = inward(cloud);
     for (std::size_t i = 0; i < cloud.size(); ++i)
         if (cloud[i][0] > 0) normals[i] = opposite(normals[i]);
@@ -123,7 +123,7 @@ TEST(LayerNormals, OfPartsThatDisagreeAreNotUsed) {
 }
 
 TEST(LayerNormals, ThatAreZeroOrSwitchedOffAreNone) {
-    const Cloud cloud = bowl(20000);
+    const Cloud cloud = bowl(8000);
     const NeuralMesh without = learn(targets::target_of(cloud));
     const TargetSpace zero = target_of(cloud, std::vector<PackedNormal>(cloud.size(), kNoNormal));
     EXPECT_FALSE(zero.has_normals());
