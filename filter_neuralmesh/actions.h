@@ -112,7 +112,9 @@ MeshCounters run_counters(const MeshType& layer, const Matrix& transform, const 
                           HostProgress::CallBack* call_back) {
     settings.check(counter_table());
     HostProgress progress(call_back);
-    const TargetSpace target = target_space_of(signal_layer, signal_transform, settings);
+    Settings of_signals = settings;
+    of_signals.use_normals = false;
+    const TargetSpace target = target_space_of(signal_layer, signal_transform, of_signals);
     return mesh_counters(indexed_mesh_of(layer, transform), target, settings, progress);
 }
 

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <locale>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "vcg_core/base/text.h"
+#include "vcg_core/layer_normals.h"
 #include "vcg_core/shell/face_boundary.h"
 #include "vcg_core/shell/given_start.h"
 #include "vcg_core/shell/open_start.h"
@@ -33,6 +36,8 @@ constexpr double kWidestClosed = 0.066;
 /// as 2.3 spacings and a sheet share of 4.4 times the spacing were found with 500 to 15,000 points of five
 /// closed models. Of the same models cut by a plane one of the two is above these bounds.
 constexpr double kOpeningSpacings = 3, kSheetSpacings = 5;
+/// The sides of walls thicker than this, in spacings of the points, are told apart (opposite_layers.h).
+constexpr double kToldSpacings = 4;
 /// Planes that are thicker than this say nothing about where the cloud is open.
 constexpr double kTooThick = 0.45;
 /// An open start mesh with more handles than this share of its vertices follows gaps between the points.
@@ -129,6 +134,14 @@ void measure_noise(LearningTask& task, Survey& survey, int vertices) {
     task.noise = noise_in_edges(survey.of(points), static_cast<double>(points.size()) / vertices);
 }
 
+/// Whether the points have normals that are to be used; a warning, if theirs cannot.
+bool normals_serve(LearningTask& task, Survey& survey, const Settings& settings) {
+    if (!settings.use_normals || !task.target().has_normals()) return false;
+    const std::string why_not = why_normals_do_not_serve(task.target(), survey.of(task.target().positions()));
+    if (!why_not.empty()) task.warnings.push_back(why_not);
+    return why_not.empty();
+}
+
 /// Gives the points weights by which signals are even over the surface.
 void weigh_points(LearningTask& task, Survey& survey) {
     std::optional<TargetSpace> even = task.target().evenly(survey.of(task.target().positions()));
@@ -157,6 +170,7 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, P
     options.learn_outliers = !settings.remove_outliers;
     if (settings.surface == kAutomatic && settings.close_holes_up_to < 0)
         options.closed_up_to = widest_closed(target);
+    options.use_normals = settings.use_normals;
     Random random(stream_seed(settings.random_seed, Stream::shell));
     return open_start(target, options, random, progress);
 }
@@ -175,14 +189,37 @@ bool may_be_open(const StartMesh& shell, const TargetSpace& target, const Settin
            shell.sheet_share > std::max(kMostSheet, kSheetSpacings * spacing);
 }
 
+/// What becomes of walls whose sides cannot be told apart.
+constexpr const char* kSidesMayCross = "The sides of the mesh may cross there.";
+constexpr const char* kOneSheetClosed = "They were learned as one sheet, closed around both sides.";
+constexpr const char* kOneSheet = "They were learned as one sheet.";
+
+/// Warns if the points lie on the two sides of walls too thin to tell the sides apart.
+void warn_of_thin_walls(LearningTask& task, const LayerFigures& layers, const char* outcome) {
+    if (!layers.are_two() || layers.thickness > kToldSpacings * layers.spacing) return;
+    const double diagonal = task.target().frame().diagonal;
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text.precision(2);
+    text
+        << "The points lie on the two sides of walls about " << layers.thickness * diagonal
+        << " thick, which cannot be told apart: the points of each side are about "
+        << layers.spacing * diagonal << " from each other. " << outcome
+        << " For both sides take points a quarter of the thickness from each other; for one, the points of one "
+           "side only.";
+    task.warnings.push_back(text.str());
+}
+
 /// The start mesh of one layer of a cloud that may be open; nothing if the cloud has none that learning can
 /// begin with, or if it is closed and its shell is the better start.
-std::optional<OpenStart> try_open_start(const TargetSpace& target, const StartMesh& shell,
-                                        const Settings& settings, Progress& progress) {
+std::optional<OpenStart> try_open_start(LearningTask& task, const StartMesh& shell, const Settings& settings,
+                                        Progress& progress) {
+    const TargetSpace& target = task.target();
     try {
         OpenStart start = make_open_start(target, settings, progress);
+        warn_of_thin_walls(task, start.layers, shell.encloses_space ? kSidesMayCross : kOneSheetClosed);
         const auto vertices = static_cast<int>(start.positions.size());
-        const bool open = start.loops > 0 && !start.two_layers &&
+        const bool open = start.loops > 0 && !start.layers.are_two() &&
                           (target.has_faces() || may_be_open(shell, target, settings, start.spacing)) &&
                           (settings.close_holes_up_to >= 0 || start.widest_loop > widest_closed(target));
         if (open && start.thickness < kTooThick && vertices <= settings.target_vertices &&
@@ -206,6 +243,7 @@ void begin_open(LearningTask& task, OpenStart start, const Settings& settings) {
             "The points enclose no space, or openings too wide to close: the surface ends "
             "where they end. Choose surface 1 to close it.");
     remove_groups_without_component(task, start.outliers, start.positions);
+    task.parts_faced_by_normals = start.faced_by_normals;
     task.network = Network(start.positions, start.faces);
     task.landing_signals = kLandingSignals;
 }
@@ -269,14 +307,16 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
         return;
     }
     if (settings.surface == kOpenSurface) {
-        begin_open(task, make_open_start(task.target(), settings, progress), settings);
+        OpenStart start = make_open_start(task.target(), settings, progress);
+        warn_of_thin_walls(task, start.layers, kOneSheet);
+        begin_open(task, std::move(start), settings);
         return;
     }
     PartOf closing(progress, 0, kShellMade);
     PartOf opening(progress, kShellMade, 1);
     StartMesh shell = make_shell(task.target(), settings, closing);
     if (settings.surface == kAutomatic && may_be_open(shell, task.target(), settings, 0)) {
-        std::optional<OpenStart> start = try_open_start(task.target(), shell, settings, opening);
+        std::optional<OpenStart> start = try_open_start(task, shell, settings, opening);
         if (start) {
             begin_open(task, std::move(*start), settings);
             return;
@@ -296,7 +336,11 @@ LearningTask prepare(const TargetSpace& given, const Settings& settings, const I
                      Progress& progress) {
     Survey survey(settings.threads);
     LearningTask task = points_to_learn(given, settings, survey);
-    begin(task, settings, start, progress);
+    Settings trusted = settings;
+    trusted.use_normals = normals_serve(task, survey, settings);
+    begin(task, trusted, start, progress);
+    if (trusted.use_normals && settings.start_mesh == kShell && task.landing_signals > 0)
+        report_normals(task.network, task.target(), task.parts_faced_by_normals, task.notes, task.warnings);
     if (!given.has_faces()) measure_noise(task, survey, settings.target_vertices);
     if (settings.even_sampling && settings.utility_counter != kSignalCount && !given.is_exact())
         weigh_points(task, survey);

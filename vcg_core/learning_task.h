@@ -36,7 +36,8 @@ struct LearningTask {
     /// faces, where it is not known.
     double noise = std::numeric_limits<double>::infinity();
     double topology_confidence = 0;  ///< as in Report
-    std::vector<std::string> warnings;
+    int parts_faced_by_normals = 0;  ///< components of the network that face the side of the points' normals
+    std::vector<std::string> warnings, notes;  ///< as in Report
 };
 
 /// The points of \p given without repeated ones and, if settings.remove_outliers is on, without outliers, and
@@ -48,13 +49,14 @@ LearningTask points_to_learn(const TargetSpace& given, const Settings& settings)
 /// start. If settings.even_sampling is on and settings.utility_counter does not follow the density of the
 /// points, those of an uneven cloud get weights.
 ///
-/// A shell of more than settings.target_vertices vertices is replaced by a tetrahedron, with a warning, unless
-/// the fit reduces it and its components and handles need no more; an open start mesh is not, because a tetrahedron would close it. If settings.surface is automatic and the
-/// cloud has no open surface, it is closed. A tetrahedron stays closed, with a warning if settings.surface is
-/// open. \p given must outlive the result. Fractions of \p progress run from 0 to 1. \throws what shell_of()
-/// throws; if settings.surface is open, what open_start() throws; SettingError if an open start mesh needs
-/// more than settings.target_vertices vertices; what given_start() throws, and SettingError if \p start has
-/// more vertices than that
+/// A shell of more than settings.target_vertices vertices is replaced by a tetrahedron, with a warning,
+/// unless the fit reduces it and its components and handles need no more; an open start mesh is not, because
+/// a tetrahedron would close it. If settings.surface is automatic and the cloud has no open surface, it is
+/// closed. A tetrahedron stays closed, with a warning if settings.surface is open. \p given must outlive the
+/// result. Fractions of \p progress run from 0 to 1. \throws what shell_of() throws; if settings.surface is
+/// open, what open_start() throws; SettingError if an open start mesh needs more than
+/// settings.target_vertices vertices; what given_start() throws, and SettingError if \p start has more
+/// vertices than that
 LearningTask prepare(const TargetSpace& given, const Settings& settings, const IndexedMesh<double>& start,
                      Progress& progress);
 

@@ -46,6 +46,21 @@ Coordinates better_origin(const NeuralMesh& result, const Coordinates& of_layer,
     return largest_coordinate(result, of_layer) < in_world / 2 ? of_layer : of_world;
 }
 
+NormalTransform::NormalTransform(const std::array<Coordinates, 3>& rows_of_matrix) {
+    const auto row = [&](std::size_t i) { return point(rows_of_matrix[i % 3]); };
+    const bool mirrors = row(0) * (row(1) ^ row(2)) < 0;
+    for (std::size_t i = 0; i < 3; ++i) {  // the rows of the matrix of cofactors
+        const vcg::Point3d cofactors = (row(i + 1) ^ row(i + 2)) * (mirrors ? -1.0 : 1.0);
+        rows[i] = {cofactors[0], cofactors[1], cofactors[2]};
+    }
+}
+
+PackedNormal NormalTransform::operator()(const Coordinates& normal) const {
+    Coordinates result{};
+    for (std::size_t i = 0; i < 3; ++i) result[i] = point(rows[i]) * point(normal);
+    return packed(result);
+}
+
 bool is_finite(const Coordinates& c) {
     return std::isfinite(c[0]) && std::isfinite(c[1]) && std::isfinite(c[2]);
 }

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "vcg_core/base/color.h"
+#include "vcg_core/base/packed_normal.h"
 #include "vcg_core/mesh/indexed_mesh.h"
 #include "vcg_core/mesh_counters.h"
 #include "vcg_core/neural_mesh.h"
@@ -29,7 +30,8 @@ namespace neuralmesh {
 /// The target space of \p mesh in world coordinates; \p transform is the layer's matrix. Deleted elements are
 /// skipped. If \p colored, its points have the colours of the mesh's vertices. If settings.draw_from_faces
 /// and the mesh has faces, it is sampled over their area, else its vertices are the cloud;
-/// settings.selected_only restricts either to the selected ones. \throws InputError as TargetSpace does, if
+/// settings.selected_only restricts either to the selected ones. If settings.use_normals, vertices that are
+/// the cloud keep their normals; zero vectors are none. \throws InputError as TargetSpace does, if
 /// selected_only finds no selection, and if coordinates are not finite in the mesh or after the transform
 /// O(elements); 8 bytes of temporary memory per element besides the target space.
 template <class MeshType, class Matrix>
@@ -124,6 +126,14 @@ Coordinates in_world(const vcg::Matrix44d& to_world, const Point& p) {
     return {q[0], q[1], q[2]};
 }
 
+/// What normals become where positions are transformed by \p to_world: outward ones stay outward, also if it
+/// mirrors. The inverse transpose, up to a positive factor, and defined for matrices without inverse.
+struct NormalTransform {
+    explicit NormalTransform(const std::array<Coordinates, 3>& rows_of_matrix);
+    PackedNormal operator()(const Coordinates& normal) const;
+    std::array<Coordinates, 3> rows;
+};
+
 /// \p color_at(i), i in [0, count), returns a vcg colour.
 template <class ColorAt>
 std::vector<Color> colors_of(std::size_t count, const ColorAt& color_at) {
@@ -133,6 +143,24 @@ std::vector<Color> colors_of(std::size_t count, const ColorAt& color_at) {
         colors[i] = {c[0], c[1], c[2]};
     }
     return colors;
+}
+
+/// The normals of \p vertices, in world coordinates.
+template <class Vertex>
+std::vector<PackedNormal> normals_of(const std::vector<const Vertex*>& vertices,
+                                     const vcg::Matrix44d& to_world) {
+    std::array<Coordinates, 3> rows{};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+            rows[i][k] = to_world.ElementAt(static_cast<int>(i), static_cast<int>(k));
+    const NormalTransform in_world(rows);
+    std::vector<PackedNormal> normals;
+    normals.reserve(vertices.size());
+    for (const Vertex* v : vertices) {
+        const auto& n = v->cN();
+        normals.push_back(in_world({double(n[0]), double(n[1]), double(n[2])}));
+    }
+    return normals;
 }
 
 }  // namespace detail
@@ -167,6 +195,8 @@ TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const
     if (colored)
         target.set_colors(
             detail::colors_of(vertices.size(), [&](std::size_t i) { return vertices[i]->cC(); }));
+    if (settings.use_normals && vcg::tri::HasPerVertexNormal(mesh))
+        target.set_normals(detail::normals_of(vertices, to_world));
     return target;
 }
 

@@ -119,6 +119,7 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
 
     NeuralMesh mesh;
     mesh.report.warnings = std::move(task.warnings);
+    mesh.report.notes = std::move(task.notes);
     mesh.report.topology_confidence = task.topology_confidence;
     mesh.report.outliers = task.outliers;
     write_geometry(learned.network, task.target().frame(), mesh);

@@ -119,6 +119,11 @@ std::vector<SettingInfo> mesh_rows() {
             "points, and let the fit weigh points by the area that each stands for. Without effect on even "
             "clouds, on points drawn from faces, and if the utility counter is 'Where signals arrive'. If "
             "off, the mesh is finer and more accurate where the points are dense."),
+        row(&S::use_normals, "use_normals", "Use normals",
+            "If the vertices of the layer have normals that fit the points, an open surface faces the side to "
+            "which most of them point; closed parts always face out. Normals that do not fit are not used, "
+            "and the log says why. If off, an open surface faces out where it is convex. Without effect on "
+            "points drawn from faces."),
     };
 }
 

@@ -62,6 +62,7 @@ struct Settings {
     bool selected_only = false;
     bool remove_outliers = true;  ///< only of points; see target/outlier_removal.h
     bool even_sampling = true;    ///< only of points; see target/point_areas.h
+    bool use_normals = true;      ///< only of points; see layer_normals.h
     int vertex_color = kCloudColors;
     bool select_features = false;
     int feature_measure = kFeatureCounter;

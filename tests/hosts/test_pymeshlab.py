@@ -138,6 +138,33 @@ def test_a_mesh_with_faces_is_drawn_over_its_area(pymeshlab, meshes):
     assert report["vertices"] == 500 and report["rms_error"] < 1
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+def test_an_open_cloud_faces_the_side_of_its_normals(pymeshlab, meshes, sign):
+    points = shapes.sphere(subdivisions=5)[0]
+    points = points[points[:, 2] < .3]
+    meshes.add_mesh(pymeshlab.Mesh(points, v_normals_matrix=sign * points))
+    report = learn(meshes, target_vertices=300)
+    assert report["boundary_loops"] == 1
+    corners = meshes.current_mesh().vertex_matrix()[meshes.current_mesh().face_matrix()]
+    out = np.einsum("ij,ij->i", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), corners[:, 0]) > 0
+    assert out.mean() > .99 if sign > 0 else out.mean() < .01
+    assert np.array_equal(meshes.mesh(0).vertex_normal_matrix(), sign * points)
+
+
+def test_without_normals_nothing_depends_on_use_normals(pymeshlab, meshes):
+    """The host gives every layer the field for normals: zero vectors are none."""
+    points = shapes.sphere(subdivisions=5)[0]
+    points = points[points[:, 2] < .3]
+    results = []
+    for normals, values in ((np.zeros_like(points), {}), (-points, {"use_normals": False}), (None, {})):
+        given = {} if normals is None else {"v_normals_matrix": normals}
+        meshes.add_mesh(pymeshlab.Mesh(points, **given))
+        report = learn(meshes, target_vertices=300, **values)
+        results.append((report["warnings"], meshes.current_mesh().vertex_matrix().tobytes(),
+                        meshes.current_mesh().face_matrix().tobytes()))
+    assert results[0] == results[1] == results[2]
+
+
 def test_learning_goes_on_from_another_layer(pymeshlab, meshes, model):
     meshes.load_new_mesh(str(model("bunny")[0]))
     learn(meshes, target_vertices=500)

@@ -157,6 +157,68 @@ TEST_P(OfFaces, TakesTheColoursOfWhatIsLearned) {
     }
 }
 
+/// The cube's corners with the directions from its centre as normals, of other lengths, but for two.
+void fill_with_normals(Mesh& mesh) {
+    fill(mesh, shapes::cube(), false);
+    for (auto& vertex : mesh.vert) vertex.N() = vertex.P() * 7;
+    mesh.vert[2].N() = {0, 0, 0};
+    mesh.vert[3].N() = {kNan, 1, 0};
+}
+
+TEST(MeshIo, TakesTheNormalsOfPointsAlongWithTheLayersMatrix) {
+    Mesh mesh;
+    fill_with_normals(mesh);
+    vcg::Matrix44f turned, mirrored, flattened;
+    turned.SetRotateDeg(70, {1, 2, 3});
+    mirrored.SetScale(-2, 2, 2);
+    flattened.SetScale(1, 1, 0);
+    const TargetSpace plain = target_space_of(mesh, moved(100, 0, 0), Settings());
+    ASSERT_EQ(plain.normals().size(), 8U);
+    EXPECT_TRUE(plain.normals()[2] == kNoNormal && plain.normals()[3] == kNoNormal);
+    for (const vcg::Matrix44f& matrix : {moved(100, 0, 0), turned, mirrored}) {
+        const TargetSpace target = target_space_of(mesh, matrix, Settings());
+        for (std::size_t i : {0U, 1U, 4U, 7U})  // still away from the centre
+            EXPECT_GT(unpacked(target.normals()[i]) * target.positions()[i],
+                      0.98F * target.positions()[i].Norm())
+                << i;
+    }
+    mesh.vert[0].N() = {0, 1, 1};  // a plane stretched along y becomes less steep there
+    vcg::Matrix44f stretched;
+    stretched.SetScale(1, 3, 1);
+    const vcg::Point3f n = unpacked(target_space_of(mesh, stretched, Settings()).normals()[0]);
+    EXPECT_NEAR(n[2] / n[1], 3, 0.1);
+    EXPECT_NO_THROW(target_space_of(mesh, flattened, Settings()));
+}
+
+TEST(MeshIo, TakesNoNormalsThatAreZeroSwitchedOffOrOfFaces) {
+    Mesh zero;
+    fill(zero, shapes::cube(), false);
+    for (auto& vertex : zero.vert) vertex.N() = {0, 0, 0};
+    EXPECT_FALSE(target_space_of(zero, moved(0, 0, 0), Settings()).has_normals());
+    Mesh mesh;
+    fill_with_normals(mesh);
+    Settings settings;
+    EXPECT_TRUE(target_space_of(mesh, moved(0, 0, 0), settings).has_normals());
+    settings.use_normals = false;
+    EXPECT_FALSE(target_space_of(mesh, moved(0, 0, 0), settings).has_normals());
+    Mesh faces;
+    fill(faces, shapes::cube(), true);
+    for (auto& vertex : faces.vert) vertex.N() = vertex.P();
+    EXPECT_FALSE(target_space_of(faces, moved(0, 0, 0), Settings()).has_normals());
+}
+
+TEST(MeshIo, TakesTheNormalsOfWhatIsSelected) {
+    Mesh mesh;
+    fill_with_normals(mesh);
+    for (std::size_t i = 3; i < 8; ++i) mesh.vert[i].SetS();
+    Settings settings;
+    settings.selected_only = true;
+    const TargetSpace target = target_space_of(mesh, moved(0, 0, 0), settings);
+    ASSERT_EQ(target.normals().size(), 5U);
+    EXPECT_EQ(target.normals()[0], kNoNormal);
+    EXPECT_NE(target.normals()[1], kNoNormal);
+}
+
 TEST(MeshIo, WritesTheColoursOfTheResult) {
     NeuralMesh result = cube_at({0, 0, 0});
     Mesh plain;

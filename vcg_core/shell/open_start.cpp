@@ -13,11 +13,11 @@
 #include "vcg_core/mesh/boundary_loops.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/simplify.h"
+#include "vcg_core/shell/facing.h"
 #include "vcg_core/shell/one_layer_contour.h"
 #include "vcg_core/shell/outliers.h"
 #include "vcg_core/shell/start_points.h"
 #include "vcg_core/shell/tangent_planes.h"
-#include "vcg_core/shell/two_layers.h"
 
 namespace neuralmesh {
 namespace {
@@ -254,31 +254,6 @@ IndexedMesh<float> indexed(const Network& network) {
     return mesh;
 }
 
-/// The signed volume of every component, its boundary loops closed by fans around their centres: whether it
-/// is seen from outside, as a scanner sees it.
-void orient_convex_side_outward(Network& network) {
-    const PerVertex<int> component = network.components();
-    const std::vector<Triangle> faces = network.faces();
-    PerVertex<double> volume(component.size() + 1, 0);
-    const auto add = [&](const Point3f& a, const Point3f& b, const Point3f& c, VertexId of) {
-        const auto p = vcg::Point3d::Construct(a), q = vcg::Point3d::Construct(b),
-                   r = vcg::Point3d::Construct(c);
-        volume[component[of]] += p * (q ^ r);
-    };
-    for (const Triangle& f : faces)
-        add(network.position(f[0]), network.position(f[1]), network.position(f[2]), f[0]);
-    for (const auto& loop : boundary_loops(network.slot_count(), faces)) {
-        Point3f centre(0, 0, 0);
-        for (const VertexId v : loop) centre += network.position(v) / static_cast<float>(loop.size());
-        for (std::size_t i = 0; i < loop.size(); ++i)
-            add(centre, network.position(loop[(i + 1) % loop.size()]), network.position(loop[i]), loop[i]);
-    }
-    std::vector<Triangle> turned = faces;
-    for (Triangle& f : turned)
-        if (volume[component[f[0]]] < 0) std::swap(f[1], f[2]);
-    network = Network(indexed(network).positions, turned);
-}
-
 /// The points outside of the lattice, or of planes that were dropped.
 std::vector<std::uint8_t> outliers_of(const TangentPlanes& planes, const std::vector<char>& kept) {
     std::vector<std::uint8_t> result;
@@ -369,10 +344,11 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     simplify(network, std::min(options.max_vertices, options.target_vertices / 4));
     network.compact();
     orient_convex_side_outward(network);
+    if (options.use_normals) result.faced_by_normals = orient_by_normals(network, target);
     write_mesh(network, result);
     result.thickness = static_cast<double>(planes.thickness);
     result.spacing = static_cast<double>(planes.step);
-    result.two_layers = median_kurtosis(points, planes) < kTwoLayers;
+    result.layers = layer_figures(points, planes);
     set_outliers(outliers_of(planes, kept), static_cast<long long>(points.size()), enough.points,
                  options.learn_outliers || target.is_exact(), result);
     warn_of_cuts(target, planes, result);

@@ -18,6 +18,7 @@
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/mesh/ring.h"
+#include "vcg_core/shell/two_layers.h"
 #include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
@@ -38,6 +39,9 @@ struct OpenStartOptions {
     /// A component counts with this share of the points and at least kLeastPoints of them. A sheet of surface
     /// counts with fewer, if the mesh has vertices for it.
     double component_share = 0.01;
+    /// Parts with a boundary face the side to which most normals of the target point, if it has any, instead
+    /// of facing out where they are convex.
+    bool use_normals = false;
     /// Points drawn from a target that is a mesh.
     int samples = 100000;
 
@@ -53,14 +57,15 @@ struct OpenStart {
     std::vector<vcg::Point3f> positions;
     std::vector<Triangle> faces;
     int components = 0;
-    int genus = 0;  ///< of all components together
-    int loops = 0;  ///< boundary loops
+    int genus = 0;             ///< of all components together
+    int loops = 0;             ///< boundary loops
+    int faced_by_normals = 0;  ///< components with a boundary that face the side of the target's normals
     /// of the smallest sphere around the widest hole, as share of the mesh's diagonal
     double widest_loop = 0;
     double spacing = 0;        ///< of the points, in the core's frame: the step of the lattice of cells
     double widest_filled = 0;  ///< diameter of the widest hole that was filled
     double thickness = 0;      ///< median of that of the tangent planes (tangent_planes.h)
-    bool two_layers = false;   ///< most of the points lie on the two sides of a thin wall (two_layers.h)
+    LayerFigures layers;       ///< whether most of the points lie on the two sides of a thin wall
     /// 1 for each point of the cloud that is not to be learned; empty if there are none, too many, or if the
     /// target has faces.
     std::vector<std::uint8_t> outliers;

@@ -3,6 +3,10 @@
 
 #include "vcg_core/shell/two_layers.h"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "vcg_core/base/median.h"
 
 namespace neuralmesh {
@@ -27,8 +31,14 @@ std::vector<std::vector<Point3f>> points_by_cell(const std::vector<Point3f>& poi
     return cells;
 }
 
-double kurtosis(const std::vector<double>& heights, double spacing) {
-    if (heights.size() < kLeastHeights) return kNormal;
+/// Variance and kurtosis of heights.
+struct Moments {
+    double variance = 0;
+    double kurtosis = kNormal;
+};
+
+Moments moments(const std::vector<double>& heights, double spacing) {
+    if (heights.size() < kLeastHeights) return {};
     const auto count = static_cast<double>(heights.size());
     double mean = 0;
     for (const double h : heights) mean += h / count;
@@ -40,28 +50,57 @@ double kurtosis(const std::vector<double>& heights, double spacing) {
         fourth += squared * squared / count;
     }
     const bool thin = second < kThin * kThin * spacing * spacing;
-    return thin ? kNormal : fourth / (second * second);
+    return {second, thin ? kNormal : fourth / (second * second)};
 }
+
+/// Of points around a plane.
+class Spread {
+public:
+    void add(const Point3f& p) {
+        const auto d = vcg::Point3d::Construct(p);
+        sum_ += d;
+        squares_ += d * d;
+        ++count_;
+    }
+    /// Of the disc that the points fill along the plane, given their variance across it.
+    double area(double across) const {
+        const vcg::Point3d mean = sum_ / count_;
+        constexpr double kTwoPi = 6.283185307179586;  // the variance along a disc is half its squared radius
+        return kTwoPi * std::max(0.0, squares_ / count_ - mean * mean - across);
+    }
+
+private:
+    vcg::Point3d sum_{0, 0, 0};
+    double squares_ = 0;
+    double count_ = 0;
+};
 
 }  // namespace
 
-double median_kurtosis(const std::vector<Point3f>& points, const TangentPlanes& planes) {
+LayerFigures layer_figures(const std::vector<Point3f>& points, const TangentPlanes& planes) {
     const std::vector<std::vector<Point3f>> cells = points_by_cell(points, planes);
-    std::vector<double> values(1, kNormal);
+    std::vector<double> kurtoses(1, kNormal), thicknesses(1, 0), spacings(1, 0);
     std::vector<double> heights;
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const TangentPlane& plane = planes.planes[i];
         heights.clear();
+        Spread spread;
         const auto add = [&](const std::vector<Point3f>& cell) {
-            for (const Point3f& p : cell)
+            for (const Point3f& p : cell) {
                 heights.push_back(static_cast<double>((p - plane.centre) * plane.normal));
+                spread.add(p - plane.centre);
+            }
         };
         add(cells[i]);
         for (const int j : planes.around[i])
             if (j >= 0) add(cells[at(j)]);
-        values.push_back(kurtosis(heights, static_cast<double>(plane.spacing)));
+        const Moments found = moments(heights, static_cast<double>(plane.spacing));
+        kurtoses.push_back(found.kurtosis);
+        if (heights.size() < kLeastHeights) continue;
+        thicknesses.push_back(2 * std::sqrt(found.variance));
+        spacings.push_back(std::sqrt(2 * spread.area(found.variance) / static_cast<double>(heights.size())));
     }
-    return median(std::move(values));
+    return {median(std::move(kurtoses)), median(std::move(thicknesses)), median(std::move(spacings))};
 }
 
 }  // namespace neuralmesh

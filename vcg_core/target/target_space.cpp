@@ -155,6 +155,12 @@ TargetSpace TargetSpace::drawn_by(Sampler draw, std::size_t count) {
     return target;
 }
 
+void TargetSpace::set_normals(std::vector<PackedNormal> normals) {
+    const bool any =
+        std::any_of(normals.begin(), normals.end(), [](const PackedNormal& n) { return n != kNoNormal; });
+    normals_ = any ? std::move(normals) : std::vector<PackedNormal>();
+}
+
 std::optional<TargetSpace> TargetSpace::without(const std::vector<std::uint8_t>& left_out) const {
     TargetSpace rest;
     rest.positions_.reserve(static_cast<std::size_t>(std::count(left_out.begin(), left_out.end(), 0)));
@@ -162,6 +168,7 @@ std::optional<TargetSpace> TargetSpace::without(const std::vector<std::uint8_t>&
         if (left_out[i] != 0) continue;
         rest.positions_.push_back(positions_[i]);
         if (has_colors()) rest.colors_.push_back(colors_[i]);
+        if (has_normals()) rest.normals_.push_back(normals_[i]);
     }
     vcg::Box3d box;
     for (const vcg::Point3f& p : rest.positions_) box.Add(vcg::Point3d::Construct(p));
@@ -179,12 +186,15 @@ std::optional<TargetSpace> TargetSpace::each_place_once() const {
     once.frame_ = frame_;
     once.positions_ = positions_;
     remove_duplicates(once.positions_);
-    if (!has_colors()) return once;
+    if (!has_colors() && !has_normals()) return once;
     const auto begin = once.positions_.begin();
-    once.colors_.resize(once.positions_.size());
+    if (has_colors()) once.colors_.resize(once.positions_.size());
+    if (has_normals()) once.normals_.resize(once.positions_.size());
     for (std::size_t i = positions_.size(); i-- > 0;) {
-        const auto place = std::lower_bound(begin, once.positions_.end(), positions_[i], by_coordinates);
-        once.colors_[static_cast<std::size_t>(place - begin)] = colors_[i];
+        const auto found = std::lower_bound(begin, once.positions_.end(), positions_[i], by_coordinates);
+        const auto place = static_cast<std::size_t>(found - begin);
+        if (has_colors()) once.colors_[place] = colors_[i];
+        if (has_normals()) once.normals_[place] = normals_[i];
     }
     return once;
 }
@@ -196,9 +206,10 @@ std::optional<TargetSpace> TargetSpace::evenly(const CloudSurvey& survey) const 
     even.frame_ = frame_;
     even.positions_ = std::move(areas->points);
     even.weights_ = std::move(areas->of_run);
-    if (has_colors())
-        for (NearestPoints::Place p = 0; p < survey.cloud.size(); ++p)
-            even.colors_.push_back(colors_[survey.cloud.index(p)]);
+    for (NearestPoints::Place p = 0; p < survey.cloud.size(); ++p) {
+        if (has_colors()) even.colors_.push_back(colors_[survey.cloud.index(p)]);
+        if (has_normals()) even.normals_.push_back(normals_[survey.cloud.index(p)]);
+    }
     std::vector<double> of_runs;
     for (std::size_t i = 0; i < even.positions_.size(); i += PointAreas::kRun) {
         const std::size_t points = std::min(PointAreas::kRun, even.positions_.size() - i);

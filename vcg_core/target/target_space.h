@@ -17,6 +17,7 @@
 
 #include "vcg_core/base/color.h"
 #include "vcg_core/base/error.h"
+#include "vcg_core/base/packed_normal.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/target/alias_table.h"
 #include "vcg_core/target/point_areas.h"
@@ -38,7 +39,7 @@ struct Frame {
 };
 
 /// Points, triangles weighted by area, or what a sampler draws. Memory: 12 bytes per point, or 44 bytes per
-/// triangle; with colours 3 more per position.
+/// triangle; with colours 3 more per position, with normals another 3.
 class TargetSpace {
 public:
     /// A cloud. \p point_at(i), i in [0, count), returns point i as vcg::Point3d; it is called more than once
@@ -64,6 +65,11 @@ public:
     /// Gives every one of positions() a colour. The targets made of this one keep them; of repeated points
     /// the first given counts. \pre there are as many as positions()
     void set_colors(std::vector<Color> colors) { colors_ = std::move(colors); }
+
+    /// Gives every one of positions() a normal; kNoNormal: it has none. All of them none: the cloud has no
+    /// normals. The targets made of this one keep them, as colours. \pre there are as many as positions(),
+    /// and !has_faces()
+    void set_normals(std::vector<PackedNormal> normals);
 
     /// A random point, in the frame of the core: what the sampler draws, uniform over the points, in
     /// proportion to their weights, or uniform over the area of the triangles. O(1) for points, O(log n) for
@@ -103,6 +109,9 @@ public:
     bool has_colors() const { return !colors_.empty(); }
     /// Of positions(); empty if there are none.
     const std::vector<Color>& colors() const { return colors_; }
+    bool has_normals() const { return !normals_.empty(); }
+    /// Of positions(), as they were given, which may be to either side; empty if there are none.
+    const std::vector<PackedNormal>& normals() const { return normals_; }
 
 private:
     template <class PointAt>
@@ -126,10 +135,11 @@ private:
     bool off_centre_ = false;  ///< the origin is the centre of most points, not of the box
     std::vector<vcg::Point3f> positions_;
     std::vector<double> cumulative_area_;
-    std::vector<float> weights_;  ///< of the runs of points; empty: all points weigh 1
-    AliasTable runs_;             ///< draws runs
-    std::vector<Color> colors_;   ///< of the positions; may be empty
-    Sampler sampler_;             ///< may be empty
+    std::vector<float> weights_;         ///< of the runs of points; empty: all points weigh 1
+    AliasTable runs_;                    ///< draws runs
+    std::vector<Color> colors_;          ///< of the positions; may be empty
+    std::vector<PackedNormal> normals_;  ///< the same
+    Sampler sampler_;                    ///< may be empty
 };
 
 template <class PointAt>

@@ -70,7 +70,8 @@ def learn(program, cloud, out, start=None, **settings):
     files = [cloud, out] if start is None else [cloud, out, start]
     run = output_of([program, *files, *(f"{key}={value}" for key, value in settings.items())])
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return {**json.loads(run.stdout), "warnings": run.stderr.splitlines(),
+    warnings = [line for line in run.stderr.splitlines() if not line.startswith("Note: ")]
+    return {**json.loads(run.stdout), "warnings": warnings,
             "processor_seconds": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime}
 
 

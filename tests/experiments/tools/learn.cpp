@@ -44,6 +44,7 @@ int learn(int argc, char** argv) {
     save(out, argv[2], Mask::IOM_VERTQUALITY | Mask::IOM_VERTCOLOR);
     if (settings.crease_lines) save_lines(result.creases, std::string(argv[2]) + ".creases.ply");
     const neuralmesh::Report& r = result.report;
+    for (const std::string& note : r.notes) std::fprintf(stderr, "Note: %s\n", note.c_str());
     for (const std::string& warning : r.warnings) std::fprintf(stderr, "%s\n", warning.c_str());
     std::printf(
         "{\"vertices\":%d,\"faces\":%d,\"signals\":%lld,\"splits\":%lld,\"collapses\":%lld,\"genus\":%d,"

@@ -21,7 +21,7 @@ float noise(Random& random) {
 }
 
 /// 20,000 points of a unit square bent by \p bend, in two layers \p apart, with noise across them.
-double kurtosis_of_sheet(float bend, float apart, float across) {
+LayerFigures figures_of_sheet(float bend, float apart, float across) {
     Random random(1);
     std::vector<Point3f> points;
     vcg::Box3f box;
@@ -30,13 +30,26 @@ double kurtosis_of_sheet(float bend, float apart, float across) {
         points.emplace_back(x, y, bend * x * x + (i % 2 == 0 ? apart : 0) + across * noise(random));
         box.Add(points.back());
     }
-    return median_kurtosis(points, tangent_planes(points, box, TangentPlaneOptions()));
+    return layer_figures(points, tangent_planes(points, box, TangentPlaneOptions()));
+}
+
+double kurtosis_of_sheet(float bend, float apart, float across) {
+    return figures_of_sheet(bend, apart, across).kurtosis;
 }
 
 TEST(TwoLayers, AreSeenOnBothSidesOfAThinWall) {
     for (const float apart : {0.007F, 0.014F}) {  // one and two spacings
         EXPECT_LT(kurtosis_of_sheet(0, apart, 0), kTwoLayers) << apart;
         EXPECT_LT(kurtosis_of_sheet(0.3F, apart, 0.001F), kTwoLayers) << apart;
+    }
+}
+
+TEST(TwoLayers, HaveAThicknessAndASpacing) {
+    for (const float apart : {0.007F, 0.014F}) {
+        const LayerFigures found = figures_of_sheet(0, apart, 0);
+        EXPECT_TRUE(found.are_two());
+        EXPECT_NEAR(found.thickness, static_cast<double>(apart), 0.1 * static_cast<double>(apart));
+        EXPECT_NEAR(found.spacing, 0.01, 0.002);
     }
 }
 

@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "tests/unit/support/targets.h"
 
@@ -305,6 +307,77 @@ TEST(TargetSpace, FindsDuplicatesInLargeClouds) {
 TEST(TargetSpace, DoesNotTreatFacesAsDuplicates) {
     shapes::Shape shape = shapes::cube();
     EXPECT_FALSE(target_of(shape).each_place_once().has_value());
+}
+
+/// A number in every normal: a digit to the base of 100 in each coordinate.
+PackedNormal numbered(std::size_t i) {
+    return {static_cast<std::int8_t>(i % 100 + 1), static_cast<std::int8_t>(i / 100 % 100),
+            static_cast<std::int8_t>(i / 10000)};
+}
+
+std::size_t number_of(const PackedNormal& n) {
+    return static_cast<std::size_t>(n[0] - 1 + 100 * n[1] + 10000 * n[2]);
+}
+
+/// Every point of \p target has the normal and the colour of its place in \p cloud.
+void expect_carried(const TargetSpace& target, const Cloud& cloud) {
+    ASSERT_EQ(target.normals().size(), target.positions().size());
+    ASSERT_EQ(target.colors().size(), target.positions().size());
+    for (std::size_t i = 0; i < target.positions().size(); ++i) {
+        const std::size_t given = number_of(target.normals()[i]);
+        const Point3d place = target.frame().outside(target.positions()[i]);
+        ASSERT_LT((place - cloud[given]).Norm(), 1e-6) << i;
+        EXPECT_EQ(target.colors()[i][0], given % 256);
+    }
+}
+
+TargetSpace with_numbers(const Cloud& cloud) {
+    TargetSpace target = target_of(cloud);
+    std::vector<PackedNormal> normals;
+    std::vector<Color> colors;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        normals.push_back(numbered(i));
+        colors.push_back({static_cast<unsigned char>(i % 256), 0, 0});
+    }
+    target.set_normals(normals);
+    target.set_colors(colors);
+    return target;
+}
+
+TEST(TargetSpace, CarriesNormalsThroughWhatLeavesOutAndReorders) {
+    Cloud cloud = shapes::uneven_sphere_cloud(10000, 10);
+    const TargetSpace target = with_numbers(cloud);
+    expect_carried(target, cloud);
+    std::vector<std::uint8_t> out(cloud.size(), 0);
+    for (std::size_t i = 0; i < out.size(); i += 3) out[i] = 1;
+    const std::optional<TargetSpace> rest = target.without(out);
+    ASSERT_TRUE(rest);
+    EXPECT_LT(rest->positions().size(), cloud.size());
+    expect_carried(*rest, cloud);
+    const std::optional<TargetSpace> even = target.evenly(CloudSurvey(target.positions(), 1));
+    ASSERT_TRUE(even);
+    expect_carried(*even, cloud);
+}
+
+TEST(TargetSpace, KeepsTheFirstNormalOfRepeatedPoints) {
+    Cloud cloud = shapes::sphere_cloud(5000);
+    cloud.insert(cloud.end(), cloud.begin(), cloud.begin() + 2500);
+    const std::optional<TargetSpace> once = with_numbers(cloud).each_place_once();
+    ASSERT_TRUE(once);
+    EXPECT_EQ(once->positions().size(), 5000U);
+    expect_carried(*once, cloud);
+    for (const PackedNormal& n : once->normals()) EXPECT_LT(number_of(n), 5000U);
+}
+
+TEST(TargetSpace, HasNoNormalsIfAllAreZero) {
+    TargetSpace target = target_of(shapes::sphere_cloud(100));
+    EXPECT_FALSE(target.has_normals());
+    target.set_normals(std::vector<PackedNormal>(100, kNoNormal));
+    EXPECT_FALSE(target.has_normals());
+    std::vector<PackedNormal> one(100, kNoNormal);
+    one[7] = {0, 0, 127};
+    target.set_normals(one);
+    EXPECT_TRUE(target.has_normals());
 }
 
 }  // namespace

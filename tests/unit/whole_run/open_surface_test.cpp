@@ -85,8 +85,25 @@ TEST(OpenSurface, IsNotChosenWhereBothSidesOfAWallLookLikeOneSheet) {
     for (const int count : {3000, 10000}) {
         Random random(1);
         const Cloud cloud = shell_shapes::sample(shell_shapes::cup(1, 2, 0.06), count, random);
-        EXPECT_EQ(learn(cloud, settings_with(400, kAutomatic)).report.boundary_loops, 0) << count;
+        const NeuralMesh mesh = learn(cloud, settings_with(400, kAutomatic));
+        EXPECT_EQ(mesh.report.boundary_loops, 0) << count;
+        EXPECT_TRUE(has_warning(mesh, "the two sides of walls about 0.06")) << count;
+        EXPECT_TRUE(has_warning(mesh, "cannot be told apart")) << count;
     }
+}
+
+TEST(OpenSurface, OfAThinWallIsOneSheetAndSaysSo) {
+    // Two squares, 1.5 spacings apart.
+    Cloud wall = shapes::plane_cloud(10000, 1);
+    for (const vcg::Point3d& p : shapes::plane_cloud(10000, 2))
+        wall.push_back(p * 10 + vcg::Point3d(0, 0, 0.15));
+    for (std::size_t i = 0; i < 10000; ++i) wall[i] *= 10;
+    const NeuralMesh mesh = learn(wall, settings_with(400, kOpenSurface));
+    EXPECT_EQ(mesh.report.boundary_loops, 1);
+    EXPECT_TRUE(has_warning(mesh, "walls about 0.15 thick"));
+    EXPECT_TRUE(has_warning(mesh, "one sheet."));
+    const NeuralMesh sheet = learn(shapes::plane_cloud(10000), settings_with(400, kOpenSurface));
+    EXPECT_FALSE(has_warning(sheet, "walls"));
 }
 
 TEST(OpenSurface, MeasuresHolesAgainstTheMeshNotAgainstFarOutliers) {

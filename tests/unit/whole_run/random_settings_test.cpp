@@ -190,7 +190,7 @@ TEST(RandomSettings, GiveValidResultsOnRandomClouds) {
     if (HasFailure()) return;
     int learned = 0;
     for (int i = first; i < first + runs; ++i) {
-        Random random(static_cast<std::uint64_t>(i) + 1000);
+        Random random(static_cast<std::uint64_t>(i) + 1040);
         const Settings settings = random_settings(random);
         SCOPED_TRACE(testing::Message() << "run " << i << ": " << changes(settings));
         try {
