@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/topology/learned_topology.h"
+
+#include <cstddef>
+#include <set>
+
+namespace neuralmesh {
+namespace {
+
+constexpr std::size_t kSignalsPerVertex = 30;
+/// With fewer points per vertex, faces without any are common.
+constexpr std::size_t kFewestPerVertex = 8;
+
+}  // namespace
+
+std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target, Random& random,
+                                           ThreadTeam& team) {
+    const Surface surface(network);
+    if (surface.has_boundary()) return {};
+    const auto vertices = static_cast<std::size_t>(network.vertex_count());
+    if (!target.is_exact() && target.positions().size() < kFewestPerVertex * vertices) return {};
+    const std::vector<Vector3> signals = fair_sample(target, kSignalsPerVertex * vertices, random);
+    const FaceSignals support = face_signals(network, surface, signals, team);
+    const std::vector<Web> webs = find_webs(surface, support);
+    std::vector<Reconnection> chosen;
+    std::set<int> used;
+    for (Reconnection& change : find_reconnections(network, surface, support, webs)) {
+        const auto taken = [&](int web) { return used.count(web) != 0; };
+        if (std::any_of(change.webs.begin(), change.webs.end(), taken)) continue;
+        used.insert(change.webs.begin(), change.webs.end());
+        chosen.push_back(std::move(change));
+    }
+    return chosen;
+}
+
+}  // namespace neuralmesh
