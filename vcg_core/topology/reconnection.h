@@ -23,9 +23,11 @@ struct Reconnection {
 /// them; those alone that gain enough (see reconnection.cpp), the largest gain first. Webs may be widened by
 /// one or two rings for it: the surface dents around a hole that it plugs. A joint makes a handle, or one
 /// component of two; closed rims of a tube take a handle away; a web with one rim is closed by a smaller
-/// surface. Each of them alone leaves \p network a manifold.
-/// O(webs x (faces + signals around a web))
+/// surface. A joint that makes a handle also needs a gap that is wide for \p points, and points wherever one
+/// can go around the handle: see corridors.h. If there are no \p points, none is made. Each of them alone
+/// leaves \p network a manifold. O(webs x (faces + signals around a web))
 std::vector<Reconnection> find_reconnections(const Network& network, const Surface& surface,
-                                             const FaceSignals& support, const std::vector<Web>& webs);
+                                             const FaceSignals& support, const std::vector<Web>& webs,
+                                             const std::vector<vcg::Point3f>& points);
 
 }  // namespace neuralmesh
