@@ -111,7 +111,7 @@ void note_topology(const LearningTask& task, const LearnedNetwork& learned, Repo
     const auto words = [](int components, int genus) {
         return std::to_string(components) + " component(s) and genus " + std::to_string(genus);
     };
-    report.notes.push_back("Webs were given up in " + std::to_string(learned.topology_changes) +
+    report.notes.push_back("Membranes were given up in " + std::to_string(learned.topology_changes) +
                            " place(s): the start mesh had " +
                            words(task.network.component_count(), task.network.genus()) + ", the result has " +
                            words(report.components, report.genus) + ".");

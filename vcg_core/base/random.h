@@ -16,7 +16,7 @@ enum class Stream {
     shell = 2,      ///< the points for the start mesh
     fit = 3,        ///< the points for the fit
     colors = 4,     ///< the points that give faces their colours
-    topology = 5,   ///< the signals by which webs are told
+    topology = 5,   ///< the signals by which membranes are told
 };
 
 /// The seed of the generator for one purpose in a run with the given seed, at least 0. Runs whose seeds

@@ -64,9 +64,9 @@ public:
     /// half_edge_collapse.h. Before, mends the faces along boundaries, see boundary_faces.h. \return the
     /// number of inactive vertices removed. O(n).
     int half_edge_collapse();
-    /// Takes webs out of the network, see topology/learned_topology.h, in rounds until none gains any more,
-    /// four at most. Does nothing if the network has a boundary. \return the number of changes. O(signals x
-    /// log n)
+    /// Takes membranes out of the network, see topology/learned_topology.h, in rounds until none gains any
+    /// more, four at most. Does nothing if the network has a boundary. \return the number of changes.
+    /// O(signals x log n)
     int learn_topology();
     /// Learns settling_signals(per_vertex, vertices) signals without splits and collapses, so that counters
     /// describe the final connectivity. In the end mends faces along boundaries, which keeps all vertices.

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "vcg_core/topology/webs.h"
+#include "vcg_core/topology/membranes.h"
 
 namespace neuralmesh {
 namespace {

@@ -45,9 +45,9 @@ struct FaceSignals {
 };
 
 /// Assigns every one of \p signals to its nearest face. The density around a vertex is that of the faces with
-/// signals within about four rings; where none has any, that of the nearest vertices with a density. So a web
-/// does not lower the density that it is measured by, however wide it is. The result does not depend on the
-/// number of threads. O(signals x log faces + rings of the widest web x faces).
+/// signals within about four rings; where none has any, that of the nearest vertices with a density. So a
+/// membrane does not lower the density that it is measured by, however wide it is. The result does not depend
+/// on the number of threads. O(signals x log faces + rings of the widest membrane x faces).
 FaceSignals face_signals(const Network& network, const Surface& surface, const std::vector<Vector3>& signals,
                          ThreadTeam& team);
 

@@ -39,14 +39,14 @@ std::vector<Reconnection> topology_changes(const Network& network, const TargetS
     if (!target.is_exact() && target.positions().size() < kFewestPerVertex * vertices) return {};
     const std::vector<Vector3> signals = fair_sample(target, kSignalsPerVertex * vertices, random);
     const FaceSignals support = face_signals(network, surface, signals, team);
-    const std::vector<Web> webs = find_webs(surface, support);
+    const std::vector<Membrane> membranes = find_membranes(surface, support);
     std::vector<Reconnection> chosen;
     std::set<int> used;
     const std::vector<vcg::Point3f> points = points_for_handles(target, signals, vertices);
-    for (Reconnection& change : find_reconnections(network, surface, support, webs, points)) {
-        const auto taken = [&](int web) { return used.count(web) != 0; };
-        if (std::any_of(change.webs.begin(), change.webs.end(), taken)) continue;
-        used.insert(change.webs.begin(), change.webs.end());
+    for (Reconnection& change : find_reconnections(network, surface, support, membranes, points)) {
+        const auto taken = [&](int membrane) { return used.count(membrane) != 0; };
+        if (std::any_of(change.membranes.begin(), change.membranes.end(), taken)) continue;
+        used.insert(change.membranes.begin(), change.membranes.end());
         chosen.push_back(std::move(change));
     }
     return chosen;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// When and how a growing network changes its topology: it gives up webs that the points do not support.
+// When and how a growing network changes its topology: it gives up membranes that the points do not support.
 #pragma once
 
 #include <algorithm>
@@ -40,8 +40,8 @@ private:
     bool over_ = false;
 };
 
-/// Exchanges of faces by which \p network loses webs of few points, closed networks only: see
-/// reconnection.h. No web is in two of them. The signals are a fair sample of \p target, 30 per vertex.
+/// Exchanges of faces by which \p network loses membranes of few points, closed networks only: see
+/// reconnection.h. No membrane is in two of them. The signals are a fair sample of \p target, 30 per vertex.
 /// The result does not depend on the number of threads. Cost: about that of learning the signals.
 std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target, Random& random,
                                            ThreadTeam& team);

@@ -15,20 +15,20 @@
 namespace neuralmesh {
 namespace {
 
-/// Two webs face each other if they are no further apart than this many mean edges.
+/// Two membranes face each other if they are no further apart than this many mean edges.
 constexpr float kReach = 4;
-/// Webs with more rims have too many reconnections to try.
+/// Membranes with more rims have too many reconnections to try.
 constexpr std::size_t kMostRims = 4;
-/// Rings by which webs are widened.
+/// Rings by which membranes are widened.
 constexpr std::size_t kWidest = 2;
-/// A reconnection that loses more signals than this as the webs are gains none with wider ones.
+/// A reconnection that loses more signals than this as the membranes are gains none with wider ones.
 constexpr float kHopeless = -60;
-/// A reconnection gains enough if it explains this share of what the webs lack, and this many signals. The
-/// way back would have to gain as much, so nothing oscillates while the vertices stay. Chosen by the bolt
+/// A reconnection gains enough if it explains this share of what the membranes lack, and this many signals.
+/// The way back would have to gain as much, so nothing oscillates while the vertices stay. Chosen by the bolt
 /// holes of turbine: joints there gain 10 signals and more, joints elsewhere lose 40 and more.
 constexpr float kLeastShare = 0.4F, kLeastGain = 8;
 
-/// A handle is formed if the widest empty places of its webs have at least this radius in the mean, in
+/// A handle is formed if the widest empty places of its membranes have at least this radius in the mean, in
 /// spacings of the points. Two parts whose gap is narrower there may well be nearer to each other beside it,
 /// where the points show no gap: then the handle would go around a bridge. Homer's legs are 1.6 to 2.3
 /// spacings from the middle of the gap with 20,000 points, the holes of feline and turbine have radii of 2.5
@@ -82,8 +82,8 @@ std::vector<Triangle> patches(const std::vector<Rim>& rims, const Matching& matc
     return all;
 }
 
-/// A web, and the same one and more rings wider.
-using Wide = std::vector<Web>;
+/// A membrane, and the same one and more rings wider.
+using Wide = std::vector<Membrane>;
 
 class Search {
 public:
@@ -95,18 +95,18 @@ public:
           points_(points),
           edge_(mean_edge_length(surface)) {}
 
-    Wide widened(const Web& web) const;
-    /// The best reconnection of a web, if it gains enough; else one without faces.
-    Reconnection of_one(const Wide& web) const;
-    /// The same of two webs, joined.
+    Wide widened(const Membrane& membrane) const;
+    /// The best reconnection of a membrane, if it gains enough; else one without faces.
+    Reconnection of_one(const Wide& membrane) const;
+    /// The same of two membranes, joined.
     Reconnection of_pair(const Wide& a, const Wide& b) const;
-    bool face_each_other(const Web& a, const Web& b) const;
+    bool face_each_other(const Membrane& a, const Membrane& b) const;
 
 private:
-    Reconnection best(const std::vector<const Web*>& webs) const;
-    bool widen(Web& web) const;
+    Reconnection best(const std::vector<const Membrane*>& membranes) const;
+    bool widen(Membrane& membrane) const;
     /// Whether the points know a handle, or one component, where the rims that \p matching pairs are joined.
-    bool knows_handle(const std::vector<const Web*>& webs, const std::vector<Rim>& rims,
+    bool knows_handle(const std::vector<const Membrane*>& membranes, const std::vector<Rim>& rims,
                       const Matching& matching, const PerFace<char>& out) const;
 
     const Network& network_;
@@ -126,34 +126,34 @@ int euler_characteristic(const std::vector<Triangle>& faces, const std::vector<R
     return static_cast<int>(vertices.size()) - static_cast<int>(sides / 2) + static_cast<int>(faces.size());
 }
 
-bool Search::knows_handle(const std::vector<const Web*>& webs, const std::vector<Rim>& rims,
+bool Search::knows_handle(const std::vector<const Membrane*>& membranes, const std::vector<Rim>& rims,
                           const Matching& matching, const PerFace<char>& out) const {
     if (!corridors_) corridors_ = std::make_unique<const Corridors>(surface_, support_, points_, edge_);
     float width = 0;
-    for (const Web* web : webs) width += corridors_->widest(web->faces);
-    if (width < kLeastRadius * static_cast<float>(webs.size())) return false;
+    for (const Membrane* membrane : membranes) width += corridors_->widest(membrane->faces);
+    if (width < kLeastRadius * static_cast<float>(membranes.size())) return false;
     return std::none_of(matching.begin(), matching.end(), [&](const auto& pair) {
         return corridors_->lead(rims[pair.first], rims[pair.second], out);
     });
 }
 
-/// Of the webs together; of two, one that joins them. Its gain is the lowest number if there is none.
-Reconnection Search::best(const std::vector<const Web*>& webs) const {
+/// Of the membranes together; of two, one that joins them. Its gain is the lowest number if there is none.
+Reconnection Search::best(const std::vector<const Membrane*>& membranes) const {
     Reconnection found;
     found.gain = std::numeric_limits<float>::lowest();
     std::vector<int> faces;
     std::vector<Rim> rims;
-    for (const Web* web : webs) {
-        faces.insert(faces.end(), web->faces.begin(), web->faces.end());
-        rims.insert(rims.end(), web->rims.begin(), web->rims.end());
+    for (const Membrane* membrane : membranes) {
+        faces.insert(faces.end(), membrane->faces.begin(), membrane->faces.end());
+        rims.insert(rims.end(), membrane->rims.begin(), membrane->rims.end());
     }
     if (rims.size() > kMostRims) return found;
     PerFace<char> out(surface_.face_count(), 0);
     for (const int f : faces) {
-        if (out[f]++ != 0) return found;  // the webs overlap
+        if (out[f]++ != 0) return found;  // the membranes overlap
         found.gone.push_back(surface_.faces[f]);
     }
-    const std::size_t of_first = webs.front()->rims.size();
+    const std::size_t of_first = membranes.front()->rims.size();
     const Edges edges(network_, surface_, out);
     const Surroundings around(surface_, support_, faces, edge_);
     const float before = around.cost(found.gone);
@@ -162,14 +162,14 @@ Reconnection Search::best(const std::vector<const Web*>& webs) const {
         const bool across = std::any_of(matching.begin(), matching.end(), [&](const auto& pair) {
             return (pair.first < of_first) != (pair.second < of_first);
         });
-        if (across != (webs.size() > 1)) continue;
+        if (across != (membranes.size() > 1)) continue;
         const bool handle = static_cast<int>(rims.size() - 2 * matching.size()) < euler;
         if (handle && points_.empty()) continue;
         std::vector<Triangle> added = patches(rims, matching, surface_.positions, edges);
         if (added.empty() || !network_.can_exchange_faces(found.gone, added)) continue;
         const float gain = before - around.cost(added);
         if (gain <= found.gain) continue;
-        if (handle && gain >= kLeastGain && !knows_handle(webs, rims, matching, out)) continue;
+        if (handle && gain >= kLeastGain && !knows_handle(membranes, rims, matching, out)) continue;
         found.gain = gain;
         found.added = std::move(added);
     }
@@ -177,28 +177,28 @@ Reconnection Search::best(const std::vector<const Web*>& webs) const {
 }
 
 /// Adds the faces around.
-bool Search::widen(Web& web) const {
+bool Search::widen(Membrane& membrane) const {
     std::vector<int> faces;
-    for (const int f : web.faces)
+    for (const int f : membrane.faces)
         for (const VertexId v : surface_.faces[f])
             faces.insert(faces.end(), surface_.faces_around(v).begin(), surface_.faces_around(v).end());
     std::sort(faces.begin(), faces.end());
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-    web.faces = std::move(faces);
-    return complete(surface_, support_, web);
+    membrane.faces = std::move(faces);
+    return complete(surface_, support_, membrane);
 }
 
-Wide Search::widened(const Web& web) const {
-    Wide wide{web};
-    for (Web next = web; wide.size() <= kWidest && widen(next);) wide.push_back(next);
+Wide Search::widened(const Membrane& membrane) const {
+    Wide wide{membrane};
+    for (Membrane next = membrane; wide.size() <= kWidest && widen(next);) wide.push_back(next);
     return wide;
 }
 
-Reconnection Search::of_one(const Wide& web) const {
-    const float least = std::max(kLeastGain, kLeastShare * web.front().missing);
+Reconnection Search::of_one(const Wide& membrane) const {
+    const float least = std::max(kLeastGain, kLeastShare * membrane.front().missing);
     Reconnection found;
-    for (std::size_t ring = 0; ring < web.size() && ring < kWidest; ++ring) {
-        Reconnection next = best({&web[ring]});
+    for (std::size_t ring = 0; ring < membrane.size() && ring < kWidest; ++ring) {
+        Reconnection next = best({&membrane[ring]});
         if (next.gain >= least && next.gain > found.gain) found = std::move(next);
     }
     return found;
@@ -208,15 +208,15 @@ Reconnection Search::of_pair(const Wide& a, const Wide& b) const {
     const float least = std::max(kLeastGain, kLeastShare * (a.front().missing + b.front().missing));
     Reconnection found = best({&a.front(), &b.front()});
     if (found.gain < kHopeless) return {};
-    for (const Web& wide_a : a)
-        for (const Web& wide_b : b) {
+    for (const Membrane& wide_a : a)
+        for (const Membrane& wide_b : b) {
             Reconnection next = best({&wide_a, &wide_b});
             if (next.gain > found.gain) found = std::move(next);
         }
     return found.gain >= least ? found : Reconnection();
 }
 
-bool Search::face_each_other(const Web& a, const Web& b) const {
+bool Search::face_each_other(const Membrane& a, const Membrane& b) const {
     if (a.rims.size() + b.rims.size() > kMostRims || a.area.dot(b.area) >= 0) return false;
     float least = kReach * edge_;
     least *= least;
@@ -231,26 +231,28 @@ bool Search::face_each_other(const Web& a, const Web& b) const {
 }  // namespace
 
 std::vector<Reconnection> find_reconnections(const Network& network, const Surface& surface,
-                                             const FaceSignals& support, const std::vector<Web>& webs,
+                                             const FaceSignals& support,
+                                             const std::vector<Membrane>& membranes,
                                              const std::vector<vcg::Point3f>& points) {
     const Search search(network, surface, support, points);
     std::vector<Reconnection> found;
     const auto keep = [&](Reconnection change, const std::vector<int>& of) {
         if (change.added.empty()) return;
-        change.webs = of;
+        change.membranes = of;
         found.push_back(std::move(change));
     };
-    const auto web = [&](int i) -> const Web& { return webs[static_cast<std::size_t>(i)]; };
-    const int count = static_cast<int>(webs.size());
+    const auto membrane = [&](int i) -> const Membrane& { return membranes[static_cast<std::size_t>(i)]; };
+    const int count = static_cast<int>(membranes.size());
     Indexed<Wide> wide(count);
     const auto widened = [&](int i) -> const Wide& {
-        if (wide[i].empty()) wide[i] = search.widened(web(i));
+        if (wide[i].empty()) wide[i] = search.widened(membrane(i));
         return wide[i];
     };
     for (int a = 0; a < count; ++a) {
-        if (web(a).certain) keep(search.of_one(widened(a)), {a});
+        if (membrane(a).certain) keep(search.of_one(widened(a)), {a});
         for (int b = a + 1; b < count; ++b)
-            if (search.face_each_other(web(a), web(b))) keep(search.of_pair(widened(a), widened(b)), {a, b});
+            if (search.face_each_other(membrane(a), membrane(b)))
+                keep(search.of_pair(widened(a), widened(b)), {a, b});
     }
     std::stable_sort(found.begin(), found.end(),
                      [](const Reconnection& a, const Reconnection& b) { return a.gain > b.gain; });

@@ -71,7 +71,7 @@ TEST(FaceSignals, ExpectAsManyAsThereAreWhereThePointsAreEven) {
     }
 }
 
-TEST(FaceSignals, AWebLacksSupportHoweverWideItIs) {
+TEST(FaceSignals, AMembraneLacksSupportHoweverWideItIs) {
     const TargetSpace target = target_of(lower_sphere(20000, -0.2));
     const Network network = network_in_frame(target, shapes::icosphere(3));
     const Surface surface(network);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Webs that are found, and what takes their place: bridges are cut, tubes with plugs are joined.
+// Membranes that are found, and what takes their place: bridges are cut, tubes with plugs are joined.
 #include "vcg_core/topology/reconnection.h"
 
 #include <gtest/gtest.h>
@@ -148,7 +148,7 @@ TEST(Reconnection, LeavesMeshesWithBoundaryAndSparseCloudsAlone) {
     EXPECT_EQ(learn(network, sparse), 0);
 }
 
-TEST(Webs, AreCompletedSoThatTheRestIsAManifold) {
+TEST(Membranes, AreCompletedSoThatTheRestIsAManifold) {
     const TargetSpace target = target_of(two_spheres(5000));
     const Network network = bridged(target);
     const Surface surface(network);
@@ -157,7 +157,7 @@ TEST(Webs, AreCompletedSoThatTheRestIsAManifold) {
     const FaceSignals support = face_signals(network, surface, fair_sample(target, 10000, random), team);
     int completed = 0;
     for (int run = 0; run < 200; ++run) {
-        Web web;
+        Membrane membrane;
         std::set<int> faces;
         const auto count = static_cast<std::uint32_t>(surface.face_count());
         for (int i = 0; i < 1 + run / 10; ++i) {
@@ -165,17 +165,17 @@ TEST(Webs, AreCompletedSoThatTheRestIsAManifold) {
                 surface.faces[static_cast<int>(random.below(i < 2 ? 40 : count / 8))][0]);
             faces.insert(around.begin(), around.end());
         }
-        web.faces.assign(faces.begin(), faces.end());
-        if (!complete(surface, support, web)) continue;
+        membrane.faces.assign(faces.begin(), faces.end());
+        if (!complete(surface, support, membrane)) continue;
         ++completed;
         std::vector<Triangle> gone;
-        for (const int f : web.faces) gone.push_back(surface.faces[f]);
+        for (const int f : membrane.faces) gone.push_back(surface.faces[f]);
         ASSERT_TRUE(network.can_exchange_faces(gone, {}));
         Network rest = network;
         rest.exchange_faces(gone, {});
         ASSERT_EQ(rest.validate(), "");
-        EXPECT_EQ(rest.boundary_loop_count(), static_cast<int>(web.rims.size()));
-        for (const Rim& rim : web.rims)
+        EXPECT_EQ(rest.boundary_loop_count(), static_cast<int>(membrane.rims.size()));
+        for (const Rim& rim : membrane.rims)
             for (std::size_t i = 0; i < rim.size(); ++i)
                 EXPECT_EQ(rest.ring(rim[i])[0], rim[(i + 1) % rim.size()]);
     }

@@ -57,7 +57,7 @@ TEST(LearnedTopology, PartsThatTheStartMeshJoinsComeApart) {
     EXPECT_EQ(apart.report.genus, 0);
     EXPECT_EQ(apart.report.boundary_loops, 0);
     ASSERT_FALSE(apart.report.notes.empty());
-    EXPECT_NE(apart.report.notes.back().find("Webs were given up"), std::string::npos);
+    EXPECT_NE(apart.report.notes.back().find("Membranes were given up"), std::string::npos);
     soundness::expect_exact(apart, settings);
     settings.learn_topology = false;
     EXPECT_EQ(learn(cloud, settings, ball(3)).report.components, 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/topology/webs.h"
+#include "vcg_core/topology/membranes.h"
 
 #include <algorithm>
 #include <map>
@@ -12,11 +12,11 @@
 namespace neuralmesh {
 namespace {
 
-/// Area of the smallest web, in squared mean edges: about five faces.
+/// Area of the smallest membrane, in squared mean edges: about five faces.
 constexpr float kLeastArea = 2;
 /// Of one of a pair.
 constexpr float kLeastPart = 0.2F;
-/// A web of more faces is a part of the surface where the density is misjudged.
+/// A membrane of more faces is a part of the surface where the density is misjudged.
 constexpr std::size_t kMostFaces = 2000;
 /// Most times that faces are added to make the rims clean.
 constexpr int kMostRepairs = 8;
@@ -81,7 +81,7 @@ std::vector<int> Members::island(int start, std::size_t most, std::set<int>& mai
     return {};
 }
 
-/// Adds fans that hang on the web by a corner: all but that with the most signals.
+/// Adds fans that hang on the membrane by a corner: all but that with the most signals.
 bool add_pinched(const Surface& surface, const FaceSignals& signals, Members& members) {
     std::set<VertexId> corners;
     for (const int f : members.faces()) corners.insert(surface.faces[f].begin(), surface.faces[f].end());
@@ -120,7 +120,7 @@ bool add_islands(const Surface& surface, Members& members) {
     return added;
 }
 
-/// Chains the edges between the web and the other faces, with those on the left.
+/// Chains the edges between the membrane and the other faces, with those on the left.
 std::vector<Rim> rims_of(const Surface& surface, const Members& members) {
     std::map<VertexId, VertexId> next;
     for (const int f : members.faces())
@@ -142,12 +142,12 @@ std::vector<Rim> rims_of(const Surface& surface, const Members& members) {
     return rims;
 }
 
-void measure(const Surface& surface, const FaceSignals& signals, Web& web) {
-    web.missing = 0;
-    web.area = Vector3::Zero();
-    for (const int f : web.faces) {
-        web.missing += signals.expected[f] - static_cast<float>(signals.wins[f]);
-        web.area += area_vector(surface, f) / 2;
+void measure(const Surface& surface, const FaceSignals& signals, Membrane& membrane) {
+    membrane.missing = 0;
+    membrane.area = Vector3::Zero();
+    for (const int f : membrane.faces) {
+        membrane.missing += signals.expected[f] - static_cast<float>(signals.wins[f]);
+        membrane.area += area_vector(surface, f) / 2;
     }
 }
 
@@ -178,38 +178,38 @@ int face_beyond(const Surface& surface, int face, std::size_t edge) {
     return -1;
 }
 
-bool complete(const Surface& surface, const FaceSignals& signals, Web& web) {
-    Members members(surface, web.faces);
+bool complete(const Surface& surface, const FaceSignals& signals, Membrane& membrane) {
+    Members members(surface, membrane.faces);
     for (int repair = 0; add_islands(surface, members) || add_pinched(surface, signals, members);)
         if (++repair > kMostRepairs || members.faces().size() > kMostFaces) return false;
-    web.faces = members.faces();
-    web.rims = rims_of(surface, members);
-    measure(surface, signals, web);
+    membrane.faces = members.faces();
+    membrane.rims = rims_of(surface, members);
+    measure(surface, signals, membrane);
     return true;
 }
 
-std::vector<Web> find_webs(const Surface& surface, const FaceSignals& signals) {
+std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& signals) {
     const float edge = mean_edge_length(surface);
     const double least_evidence = portable_log(static_cast<double>(surface.face_count())) + 7;
     PerFace<char> seen(surface.face_count(), 0);
-    std::vector<Web> webs;
+    std::vector<Membrane> membranes;
     for (int f = 0; f < surface.face_count(); ++f) {
         if (seen[f] != 0 || !signals.lacks_support(f)) continue;
-        Web web;
-        web.faces = region_of(surface, signals, f, seen);
+        Membrane membrane;
+        membrane.faces = region_of(surface, signals, f, seen);
         double wins = 0, expected = 0;
         float area = 0;
-        for (const int g : web.faces) {
+        for (const int g : membrane.faces) {
             wins += signals.wins[g];
             expected += static_cast<double>(signals.expected[g]);
             area += signals.area[g];
         }
         const double found = evidence(wins, expected);
         if (area < kLeastPart * edge * edge || found < least_evidence / 4) continue;
-        web.certain = area >= kLeastArea * edge * edge && found >= least_evidence;
-        if (complete(surface, signals, web)) webs.push_back(std::move(web));
+        membrane.certain = area >= kLeastArea * edge * edge && found >= least_evidence;
+        if (complete(surface, signals, membrane)) membranes.push_back(std::move(membrane));
     }
-    return webs;
+    return membranes;
 }
 
 }  // namespace neuralmesh
