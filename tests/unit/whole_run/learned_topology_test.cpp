@@ -74,7 +74,7 @@ TEST(LearnedTopology, TheBytesDoNotDependOnTheThreads) {
     EXPECT_EQ(one.faces, three.faces);
 }
 
-TEST(LearnedTopology, WithoutWebsNothingChanges) {
+TEST(LearnedTopology, WithoutMembranesNothingChanges) {
     Settings settings = settings_of();
     const Cloud cloud = shapes::torus_cloud(20000);
     const NeuralMesh with = learn(cloud, settings);
