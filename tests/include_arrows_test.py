@@ -12,7 +12,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 MAY_INCLUDE = {  # beside its own files; the files directly in vcg_core/ may include all
-    "learning": {"engine", "mesh", "target", "base"},
+    "learning": {"topology", "engine", "mesh", "target", "base"},
+    "topology": {"mesh", "target", "base"},
     "engine": {"mesh", "target", "base"},
     "shell": {"mesh", "target", "base"},
     "fit": {"mesh", "target", "base"},

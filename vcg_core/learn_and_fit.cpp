@@ -78,6 +78,8 @@ LearnerOptions learner_options(const LearningTask& task, const Settings& setting
     if (is_calm(task))
         options.settling_signals_per_vertex = static_cast<int>(
             static_cast<std::int64_t>(options.settling_signals_per_vertex) * carried / grow_to);
+    // Each layer of a sheet wins the signals of both by turns: that says nothing of membranes.
+    options.learn_topology = options.learn_topology && task.encloses_space;
     // The layers of a sheet fold into each other while they learn. Their area vectors cancel, and smoothing
     // at right angles to what is left of them throws vertices off the sheet, where they win no signal.
     if (!task.encloses_space) options.smoothing_steps = 0;
@@ -106,6 +108,7 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
     result.stop_reason = learner.run(task.landing_signals, learning);
     result.network = learner.network();
     result.forced = learner.forced();
+    result.topology_changes = learner.topology_changes();
     result.signals = learner.signals();
     result.splits = learner.splits();
     result.collapses = learner.collapses();
@@ -159,6 +162,7 @@ LearnerOptions learner_options_from(const Settings& settings) {
     options.utility_increment =
         settings.utility_counter == kNormalVariation ? UtilityIncrement::n_delta : UtilityIncrement::one;
     options.grow_to = settings.target_vertices;
+    options.learn_topology = settings.learn_topology;
     options.min_wins_per_split = settings.min_wins_per_split;
     options.settling_signals_per_vertex = settings.settling_signals_per_vertex;
     options.observe_creases = settings.uses(kCreaseMeasure);

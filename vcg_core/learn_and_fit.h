@@ -26,6 +26,7 @@ struct LearnedNetwork {
     bool forced = false;  ///< growth stalled and was forced, see growth_budget()
     /// Vertices that the points carry, if these are less than settings.target_vertices; else 0.
     int carried = 0;
+    int topology_changes = 0;  ///< with settings.learn_topology: places where membranes were given up
     /// Of all learning, including growth whose result was discarded.
     long long signals = 0;
     long long splits = 0;

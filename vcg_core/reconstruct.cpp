@@ -106,6 +106,17 @@ void warn_of_growth(const LearnedNetwork& learned, Report& report) {
                                   "signals_per_collapse.");
 }
 
+void note_topology(const LearningTask& task, const LearnedNetwork& learned, Report& report) {
+    if (learned.topology_changes == 0) return;
+    const auto words = [](int components, int genus) {
+        return std::to_string(components) + " component(s) and genus " + std::to_string(genus);
+    };
+    report.notes.push_back("Membranes were given up in " + std::to_string(learned.topology_changes) +
+                           " place(s): the start mesh had " +
+                           words(task.network.component_count(), task.network.genus()) + ", the result has " +
+                           words(report.components, report.genus) + ".");
+}
+
 }  // namespace
 
 NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progress& progress,
@@ -129,6 +140,7 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     write_figures(learned, mesh.report);
     if (monotone.stopped()) mesh.report.stop_reason = StopReason::cancelled;
     warn_of_growth(learned, mesh.report);
+    note_topology(task, learned, mesh.report);
     Random random(stream_seed(settings.random_seed, Stream::rms_error));
     mesh.report.rms_error = 100 * rms_distance(task.target(), learned.network, kDistanceSamples, random);
     mesh.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -101,6 +101,10 @@ std::vector<SettingInfo> mesh_rows() {
         layer_row(&S::start_layer, "start_layer", "Start layer",
                   "The layer with the mesh that learning starts from if the start mesh is 'Layer'; else "
                   "without effect. It is not changed."),
+        row(&S::learn_topology, "learn_topology", "Learn topology",
+            "While it grows, a closed mesh gives up membranes: parts without points that bridge limbs, span gaps or "
+            "plug holes. Their rims are closed or joined, whichever the points support, so the number of "
+            "handles and components may change. If off, they are those of the start mesh."),
         row(&S::fit_to_points, "fit_to_points", "Fit to points",
             "After learning, fit the surface to the points by least squares. If off, the mesh stays as the "
             "paper's learning leaves it."),

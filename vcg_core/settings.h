@@ -57,6 +57,7 @@ struct Settings {
     int start_mesh = kShell;
     /// For kGivenMesh: the host's number of the layer, which only the host reads; -1: none.
     int start_layer = 0;
+    bool learn_topology = false;  ///< growth gives up membranes, see topology/learned_topology.h
     bool fit_to_points = true;
     bool draw_from_faces = true;
     bool selected_only = false;

@@ -16,10 +16,11 @@ enum class Stream {
     shell = 2,      ///< the points for the start mesh
     fit = 3,        ///< the points for the fit
     colors = 4,     ///< the points that give faces their colours
+    topology = 5,   ///< the signals by which membranes are told
 };
 
 /// The seed of the generator for one purpose in a run with the given seed, at least 0. Runs whose seeds
-/// differ by less than 5 share sequences, for different purposes.
+/// differ by less than 6 share sequences, for different purposes.
 constexpr std::uint64_t stream_seed(int seed, Stream purpose) {
     return static_cast<std::uint64_t>(seed) + static_cast<std::uint64_t>(purpose);
 }

@@ -21,9 +21,12 @@ inline std::int64_t growth_budget(const LearnerOptions& options) {
     return per_vertex * options.grow_to + kBase;
 }
 
-/// Signals after which growth is cut short. Leaves twice what forced growth needs.
+/// Signals after which growth is cut short. Leaves twice what forced growth needs. The stages of learned
+/// topology may take all vertices away, and the numbers of vertices at all stages (TopologyStages) add up to
+/// less than three times the goal: forced growth then grows four times as much.
 inline std::int64_t signal_bound(const LearnerOptions& options) {
-    return growth_budget(options) + 2 * std::int64_t{options.signals_per_split} * options.grow_to;
+    const std::int64_t times = options.learn_topology ? 4 : 1;
+    return growth_budget(options) + 2 * times * options.signals_per_split * options.grow_to;
 }
 
 /// Signals of a settling phase of \p per_vertex signals per vertex: at least 60,000 unless \p per_vertex is

@@ -15,6 +15,7 @@
 #include "vcg_core/learning/boundary_faces.h"
 #include "vcg_core/learning/half_edge_collapse.h"
 #include "vcg_core/learning/vertex_split.h"
+#include "vcg_core/topology/learned_topology.h"
 
 namespace neuralmesh {
 
@@ -44,12 +45,14 @@ Network checked(Network start, int grow_to) {
 }  // namespace
 
 Learner::Learner(const TargetSpace& target, const LearnerOptions& options, Network start)
-    : state_(options, checked(std::move(start), options.grow_to)),
+    : target_(target),
+      state_(options, checked(std::move(start), options.grow_to)),
       mean_delta_(options.normalization_window),
       schedule_(options, state_.network.vertex_count()),
       stream_(target, options.random_seed, BasicStepBatch::kMostSignals),
       batch_(options.threads, typical_signals(target, options.threads)),
-      memory_order_(state_, batch_) {}
+      memory_order_(state_, batch_),
+      topology_random_(stream_seed(options.random_seed, Stream::topology)) {}
 
 StopReason Learner::run(int landing_signals, Progress& progress) {
     const LearnerOptions& options = state_.options;
@@ -75,12 +78,14 @@ StopReason Learner::grow(Progress& progress) {
     const int begin = network().vertex_count();
     double done = 0;  // of growth; collapses do not take it back
     schedule_.begin(signals());
+    TopologyStages stages(begin, goal);
     while (network().vertex_count() < goal) {
         learn_batch(batch_size(), [this] {
             if (schedule_.split_due(signals())) vertex_split();
         });
         if (!forced_ && schedule_.collapse_due(signals())) half_edge_collapse();
         memory_order_.update_while_growing();
+        if (state_.options.learn_topology && stages.pass(network().vertex_count())) learn_topology();
 
         if (!forced_ && schedule_.stalled(signals())) force_growth();
         if (schedule_.exhausted(signals())) return StopReason::cut_short;
@@ -144,6 +149,22 @@ int Learner::half_edge_collapse() {
     const int removed = neuralmesh::half_edge_collapse(state_, schedule_.last_collapse());
     schedule_.collapsed(signals(), network().vertex_count());
     return removed;
+}
+
+int Learner::learn_topology() {
+    constexpr int kMostRounds = 4;
+    ThreadTeam team(thread_count(state_.options.threads));
+    int changes = 0;
+    for (int round = 0; round < kMostRounds; ++round) {
+        const int before = changes;
+        for (const Reconnection& change :
+             neuralmesh::topology_changes(network(), target_, topology_random_, team))
+            changes += state_.exchange_faces(change.gone, change.added) ? 1 : 0;
+        if (changes == before) break;
+    }
+    if (changes > 0) batch_.reassign_slabs();
+    topology_changes_ += changes;
+    return changes;
 }
 
 void Learner::force_growth() {

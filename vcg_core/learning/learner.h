@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vcg_core/base/progress.h"
+#include "vcg_core/base/random.h"
 #include "vcg_core/engine/basic_step_batch.h"
 #include "vcg_core/engine/batch_limit.h"
 #include "vcg_core/learning/crease_measure.h"
@@ -63,6 +64,10 @@ public:
     /// half_edge_collapse.h. Before, mends the faces along boundaries, see boundary_faces.h. \return the
     /// number of inactive vertices removed. O(n).
     int half_edge_collapse();
+    /// Takes membranes out of the network, see topology/learned_topology.h, in rounds until none gains any
+    /// more, four at most. Does nothing if the network has a boundary. \return the number of changes.
+    /// O(signals x log n)
+    int learn_topology();
     /// Learns settling_signals(per_vertex, vertices) signals without splits and collapses, so that counters
     /// describe the final connectivity. In the end mends faces along boundaries, which keeps all vertices.
     /// \param observe false: no crease measure. It needs fixed connectivity, so pass false before growth.
@@ -85,6 +90,8 @@ public:
     double mean_turn() const { return normal_turn_.degrees(); }
     /// run() learns at most this many signals while it grows: see growth_schedule.h.
     std::int64_t signal_bound() const { return neuralmesh::signal_bound(state_.options); }
+    /// Changes of the topology while it grew.
+    int topology_changes() const { return topology_changes_; }
     /// True if growth had to be forced: see growth_budget().
     bool forced() const { return forced_; }
 
@@ -96,6 +103,7 @@ private:
     bool report_due();
     bool report(const char* doing, double fraction, Progress& progress) const;
 
+    const TargetSpace& target_;
     LearningState state_;
     WindowMean mean_delta_;
     NormalTurn normal_turn_;
@@ -108,6 +116,8 @@ private:
     BatchLimit batch_limit_;
     MemoryOrder memory_order_;
     std::int64_t last_report_ = 0;
+    Random topology_random_;
+    int topology_changes_ = 0;
 };
 
 }  // namespace neuralmesh

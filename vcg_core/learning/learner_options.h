@@ -35,6 +35,7 @@ struct LearnerOptions {
     int min_wins_per_split = 30;
     int settling_signals_per_vertex = 60;  ///< signals after the last split
     bool observe_creases = false;          ///< settling fills Learner::crease_measure()
+    bool learn_topology = false;           ///< growth gives up membranes, see topology/learned_topology.h
     int random_seed = 1;
     int threads = 0;  ///< 0: one per core
 };

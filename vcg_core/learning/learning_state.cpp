@@ -3,6 +3,7 @@
 
 #include "vcg_core/learning/learning_state.h"
 
+#include <map>
 #include <utility>
 
 #include "vcg_core/mesh/valence_flips.h"
@@ -58,6 +59,23 @@ void LearningState::collapse(VertexId gone, VertexId kept) {
     utility_counters.remove(gone);
     network.collapse(gone, kept);
     ++collapses;
+}
+
+bool LearningState::exchange_faces(const std::vector<Triangle>& gone, const std::vector<Triangle>& added) {
+    if (!network.can_exchange_faces(gone, added)) return false;
+    std::map<VertexId, int> left;  // faces of the vertices concerned
+    for (const Triangle& f : gone)
+        for (const VertexId v : f) --left.try_emplace(v, network.ring(v).face_count()).first->second;
+    for (const Triangle& f : added)
+        for (const VertexId v : f) ++left[v];
+    for (const auto& [v, faces] : left) {
+        if (faces > 0) continue;
+        search.remove(v);
+        utility_counters.remove(v);
+        ++collapses;
+    }
+    network.exchange_faces(gone, added);
+    return true;
 }
 
 void LearningState::regularise(VertexId v) {

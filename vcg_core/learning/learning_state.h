@@ -28,6 +28,9 @@ struct LearningState {
     VertexId split(VertexId v, int first, int count, const vcg::Point3f& where);
     /// Network::collapse().
     void collapse(VertexId gone, VertexId kept);
+    /// Network::exchange_faces(). The vertices that stay keep their counters. \return false, with nothing
+    /// changed, if the network cannot
+    bool exchange_faces(const std::vector<Triangle>& gone, const std::vector<Triangle>& added);
     /// Flips edges of \p v where that brings valences closer to 6 and hardly changes the surface. Does
     /// nothing to the letter of the paper.
     void regularise(VertexId v);

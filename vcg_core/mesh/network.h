@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vcg_core/base/error.h"
@@ -105,6 +106,14 @@ public:
     /// valence of at least 2.
     bool can_open_face(VertexId v) const;
 
+    /// Exchanges faces: removes the faces \p gone and adds the faces \p added, whose corners exist. Vertices
+    /// that have no faces then are removed. \pre can_exchange_faces(gone, added). O(faces log faces).
+    void exchange_faces(const std::vector<Triangle>& gone, const std::vector<Triangle>& added);
+    /// True if the faces \p gone exist and the network is a manifold without them and with those \p added:
+    /// every vertex concerned keeps one fan of faces, with a valence between 3 (2 on a boundary) and
+    /// Ring::kMaxValence, or none.
+    bool can_exchange_faces(const std::vector<Triangle>& gone, const std::vector<Triangle>& added) const;
+
     /// Renumbers the vertices to 0 .. vertex_count() - 1 and keeps their order. Invalidates all ids, for
     /// example those in a WinnerSearch. \return per old slot the new id, or -1. O(vertices).
     PerVertex<VertexId> compact();
@@ -139,6 +148,10 @@ private:
     VertexId new_vertex(VertexId parent, const vcg::Point3f& where);
     void enter_fan(VertexId v, VertexId u, VertexId shared_begin, VertexId shared_end);
     std::string validate_edge(VertexId v, int i) const;
+    /// Rings after an exchange of faces; those of vertices without faces have valence 0.
+    using ChangedRings = std::vector<std::pair<VertexId, Ring>>;
+    bool rings_after(const std::vector<Triangle>& gone, const std::vector<Triangle>& added,
+                     ChangedRings& changed) const;
 
     static constexpr VertexRecord kSentinel{1e18F, 1e18F, 1e18F, -1};
     static constexpr VertexRecord kFreeSlot{0, 0, 0, -1};

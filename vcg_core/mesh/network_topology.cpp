@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Operations on the whole network: construction from faces, counts, orientation, validation.
+// Operations on the whole network: construction from faces, exchange of faces, counts, orientation,
+// validation.
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "vcg_core/mesh/nesting.h"
@@ -45,6 +47,12 @@ bool chain(const Links& links, Ring& ring) {
     return ring.valence == valence && (open || v == ring[0]);
 }
 
+Links links_of(const Ring& ring) {
+    Links links;
+    for (int i = 0; i < ring.face_count(); ++i) links.emplace_back(ring[i], ring.next(i));
+    return links;
+}
+
 std::string breach_at(VertexId v, const char* what) {
     return "The network is broken at vertex " + std::to_string(v) + ": " + what;
 }
@@ -72,6 +80,59 @@ Network::Network(const std::vector<vcg::Point3f>& positions, const std::vector<T
     }
     const std::string breach = validate();
     if (!breach.empty()) throw TopologyError(breach);
+}
+
+bool Network::rings_after(const std::vector<Triangle>& gone, const std::vector<Triangle>& added,
+                          ChangedRings& changed) const {
+    std::map<VertexId, Links> links;
+    const auto links_at = [&](VertexId v) -> Links& {
+        const auto [place, is_new] = links.try_emplace(v);
+        if (is_new && v >= 0 && v < slot_count()) place->second = links_of(ring(v));
+        return place->second;
+    };
+    for (const Triangle& f : gone)
+        for (std::size_t k = 0; k < 3; ++k) {
+            Links& at = links_at(f[k]);
+            const auto link =
+                std::find(at.begin(), at.end(), Links::value_type(f[(k + 1) % 3], f[(k + 2) % 3]));
+            if (link == at.end()) return false;
+            at.erase(link);
+        }
+    for (const Triangle& f : added)
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (f[k] < 0 || f[k] >= slot_count() || !alive(f[k])) return false;
+            links_at(f[k]).emplace_back(f[(k + 1) % 3], f[(k + 2) % 3]);
+        }
+    for (const auto& [v, at] : links) {
+        Ring after{};
+        if (!at.empty() && (!chain(at, after) || after.valence < after.min_valence())) return false;
+        after.tag = ring(v).tag;
+        changed.emplace_back(v, after);
+    }
+    return true;
+}
+
+bool Network::can_exchange_faces(const std::vector<Triangle>& gone,
+                                 const std::vector<Triangle>& added) const {
+    ChangedRings changed;
+    return rings_after(gone, added, changed);
+}
+
+void Network::exchange_faces(const std::vector<Triangle>& gone, const std::vector<Triangle>& added) {
+    ChangedRings changed;
+    if (!rings_after(gone, added, changed))
+        throw TopologyError(
+            "This exchange of faces would break the network; ask can_exchange_faces() first.");
+    free_.reserve(free_.size() + changed.size());
+    for (const auto& [v, after] : changed) {
+        if (after.valence == 0 && gaps_.count() > 0) {
+            gaps_.add(v);
+        } else if (after.valence == 0) {
+            free_.push_back(v);
+        }
+        vertex_count_ -= after.valence == 0 ? 1 : 0;
+        ring_of(v) = after.valence == 0 ? Ring{} : after;
+    }
 }
 
 int Network::face_count() const {

@@ -48,6 +48,9 @@ public:
     /// Is a point that \p counts (called with its place) within \p radius of that at \p place?
     template <class Predicate>
     bool any_within(Place place, float radius, const Predicate& counts) const;
+    /// The same around any place in space.
+    template <class Predicate>
+    bool any_within(const vcg::Point3f& centre, float radius, const Predicate& counts) const;
 
     /// The octree cell at \p level that holds the point at \p place, as a Z-order code of 3 * level bits. The
     /// root is a cube around all points or, if most lie in a hundredth of it, around these; points outside
@@ -125,13 +128,18 @@ void NearestPoints::visit_near(const vcg::Point3f& centre, const Visit& visit, c
 }
 
 template <class Predicate>
-bool NearestPoints::any_within(Place place, float radius, const Predicate& counts) const {
+bool NearestPoints::any_within(const vcg::Point3f& centre, float radius, const Predicate& counts) const {
     bool found = false;
     const float limit = radius * radius;
     visit_near(
-        point(place), [&](Place p, float d) { found = found || (d <= limit && counts(p)); },
+        centre, [&](Place p, float d) { found = found || (d <= limit && counts(p)); },
         [&] { return found ? -1.0F : limit; });
     return found;
+}
+
+template <class Predicate>
+bool NearestPoints::any_within(Place place, float radius, const Predicate& counts) const {
+    return any_within(point(place), radius, counts);
 }
 
 }  // namespace neuralmesh

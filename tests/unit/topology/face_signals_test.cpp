@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/topology/face_signals.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numeric>
+
+#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/targets.h"
+
+namespace neuralmesh {
+namespace {
+
+using targets::network_in_frame;
+using targets::target_of;
+
+/// The points of the unit sphere that are lower than \p top.
+shapes::Cloud lower_sphere(int count, double top) {
+    shapes::Cloud cloud;
+    for (const vcg::Point3d& p : shapes::sphere_cloud(count))
+        if (p[2] < top) cloud.push_back(p);
+    cloud.emplace_back(0, 0, 1);  // so that the frame is that of the whole sphere
+    return cloud;
+}
+
+float least_distance(const Surface& surface, const Vector3& p) {
+    float least = std::numeric_limits<float>::max();
+    for (int f = 0; f < surface.face_count(); ++f)
+        least = std::min(least,
+                         foot_on_triangle(p, surface.corner(f, 0), surface.corner(f, 1), surface.corner(f, 2))
+                             .squared_distance);
+    return least;
+}
+
+TEST(FaceSignals, GiveEverySignalToTheNearestFace) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(500, 0.05));
+    const Network network = network_in_frame(target, shapes::icosphere(2));
+    const Surface surface(network);
+    Random random(1);
+    const std::vector<Vector3> signals = fair_sample(target, 1000, random);
+    ASSERT_EQ(signals.size(), 500U);
+    ThreadTeam team(1);
+    const FaceSignals support = face_signals(network, surface, signals, team);
+    int sum = 0;
+    for (int f = 0; f < surface.face_count(); ++f) {
+        EXPECT_EQ(support.of(f).size(), support.wins[f]);
+        sum += support.wins[f];
+        for (const FaceSignals::Assigned& s : support.of(f)) {
+            EXPECT_EQ(s.squared_distance, least_distance(surface, s.point));
+            EXPECT_EQ(s.squared_distance, foot_on_triangle(s.point, surface.corner(f, 0),
+                                                           surface.corner(f, 1), surface.corner(f, 2))
+                                              .squared_distance);
+        }
+    }
+    EXPECT_EQ(sum, 500);
+}
+
+TEST(FaceSignals, ExpectAsManyAsThereAreWhereThePointsAreEven) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(50000));
+    const Network network = network_in_frame(target, shapes::icosphere(2));
+    const Surface surface(network);
+    Random random(1);
+    ThreadTeam team(1);
+    const FaceSignals support = face_signals(network, surface, fair_sample(target, 100000, random), team);
+    for (int f = 0; f < surface.face_count(); ++f) {
+        EXPECT_NEAR(support.expected[f], 50000.0F * 1 / 320, 50);
+        EXPECT_FALSE(support.lacks_support(f));
+    }
+}
+
+TEST(FaceSignals, AMembraneLacksSupportHoweverWideItIs) {
+    const TargetSpace target = target_of(lower_sphere(20000, -0.2));
+    const Network network = network_in_frame(target, shapes::icosphere(3));
+    const Surface surface(network);
+    Random random(1);
+    ThreadTeam team(1);
+    const FaceSignals support = face_signals(network, surface, fair_sample(target, 100000, random), team);
+    int lacking = 0;
+    for (int f = 0; f < surface.face_count(); ++f) {
+        const float z = (surface.corner(f, 0) + surface.corner(f, 1) + surface.corner(f, 2))[2] / 3;
+        const float unit = surface.corner(f, 0).norm();
+        if (z < -0.3F * unit) {
+            EXPECT_FALSE(support.lacks_support(f));
+        }
+        if (z > 0.1F * unit) lacking += support.lacks_support(f) ? 1 : 0;
+    }
+    // All but the face at the single point on top.
+    EXPECT_GT(lacking, 500);
+}
+
+TEST(FaceSignals, DoNotDependOnTheThreads) {
+    const TargetSpace target = target_of(shapes::torus_cloud(20000, 0.02));
+    const Network network = network_in_frame(target, shapes::torus_grid(20, 10));
+    const Surface surface(network);
+    Random random(1);
+    const std::vector<Vector3> signals = fair_sample(target, 5000, random);
+    EXPECT_EQ(signals.size(), 5000U);
+    ThreadTeam one(1), three(3);
+    const FaceSignals a = face_signals(network, surface, signals, one);
+    const FaceSignals b = face_signals(network, surface, signals, three);
+    EXPECT_EQ(a.wins, b.wins);
+    EXPECT_EQ(a.expected, b.expected);
+}
+
+}  // namespace
+}  // namespace neuralmesh

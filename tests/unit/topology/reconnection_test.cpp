@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Membranes that are found, and what takes their place: bridges are cut, tubes with plugs are joined.
+#include "vcg_core/topology/reconnection.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/targets.h"
+#include "vcg_core/mesh/boundary_loops.h"
+#include "vcg_core/topology/learned_topology.h"
+
+namespace neuralmesh {
+namespace {
+
+using targets::network_in_frame;
+using targets::target_of;
+
+/// A ring of vertices around a point.
+struct Hoop {
+    vcg::Point3d centre, across, up;  ///< the last two have the length of the radius
+};
+
+/// The surface through the hoops, of \p around vertices each, closed by patches at both ends.
+Network swept(const TargetSpace& target, const std::vector<Hoop>& hoops, int around) {
+    constexpr double kPi = 3.14159265358979;
+    shapes::Shape shape;
+    const auto at = [&](std::size_t hoop, int i) { return static_cast<int>(hoop) * around + i % around; };
+    for (std::size_t h = 0; h < hoops.size(); ++h)
+        for (int i = 0; i < around; ++i) {
+            const double turn = 2 * kPi * i / around;
+            shape.positions.push_back(hoops[h].centre + hoops[h].across * std::cos(turn) +
+                                      hoops[h].up * std::sin(turn));
+            if (h == 0) continue;
+            shape.faces.push_back({at(h - 1, i), at(h, i), at(h, i + 1)});
+            shape.faces.push_back({at(h - 1, i), at(h, i + 1), at(h - 1, i + 1)});
+        }
+    Network network = network_in_frame(target, shape);
+    for (const Rim& rim : boundary_loops(network.slot_count(), network.faces())) {
+        const Surface surface(network);
+        const PerFace<char> none(surface.face_count(), 0);
+        network.exchange_faces({}, closing_patch(rim, surface.positions, {network, surface, none}));
+    }
+    return network;
+}
+
+/// Two unit spheres, 3 apart.
+shapes::Cloud two_spheres(int count) {
+    shapes::Cloud cloud = shapes::sphere_cloud(count);
+    for (const vcg::Point3d& p : shapes::sphere_cloud(count, 0, 2)) cloud.emplace_back(p[0] + 3, p[1], p[2]);
+    return cloud;
+}
+
+/// Both spheres with a bridge between them.
+Network bridged(const TargetSpace& target) {
+    std::vector<Hoop> hoops;
+    const auto add = [&](double x, double radius) {
+        hoops.push_back({{1.5 + x, 0, 0}, {0, radius, 0}, {0, 0, radius}});
+    };
+    for (double angle = 0.15; angle < 2.8; angle += 0.15) add(-1.5 - std::cos(angle), std::sin(angle));
+    for (double x = -0.5; x < 0.55; x += 0.1) add(x, 0.35);
+    for (double angle = 2.7; angle > 0.1; angle -= 0.15) add(1.5 + std::cos(angle), std::sin(angle));
+    return swept(target, hoops, 12);
+}
+
+/// A torus with a gap of 20 degrees and a plug on either side of it.
+Network plugged(const TargetSpace& target) {
+    constexpr double kDegree = 3.14159265358979 / 180;
+    std::vector<Hoop> hoops;
+    const auto add = [&](double degrees, double radius) {
+        const vcg::Point3d out(std::cos(degrees * kDegree), std::sin(degrees * kDegree), 0);
+        hoops.push_back({out, out * radius, {0, 0, radius}});
+    };
+    for (const double radius : {0.08, 0.16, 0.24, 0.32}) add(10, radius);
+    for (int degrees = 10; degrees <= 350; degrees += 10) add(degrees, 0.4);
+    for (const double radius : {0.32, 0.24, 0.16, 0.08}) add(350, radius);
+    return swept(target, hoops, 12);
+}
+
+/// Applies what topology_changes() finds until it finds no more. \return the number of changes
+int learn(Network& network, const TargetSpace& target, int threads = 1) {
+    ThreadTeam team(threads);
+    Random random(1);
+    int changes = 0;
+    for (int round = 0; round < 10; ++round) {
+        const auto found = topology_changes(network, target, random, team);
+        if (found.empty()) return changes;
+        for (const Reconnection& change : found) {
+            if (!network.can_exchange_faces(change.gone, change.added)) continue;
+            network.exchange_faces(change.gone, change.added);
+            EXPECT_EQ(network.validate(), "");
+            ++changes;
+        }
+    }
+    ADD_FAILURE() << "It oscillates.";
+    return changes;
+}
+
+TEST(Reconnection, ABridgeBetweenTwoSpheresIsCut) {
+    const TargetSpace target = target_of(two_spheres(10000));
+    Network network = bridged(target);
+    ASSERT_EQ(network.component_count(), 1);
+    EXPECT_GT(learn(network, target), 0);
+    EXPECT_EQ(network.component_count(), 2);
+    EXPECT_EQ(network.genus(), 0);
+    EXPECT_EQ(network.boundary_loop_count(), 0);
+    EXPECT_EQ(learn(network, target), 0);
+}
+
+TEST(Reconnection, ATubeWithTwoPlugsIsJoined) {
+    const TargetSpace target = target_of(shapes::torus_cloud(20000));
+    Network network = plugged(target);
+    ASSERT_EQ(network.genus(), 0);
+    EXPECT_GT(learn(network, target), 0);
+    EXPECT_EQ(network.genus(), 1);
+    EXPECT_EQ(network.component_count(), 1);
+    EXPECT_EQ(network.boundary_loop_count(), 0);
+}
+
+TEST(Reconnection, RightMeshesStay) {
+    const TargetSpace sphere = target_of(shapes::sphere_cloud(20000, 0.01));
+    Network ball = network_in_frame(sphere, shapes::icosphere(3));
+    EXPECT_EQ(learn(ball, sphere), 0);
+    const TargetSpace torus = target_of(shapes::torus_cloud(20000, 0.01));
+    Network ring = network_in_frame(torus, shapes::torus_grid(40, 16));
+    EXPECT_EQ(learn(ring, torus), 0);
+}
+
+TEST(Reconnection, DoesNotDependOnTheThreads) {
+    const TargetSpace target = target_of(two_spheres(10000));
+    Network one = bridged(target), three = one;
+    EXPECT_EQ(learn(one, target), learn(three, target, 3));
+    EXPECT_EQ(one.faces(), three.faces());
+}
+
+TEST(Reconnection, LeavesMeshesWithBoundaryAndSparseCloudsAlone) {
+    const TargetSpace target = target_of(two_spheres(10000));
+    Network open = bridged(target);
+    open.exchange_faces({open.faces().front()}, {});
+    EXPECT_EQ(learn(open, target), 0);
+    const TargetSpace sparse = target_of(two_spheres(300));
+    Network network = bridged(sparse);
+    EXPECT_EQ(learn(network, sparse), 0);
+}
+
+TEST(Membranes, AreCompletedSoThatTheRestIsAManifold) {
+    const TargetSpace target = target_of(two_spheres(5000));
+    const Network network = bridged(target);
+    const Surface surface(network);
+    Random random(3);
+    ThreadTeam team(1);
+    const FaceSignals support = face_signals(network, surface, fair_sample(target, 10000, random), team);
+    int completed = 0;
+    for (int run = 0; run < 200; ++run) {
+        Membrane membrane;
+        std::set<int> faces;
+        const auto count = static_cast<std::uint32_t>(surface.face_count());
+        for (int i = 0; i < 1 + run / 10; ++i) {
+            const auto around = surface.faces_around(
+                surface.faces[static_cast<int>(random.below(i < 2 ? 40 : count / 8))][0]);
+            faces.insert(around.begin(), around.end());
+        }
+        membrane.faces.assign(faces.begin(), faces.end());
+        if (!complete(surface, support, membrane)) continue;
+        ++completed;
+        std::vector<Triangle> gone;
+        for (const int f : membrane.faces) gone.push_back(surface.faces[f]);
+        ASSERT_TRUE(network.can_exchange_faces(gone, {}));
+        Network rest = network;
+        rest.exchange_faces(gone, {});
+        ASSERT_EQ(rest.validate(), "");
+        EXPECT_EQ(rest.boundary_loop_count(), static_cast<int>(membrane.rims.size()));
+        for (const Rim& rim : membrane.rims)
+            for (std::size_t i = 0; i < rim.size(); ++i)
+                EXPECT_EQ(rest.ring(rim[i])[0], rim[(i + 1) % rim.size()]);
+    }
+    EXPECT_GT(completed, 100);
+}
+
+TEST(TopologyStages, ArePassedOnceEachAndEndWithTheGoal) {
+    std::vector<int> passed;
+    TopologyStages stages(400, 5000);
+    for (int vertices = 400; vertices <= 5000; ++vertices)
+        if (stages.pass(vertices)) passed.push_back(vertices);
+    EXPECT_EQ(passed, (std::vector<int>{600, 1200, 2400, 4800, 5000}));
+    for (int vertices = 4000; vertices <= 6000; ++vertices) EXPECT_FALSE(stages.pass(vertices));
+    TopologyStages small(4, 100);
+    EXPECT_FALSE(small.pass(99));
+    EXPECT_TRUE(small.pass(100));
+    EXPECT_FALSE(small.pass(100));
+}
+
+}  // namespace
+}  // namespace neuralmesh

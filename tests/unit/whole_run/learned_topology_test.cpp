@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Whole runs with learn_topology.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/soundness.h"
+#include "tests/unit/support/targets.h"
+#include "vcg_core/reconstruct.h"
+
+namespace neuralmesh {
+namespace {
+
+using shapes::Cloud;
+using targets::target_of;
+
+/// Unit spheres whose centres are \p apart.
+Cloud two_spheres(int count, double apart) {
+    Cloud cloud = shapes::sphere_cloud(count);
+    for (const vcg::Point3d& p : shapes::sphere_cloud(count, 0, 2))
+        cloud.emplace_back(p[0] + apart, p[1], p[2]);
+    return cloud;
+}
+
+Settings settings_of(int threads = 1) {
+    Settings settings;
+    settings.target_vertices = 1500;
+    settings.learn_topology = true;
+    settings.threads = threads;
+    return settings;
+}
+
+NeuralMesh learn(const Cloud& cloud, const Settings& settings, const IndexedMesh<double>& start = {}) {
+    NoProgress progress;
+    return reconstruct(target_of(cloud), settings, progress, start);
+}
+
+/// One sphere around both.
+IndexedMesh<double> ball(double apart) {
+    const shapes::Shape sphere = shapes::icosphere(2);
+    IndexedMesh<double> mesh;
+    for (const vcg::Point3d& p : sphere.positions)
+        mesh.positions.emplace_back(p[0] * 2 + apart / 2, p[1] * 1.2, p[2] * 1.2);
+    for (const auto& f : sphere.faces) mesh.faces.push_back(f);
+    return mesh;
+}
+
+TEST(LearnedTopology, PartsThatTheStartMeshJoinsComeApart) {
+    Settings settings = settings_of();
+    settings.start_mesh = kGivenMesh;
+    const Cloud cloud = two_spheres(20000, 3);
+    const NeuralMesh apart = learn(cloud, settings, ball(3));
+    EXPECT_EQ(apart.report.components, 2);
+    EXPECT_EQ(apart.report.genus, 0);
+    EXPECT_EQ(apart.report.boundary_loops, 0);
+    ASSERT_FALSE(apart.report.notes.empty());
+    EXPECT_NE(apart.report.notes.back().find("Membranes were given up"), std::string::npos);
+    soundness::expect_exact(apart, settings);
+    settings.learn_topology = false;
+    EXPECT_EQ(learn(cloud, settings, ball(3)).report.components, 1);
+}
+
+TEST(LearnedTopology, TheBytesDoNotDependOnTheThreads) {
+    Settings settings = settings_of(1);
+    settings.start_mesh = kGivenMesh;
+    const Cloud cloud = two_spheres(10000, 3);
+    const NeuralMesh one = learn(cloud, settings, ball(3));
+    settings.threads = 3;
+    const NeuralMesh three = learn(cloud, settings, ball(3));
+    EXPECT_EQ(one.positions, three.positions);
+    EXPECT_EQ(one.faces, three.faces);
+}
+
+TEST(LearnedTopology, WithoutMembranesNothingChanges) {
+    Settings settings = settings_of();
+    const Cloud cloud = shapes::torus_cloud(20000);
+    const NeuralMesh with = learn(cloud, settings);
+    settings.learn_topology = false;
+    const NeuralMesh without = learn(cloud, settings);
+    EXPECT_EQ(with.positions, without.positions);
+    EXPECT_EQ(with.faces, without.faces);
+}
+
+TEST(LearnedTopology, HostileCloudsGiveSoundMeshes) {
+    Cloud strip, curve;
+    Random random(4);
+    for (int i = 0; i < 10000; ++i) {
+        const double turn = 6.283185307 * static_cast<double>(random.unit());
+        const double across = 0.3 * shapes::signed_unit(random);
+        const double radius = 1 + across * std::cos(turn / 2);
+        strip.emplace_back(radius * std::cos(turn), radius * std::sin(turn), across * std::sin(turn / 2));
+        curve.emplace_back(std::cos(turn), std::sin(turn), 0.3 * std::sin(3 * turn));
+    }
+    for (const int start : {static_cast<int>(kShell), static_cast<int>(kTetrahedron)})
+        for (const Cloud& cloud : {two_spheres(10000, 2), strip, curve}) {
+            Settings settings = settings_of();
+            settings.surface = kClosedSurface;
+            settings.start_mesh = start;
+            settings.target_vertices = 1000;
+            const NeuralMesh mesh = learn(cloud, settings);
+            soundness::expect_exact(mesh, settings);
+            EXPECT_EQ(mesh.report.boundary_loops, 0);
+        }
+}
+
+}  // namespace
+}  // namespace neuralmesh

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/topology/face_signals.h"
+
+#include <numeric>
+
+#include "vcg_core/base/parallel_for.h"
+#include "vcg_core/mesh/face_tree.h"
+
+namespace neuralmesh {
+namespace {
+
+constexpr int kRings = 4;
+constexpr int kChunk = 1024;  ///< signals per task of a thread
+
+void assign(const Surface& surface, const std::vector<Vector3>& signals, ThreadTeam& team,
+            FaceSignals& support) {
+    const FaceTree tree(surface);
+    std::vector<Hit> hits(signals.size());
+    parallel_for(static_cast<int>(signals.size()), kChunk, team, [&](int i) {
+        const auto k = static_cast<std::size_t>(i);
+        hits[k] = tree.nearest(signals[k]);
+    });
+    support.wins.assign(surface.face_count(), 0);
+    for (const Hit& hit : hits) ++support.wins[hit.face];
+    support.first.assign(surface.face_count() + 1, 0);
+    std::partial_sum(support.wins.begin(), support.wins.end(), support.first.begin() + 1);
+    PerFace<int> next = support.first;
+    support.signals.resize(signals.size());
+    for (std::size_t i = 0; i < signals.size(); ++i)
+        support.signals[static_cast<std::size_t>(next[hits[i].face]++)] = {signals[i],
+                                                                           hits[i].foot.squared_distance};
+}
+
+/// Signals and the area that they fell on.
+struct Sums {
+    float signals = 0;
+    float area = 0;
+    void operator+=(const Sums& other) {
+        signals += other.signals;
+        area += other.area;
+    }
+};
+
+/// Gives the vertices without a density that of their neighbours, ring by ring.
+void extend(const Network& network, PerVertex<float>& density) {
+    for (bool changed = true; changed;) {
+        changed = false;
+        const PerVertex<float> before = density;
+        for (const VertexId v : network.vertices()) {
+            if (before[v] > 0) continue;
+            float sum = 0;
+            int known = 0;
+            for (const VertexId u : network.ring(v)) {
+                if (before[u] <= 0) continue;
+                sum += before[u];
+                ++known;
+            }
+            if (known == 0) continue;
+            density[v] = sum / static_cast<float>(known);
+            changed = true;
+        }
+    }
+}
+
+/// Signals per area around every vertex.
+PerVertex<float> densities(const Network& network, const Surface& surface, const FaceSignals& support) {
+    PerVertex<Sums> sums(surface.positions.size());
+    for (int f = 0; f < surface.face_count(); ++f) {
+        if (support.wins[f] == 0) continue;
+        for (const VertexId v : surface.faces[f])
+            sums[v] += {static_cast<float>(support.wins[f]), support.area[f]};
+    }
+    spread_over_rings(network, sums, kRings);
+    PerVertex<float> density(sums.size(), 0.0F);
+    for (VertexId v = 0; v < sums.size(); ++v)
+        if (sums[v].area > 0) density[v] = sums[v].signals / sums[v].area;
+    extend(network, density);
+    return density;
+}
+
+}  // namespace
+
+std::vector<Vector3> fair_sample(const TargetSpace& target, std::size_t count, Random& random) {
+    std::vector<Vector3> signals;
+    const bool all = !target.is_exact() && !target.is_weighted() && target.positions().size() <= count;
+    signals.reserve(all ? target.positions().size() : count);
+    if (all) {
+        for (const vcg::Point3f& p : target.positions()) signals.push_back(to_eigen(p));
+    } else {
+        while (signals.size() < count) signals.push_back(to_eigen(target.sample(random)));
+    }
+    return signals;
+}
+
+FaceSignals face_signals(const Network& network, const Surface& surface, const std::vector<Vector3>& signals,
+                         ThreadTeam& team) {
+    FaceSignals support;
+    assign(surface, signals, team, support);
+    support.area.resize(surface.face_count());
+    for (int f = 0; f < surface.face_count(); ++f) support.area[f] = area_vector(surface, f).norm() / 2;
+    support.density = densities(network, surface, support);
+    const PerVertex<float>& density = support.density;
+    support.expected.resize(surface.face_count());
+    for (int f = 0; f < surface.face_count(); ++f) {
+        const Triangle& face = surface.faces[f];
+        support.expected[f] = support.area[f] * (density[face[0]] + density[face[1]] + density[face[2]]) / 3;
+    }
+    return support;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// What the points say about every face: how many are nearest to it, and how many it should have for its area.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "vcg_core/base/random.h"
+#include "vcg_core/base/span.h"
+#include "vcg_core/base/thread_team.h"
+#include "vcg_core/mesh/surface.h"
+#include "vcg_core/target/target_space.h"
+
+namespace neuralmesh {
+
+/// A fair sample of \p target: all its points once if they are no more than \p count and have no weights,
+/// else \p count signals. O(count).
+std::vector<Vector3> fair_sample(const TargetSpace& target, std::size_t count, Random& random);
+
+/// The support of every face of a surface.
+struct FaceSignals {
+    /// A signal and its squared distance from its face.
+    struct Assigned {
+        Vector3 point;
+        float squared_distance;
+    };
+    std::vector<Assigned> signals;  ///< face by face
+    PerFace<int> first;             ///< where those of a face begin; one more entry at the end
+    PerFace<int> wins;              ///< their number
+    PerFace<float> expected;  ///< signals that its area would win at the density of the surface around it
+    PerFace<float> area;
+    PerVertex<float> density;  ///< signals per area around the vertex
+
+    Span<const Assigned> of(int face) const {
+        return {signals.data() + first[face], signals.data() + first[face + 1]};
+    }
+
+    /// Share of the expected signals below which a face lacks support.
+    static constexpr float kLeastShare = 0.1F;
+    bool lacks_support(int face) const {
+        return static_cast<float>(wins[face]) < kLeastShare * expected[face];
+    }
+};
+
+/// Assigns every one of \p signals to its nearest face. The density around a vertex is that of the faces with
+/// signals within about four rings; where none has any, that of the nearest vertices with a density. So a
+/// membrane does not lower the density that it is measured by, however wide it is. The result does not depend
+/// on the number of threads. O(signals x log faces + rings of the widest membrane x faces).
+FaceSignals face_signals(const Network& network, const Surface& surface, const std::vector<Vector3>& signals,
+                         ThreadTeam& team);
+
+}  // namespace neuralmesh

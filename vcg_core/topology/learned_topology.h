@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// When and how a growing network changes its topology: it gives up membranes that the points do not support.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "vcg_core/base/random.h"
+#include "vcg_core/base/thread_team.h"
+#include "vcg_core/mesh/network.h"
+#include "vcg_core/target/target_space.h"
+#include "vcg_core/topology/reconnection.h"
+
+namespace neuralmesh {
+
+/// The stages of growth at which the topology is examined: 600 x 2^k vertices, and the last vertex. Each is
+/// passed once, so a run has at most log2(vertices) of them whatever the points are.
+class TopologyStages {
+public:
+    /// Of growth from \p vertices to \p goal.
+    TopologyStages(int vertices, int goal) : goal_(goal), next_(std::min(kFirst, goal)) {
+        while (next_ <= vertices && next_ < goal) advance();
+    }
+    /// True once for each stage that a network of \p vertices has reached.
+    bool pass(int vertices) {
+        if (over_ || vertices < next_) return false;
+        over_ = next_ == goal_;
+        advance();
+        return true;
+    }
+
+private:
+    static constexpr int kFirst = 600;
+    void advance() { next_ = next_ < goal_ / 2 ? 2 * next_ : goal_; }
+
+    int goal_;
+    int next_;
+    bool over_ = false;
+};
+
+/// Exchanges of faces by which \p network loses membranes of few points, closed networks only: see
+/// reconnection.h. No membrane is in two of them. The signals are a fair sample of \p target, 30 per vertex.
+/// The result does not depend on the number of threads. Cost: about that of learning the signals.
+std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target, Random& random,
+                                           ThreadTeam& team);
+
+}  // namespace neuralmesh

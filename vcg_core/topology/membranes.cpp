@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/topology/membranes.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "vcg_core/base/logarithm.h"
+
+namespace neuralmesh {
+namespace {
+
+/// Area of the smallest membrane, in squared mean edges: about five faces.
+constexpr float kLeastArea = 2;
+/// Of one of a pair.
+constexpr float kLeastPart = 0.2F;
+/// A membrane of more faces is a part of the surface where the density is misjudged.
+constexpr std::size_t kMostFaces = 2000;
+/// Most times that faces are added to make the rims clean.
+constexpr int kMostRepairs = 8;
+
+/// ln of how much likelier \p wins are without support than with \p expected signals.
+double evidence(double wins, double expected) {
+    return expected - wins + (wins > 0 ? wins * portable_log(wins / expected) : 0);
+}
+
+class Members {
+public:
+    Members(const Surface& surface, const std::vector<int>& faces)
+        : surface_(surface), in_(faces.begin(), faces.end()) {}
+    bool has(int face) const { return in_.count(face) != 0; }
+    void add(int face) { in_.insert(face); }
+    std::vector<int> faces() const { return {in_.begin(), in_.end()}; }
+
+    /// The other faces around \p v, in fans of faces that share edges.
+    std::vector<std::vector<int>> other_fans(VertexId v) const;
+    /// The other faces that are connected with \p start, if these are at most \p most; else none, and some of
+    /// them are added to \p mainland. None either if one of them is there already.
+    std::vector<int> island(int start, std::size_t most, std::set<int>& mainland) const;
+
+private:
+    const Surface& surface_;
+    std::set<int> in_;
+};
+
+std::vector<std::vector<int>> Members::other_fans(VertexId v) const {
+    std::vector<int> rest;
+    for (const int f : surface_.faces_around(v))
+        if (!has(f)) rest.push_back(f);
+    std::vector<std::vector<int>> fans;
+    while (!rest.empty()) {
+        std::vector<int> fan{rest.back()};
+        rest.pop_back();
+        for (std::size_t i = 0; i < fan.size(); ++i)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto next = std::find(rest.begin(), rest.end(), face_beyond(surface_, fan[i], k));
+                if (next == rest.end()) continue;
+                fan.push_back(*next);
+                rest.erase(next);
+            }
+        fans.push_back(fan);
+    }
+    return fans;
+}
+
+std::vector<int> Members::island(int start, std::size_t most, std::set<int>& mainland) const {
+    std::vector<int> found{start};
+    std::set<int> seen{start};
+    bool large = mainland.count(start) != 0;
+    for (std::size_t i = 0; i < found.size() && !large; ++i)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int next = face_beyond(surface_, found[i], k);
+            if (next < 0 || has(next) || !seen.insert(next).second) continue;
+            found.push_back(next);
+            large = large || found.size() > most || mainland.count(next) != 0;
+        }
+    if (!large) return found;
+    mainland.insert(found.begin(), found.end());
+    return {};
+}
+
+/// Adds fans that hang on the membrane by a corner: all but that with the most signals.
+bool add_pinched(const Surface& surface, const FaceSignals& signals, Members& members) {
+    std::set<VertexId> corners;
+    for (const int f : members.faces()) corners.insert(surface.faces[f].begin(), surface.faces[f].end());
+    bool added = false;
+    for (const VertexId v : corners) {
+        std::vector<std::vector<int>> fans = members.other_fans(v);
+        if (fans.size() < 2) continue;
+        const auto wins = [&](const std::vector<int>& fan) {
+            int sum = 0;
+            for (const int f : fan) sum += signals.wins[f];
+            return sum;
+        };
+        std::sort(fans.begin(), fans.end(), [&](const auto& a, const auto& b) {
+            return wins(a) != wins(b) ? wins(a) > wins(b) : a < b;
+        });
+        for (std::size_t i = 1; i < fans.size(); ++i)
+            for (const int f : fans[i]) members.add(f);
+        added = true;
+    }
+    return added;
+}
+
+bool add_islands(const Surface& surface, Members& members) {
+    bool added = false;
+    std::set<int> mainland;
+    const std::vector<int> before = members.faces();
+    for (const int f : before)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int next = face_beyond(surface, f, k);
+            if (next < 0 || members.has(next)) continue;
+            for (const int g : members.island(next, before.size(), mainland)) {
+                members.add(g);
+                added = true;
+            }
+        }
+    return added;
+}
+
+/// Chains the edges between the membrane and the other faces, with those on the left.
+std::vector<Rim> rims_of(const Surface& surface, const Members& members) {
+    std::map<VertexId, VertexId> next;
+    for (const int f : members.faces())
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int beyond = face_beyond(surface, f, k);
+            if (beyond >= 0 && !members.has(beyond))
+                next[surface.faces[f][(k + 1) % 3]] = surface.faces[f][k];
+        }
+    std::vector<Rim> rims;
+    while (!next.empty()) {
+        rims.emplace_back();
+        for (auto step = next.begin(); step != next.end(); step = next.find(rims.back().back())) {
+            if (rims.back().empty()) rims.back().push_back(step->first);
+            rims.back().push_back(step->second);
+            next.erase(step);
+        }
+        rims.back().pop_back();  // back at the first
+    }
+    return rims;
+}
+
+void measure(const Surface& surface, const FaceSignals& signals, Membrane& membrane) {
+    membrane.missing = 0;
+    membrane.area = Vector3::Zero();
+    for (const int f : membrane.faces) {
+        membrane.missing += signals.expected[f] - static_cast<float>(signals.wins[f]);
+        membrane.area += area_vector(surface, f) / 2;
+    }
+}
+
+/// The faces without support that are connected with \p start.
+std::vector<int> region_of(const Surface& surface, const FaceSignals& signals, int start,
+                           PerFace<char>& seen) {
+    std::vector<int> region{start};
+    seen[start] = 1;
+    for (std::size_t i = 0; i < region.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int next = face_beyond(surface, region[i], k);
+            if (next < 0 || seen[next] != 0 || !signals.lacks_support(next)) continue;
+            seen[next] = 1;
+            region.push_back(next);
+        }
+    return region;
+}
+
+}  // namespace
+
+int face_beyond(const Surface& surface, int face, std::size_t edge) {
+    const VertexId a = surface.faces[face][edge], b = surface.faces[face][(edge + 1) % 3];
+    for (const int f : surface.faces_around(b)) {
+        const Triangle& t = surface.faces[f];
+        for (std::size_t k = 0; k < 3; ++k)
+            if (t[k] == b && t[(k + 1) % 3] == a) return f;
+    }
+    return -1;
+}
+
+bool complete(const Surface& surface, const FaceSignals& signals, Membrane& membrane) {
+    Members members(surface, membrane.faces);
+    for (int repair = 0; add_islands(surface, members) || add_pinched(surface, signals, members);)
+        if (++repair > kMostRepairs || members.faces().size() > kMostFaces) return false;
+    membrane.faces = members.faces();
+    membrane.rims = rims_of(surface, members);
+    measure(surface, signals, membrane);
+    return true;
+}
+
+std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& signals) {
+    const float edge = mean_edge_length(surface);
+    const double least_evidence = portable_log(static_cast<double>(surface.face_count())) + 7;
+    PerFace<char> seen(surface.face_count(), 0);
+    std::vector<Membrane> membranes;
+    for (int f = 0; f < surface.face_count(); ++f) {
+        if (seen[f] != 0 || !signals.lacks_support(f)) continue;
+        Membrane membrane;
+        membrane.faces = region_of(surface, signals, f, seen);
+        double wins = 0, expected = 0;
+        float area = 0;
+        for (const int g : membrane.faces) {
+            wins += signals.wins[g];
+            expected += static_cast<double>(signals.expected[g]);
+            area += signals.area[g];
+        }
+        const double found = evidence(wins, expected);
+        if (area < kLeastPart * edge * edge || found < least_evidence / 4) continue;
+        membrane.certain = area >= kLeastArea * edge * edge && found >= least_evidence;
+        if (complete(surface, signals, membrane)) membranes.push_back(std::move(membrane));
+    }
+    return membranes;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Membranes: regions of a mesh that no points support. They span gaps, plug handles and bridge parts.
+#pragma once
+
+#include <vector>
+
+#include "vcg_core/topology/face_signals.h"
+#include "vcg_core/topology/patches.h"
+
+namespace neuralmesh {
+
+/// Faces without support, and the rims of the hole that they would leave.
+struct Membrane {
+    std::vector<int> faces;  ///< rising
+    std::vector<Rim> rims;   ///< each vertex is on one rim at most
+    float missing = 0;       ///< signals: expected less won
+    Vector3 area;            ///< sum of the area vectors
+    /// Whether the membrane is one without doubt; else it takes two that face each other.
+    bool certain = false;
+};
+
+/// The face beyond an edge of \p face, the one from corner \p edge to the next; -1 on a boundary. O(valence)
+int face_beyond(const Surface& surface, int face, std::size_t edge);
+
+/// The membranes of a closed surface: faces that lack support and share edges. A membrane counts if its lack
+/// of signals is no accident of the sample (log-likelihood above ln(faces) + 7) and its area is that of
+/// several faces. Faces that would hang on it by a corner only, or as an island inside, are part of it, so
+/// that the surface stays a manifold without it; membranes that become too large by that are left out.
+/// O(faces log faces)
+std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& signals);
+
+/// Completes \p membrane.faces as find_membranes() does, and finds the rims. \return false if that does not
+/// end.
+bool complete(const Surface& surface, const FaceSignals& signals, Membrane& membrane);
+
+}  // namespace neuralmesh

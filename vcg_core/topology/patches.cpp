@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/topology/patches.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+namespace neuralmesh {
+namespace {
+
+constexpr float kNever = std::numeric_limits<float>::infinity();
+
+/// A table of n x m values.
+template <class T>
+class Table {
+public:
+    Table(int n, int m, T value)
+        : m_(m), values_(static_cast<std::size_t>(n) * static_cast<std::size_t>(m), value) {}
+    T& operator()(int i, int j) { return values_[static_cast<std::size_t>(i * m_ + j)]; }
+
+private:
+    int m_;
+    std::vector<T> values_;
+};
+
+/// Squared lengths of the edges between vertices; kNever for edges that the network has.
+class Lengths {
+public:
+    Lengths(const PerVertex<Vector3>& positions, const Edges& edges) : positions_(positions), edges_(edges) {}
+    float between(VertexId a, VertexId b) const { return (positions_[a] - positions_[b]).squaredNorm(); }
+    float new_edge(VertexId a, VertexId b) const { return edges_.has(a, b) ? kNever : between(a, b); }
+
+private:
+    const PerVertex<Vector3>& positions_;
+    const Edges& edges_;
+};
+
+/// The faces between corners i and j of the rim, from the table of best third corners.
+void collect(const Rim& rim, Table<int>& third, int i, int j, std::vector<Triangle>& faces) {
+    if (j - i < 2) return;
+    const int k = third(i, j);
+    const auto at = [&](int l) { return rim[static_cast<std::size_t>(l)]; };
+    faces.push_back({at(j), at(k), at(i)});
+    collect(rim, third, i, k, faces);
+    collect(rim, third, k, j, faces);
+}
+
+/// A ring of faces between two rims, as steps from one edge between them to the next: 0 along a, 1 along b.
+struct Zip {
+    float cost = kNever;
+    std::vector<char> steps;
+};
+
+/// The search for the cheapest steps. A run of steps along one rim makes a fan around a vertex of the other;
+/// runs are short, so that no fan goes all around, and valences stay low.
+class Zipper {
+public:
+    /// \p a runs forwards, \p b, already reversed, runs beside it; both return to where they begin.
+    Zipper(const Rim& a, const Rim& b, const Lengths& lengths)
+        : a_(a),
+          b_(b),
+          lengths_(lengths),
+          n_(static_cast<int>(a.size())),
+          m_(static_cast<int>(b.size())),
+          runs_(longest_run()),
+          best_((n_ + 1) * (m_ + 1), 2 * runs_, kNever),
+          from_((n_ + 1) * (m_ + 1), 2 * runs_, -1) {}
+
+    Zip best();
+
+private:
+    int longest_run() const {
+        const int enough = std::max((n_ + m_ - 1) / std::min(n_, m_), 2) + 1;
+        return std::min(enough, std::min(n_, m_) - 1);
+    }
+    int cell(int i, int j) const { return i * (m_ + 1) + j; }
+    static VertexId in(const Rim& rim, int i) { return rim[static_cast<std::size_t>(i) % rim.size()]; }
+    void reach(int i, int j, int direction);
+
+    const Rim &a_, &b_;
+    const Lengths& lengths_;
+    int n_, m_;
+    int runs_;           ///< longest run
+    Table<float> best_;  ///< by cell, and by direction and length of the last run
+    Table<int> from_;    ///< the same of the step before
+};
+
+/// The costs of reaching cell (i, j) by a step in \p direction.
+void Zipper::reach(int i, int j, int direction) {
+    const int before_i = i - (direction == 0 ? 1 : 0), before_j = j - direction;
+    if (before_i < 0 || before_j < 0) return;
+    const float along = direction == 0 ? lengths_.between(in(a_, before_i), in(a_, i))
+                                       : lengths_.between(in(b_, before_j), in(b_, j));
+    const float edge = along + lengths_.new_edge(in(a_, i), in(b_, j));
+    for (int state = 0; state < 2 * runs_; ++state) {
+        const bool goes_on = state / runs_ == direction;
+        const int run = goes_on ? state % runs_ + 1 : 0;
+        const float cost = best_(cell(before_i, before_j), state) + edge;
+        if (run >= runs_ || cost >= best_(cell(i, j), direction * runs_ + run)) continue;
+        best_(cell(i, j), direction * runs_ + run) = cost;
+        from_(cell(i, j), direction * runs_ + run) = state;
+    }
+}
+
+Zip Zipper::best() {
+    Zip result;
+    if (runs_ < 1) return result;
+    for (int state = 0; state < 2 * runs_; state += runs_) best_(0, state) = 0;
+    for (int i = 0; i <= n_; ++i)
+        for (int j = 0; j <= m_; ++j)
+            for (int direction = 0; direction < 2; ++direction) reach(i, j, direction);
+    int state = 0;
+    for (int s = 0; s < 2 * runs_; ++s)
+        if (best_(cell(n_, m_), s) < best_(cell(n_, m_), state)) state = s;
+    result.cost = best_(cell(n_, m_), state);
+    for (int i = n_, j = m_; i + j > 0 && result.cost < kNever;) {
+        const int before = from_(cell(i, j), state);
+        result.steps.push_back(static_cast<char>(state / runs_));
+        (state < runs_ ? i : j) -= 1;
+        state = before;
+    }
+    std::reverse(result.steps.begin(), result.steps.end());
+    return result;
+}
+
+}  // namespace
+
+bool Edges::has(VertexId a, VertexId b) const {
+    if (!network_.adjacent(a, b)) return false;
+    for (const int f : surface_.faces_around(a)) {
+        const Triangle& face = surface_.faces[f];
+        if (left_out_[f] == 0 && std::find(face.begin(), face.end(), b) != face.end()) return true;
+    }
+    return false;
+}
+
+std::vector<Triangle> closing_patch(const Rim& rim, const PerVertex<Vector3>& positions, const Edges& edges) {
+    const int n = static_cast<int>(rim.size());
+    if (n < 3 || n > kLongestRim) return {};
+    const Lengths lengths(positions, edges);
+    const auto at = [&](int i) { return rim[static_cast<std::size_t>(i)]; };
+    Table<float> best(n, n, 0.0F);
+    Table<int> third(n, n, -1);
+    for (int span = 2; span < n; ++span)
+        for (int i = 0; i + span < n; ++i) {
+            const int j = i + span;
+            float least = kNever;
+            for (int k = i + 1; k < j; ++k) {
+                const float cost = best(i, k) + best(k, j);
+                if (cost >= least) continue;
+                least = cost;
+                third(i, j) = k;
+            }
+            // The last edge is one of the rim.
+            best(i, j) = least + (span + 1 == n ? 0.0F : lengths.new_edge(at(i), at(j)));
+        }
+    std::vector<Triangle> faces;
+    if (best(0, n - 1) < kNever) collect(rim, third, 0, n - 1, faces);
+    return faces;
+}
+
+std::vector<Triangle> joining_patch(const Rim& a, const Rim& b, const PerVertex<Vector3>& positions,
+                                    const Edges& edges) {
+    const auto longest = static_cast<std::size_t>(kLongestRim);
+    if (a.size() > longest || b.size() > longest) return {};
+    for (const VertexId v : a)
+        if (std::find(b.begin(), b.end(), v) != b.end()) return {};
+    const Lengths lengths(positions, edges);
+    Rim beside(b.rbegin(), b.rend());
+    Zip best;
+    Rim best_beside;
+    for (std::size_t turn = 0; turn < beside.size(); ++turn) {
+        Zip next = Zipper(a, beside, lengths).best();
+        if (next.cost < best.cost) {
+            best = std::move(next);
+            best_beside = beside;
+        }
+        std::rotate(beside.begin(), beside.begin() + 1, beside.end());
+    }
+    std::vector<Triangle> faces;
+    std::size_t i = 0, j = 0;
+    for (const char step : best.steps) {
+        const VertexId p = a[i % a.size()], q = best_beside[j % beside.size()];
+        if (step == 0) {
+            faces.push_back({a[++i % a.size()], p, q});
+        } else {
+            faces.push_back({p, q, best_beside[++j % beside.size()]});
+        }
+    }
+    return faces;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Other surfaces in place of membranes: their rims closed, or joined with each other, whichever the points
+// support.
+#pragma once
+
+#include <vector>
+
+#include "vcg_core/topology/membranes.h"
+
+namespace neuralmesh {
+
+/// An exchange of faces.
+struct Reconnection {
+    std::vector<int> membranes;   ///< indices of the membranes that go
+    std::vector<Triangle> gone;   ///< their faces
+    std::vector<Triangle> added;  ///< the faces in their place
+    float gain = 0;               ///< signals that are explained better, see surroundings.h
+};
+
+/// The best reconnection of every certain membrane, and of every pair of membranes that face each other,
+/// which joins them; those alone that gain enough (see reconnection.cpp), the largest gain first. Membranes
+/// may be widened by one or two rings for it: the surface dents around a hole that it plugs. A joint makes a
+/// handle, or one component of two; closed rims of a tube take a handle away; a membrane with one rim is
+/// closed by a smaller surface. A joint that makes a handle also needs a gap that is wide for \p points, and
+/// points wherever one can go around the handle: see corridors.h. If there are no \p points, none is made.
+/// Each of them alone leaves \p network a manifold. O(membranes x (faces + signals around a membrane))
+std::vector<Reconnection> find_reconnections(const Network& network, const Surface& surface,
+                                             const FaceSignals& support,
+                                             const std::vector<Membrane>& membranes,
+                                             const std::vector<vcg::Point3f>& points);
+
+}  // namespace neuralmesh
