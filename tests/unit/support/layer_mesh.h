@@ -17,7 +17,10 @@ class Vertex;
 class Face;
 struct Types : vcg::UsedTypes<vcg::Use<Vertex>::AsVertexType, vcg::Use<Face>::AsFaceType> {};
 class Vertex : public vcg::Vertex<Types, vcg::vertex::Coord3f, vcg::vertex::Normal3f, vcg::vertex::Qualityf,
-                                  vcg::vertex::Color4b, vcg::vertex::BitFlags> {};
+                                  vcg::vertex::Color4b, vcg::vertex::BitFlags> {
+public:
+    Vertex() { N().SetZero(); }  // as MeshLab has it where a file gives none
+};
 class Face : public vcg::Face<Types, vcg::face::VertexRef, vcg::face::BitFlags> {};
 class Mesh : public vcg::tri::TriMesh<std::vector<Vertex>, std::vector<Face>> {};
 
