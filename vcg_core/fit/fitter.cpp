@@ -327,12 +327,13 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
     solve(points, surface);
     while (network_.vertex_count() > vertices) {
         if (stopped()) return false;
-        if (surface.has_boundary() || expects_strays_) {
-            if (surface.has_boundary() && mend_boundary(surface, assign_faces(surface)) > 0)
-                surface = Surface(network_);
+        if (surface.has_boundary() || expects_strays_)
             points = assign_faces(surface);  // what is astray or missing is told by the surface as it is
-        } else {
+        else
             points.update_feet(surface, team_);  // the next search follows once the vertices are removed
+        if (surface.has_boundary() && mend_boundary(surface, points) > 0) {
+            surface = Surface(network_);
+            points = assign_faces(surface);
         }
         const int max_count = std::min(network_.vertex_count() - vertices,
                                        1 + static_cast<int>(kRemovedShare * network_.vertex_count()));
