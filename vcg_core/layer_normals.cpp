@@ -3,10 +3,7 @@
 
 #include "vcg_core/layer_normals.h"
 
-#include <cstddef>
-
 #include "vcg_core/base/text.h"
-#include "vcg_core/mesh/boundary_loops.h"
 #include "vcg_core/shell/facing.h"
 #include "vcg_core/target/normal_survey.h"
 
@@ -16,15 +13,6 @@ namespace {
 /// With fewer normals along the closed surface they are flipped. Where the start mesh misses a thin wall,
 /// half of the right ones are.
 constexpr double kFlipped = 0.2;
-
-/// For every component whether it has a boundary.
-std::vector<char> open_components(const Network& network, std::size_t count) {
-    const PerVertex<int> component = network.components();
-    std::vector<char> open(count, 0);
-    for (const auto& loop : boundary_loops(network.slot_count(), network.faces()))
-        open[static_cast<std::size_t>(component[loop.front()])] = 1;
-    return open;
-}
 
 void report_open_parts(int parts, int oriented, std::vector<std::string>& notes,
                        std::vector<std::string>& warnings) {
@@ -54,17 +42,15 @@ std::string why_normals_do_not_serve(const TargetSpace& target, const CloudSurve
 
 void report_normals(const Network& start, const TargetSpace& target, int parts_oriented,
                     std::vector<std::string>& notes, std::vector<std::string>& warnings) {
-    const std::vector<FacingVote> votes = facing_votes(start, target);
-    const std::vector<char> open = open_components(start, votes.size());
     int open_parts = 0;
     FacingVote closed;
-    for (std::size_t i = 0; i < votes.size(); ++i) {
-        if (open[i] != 0) {
+    for (const FacingVote& vote : facing_votes(start, target)) {
+        if (vote.open) {
             ++open_parts;
             continue;
         }
-        closed.along += votes[i].along;
-        closed.against += votes[i].against;
+        closed.along += vote.along;
+        closed.against += vote.against;
     }
     if (open_parts > 0) report_open_parts(open_parts, parts_oriented, notes, warnings);
     if (closed.along + closed.against == 0) return;

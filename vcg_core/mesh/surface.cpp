@@ -34,15 +34,20 @@ void Surface::mark_boundary(const Network& network) {
     }
 }
 
-Vector3 normal_beyond(const Surface& surface, VertexId a, VertexId b) {
-    for (int f : surface.faces_around(b)) {
+FaceCorner corner_of_edge(const Surface& surface, VertexId a, VertexId b) {
+    for (int f : surface.faces_around(a)) {
         const Triangle& face = surface.faces[f];
         for (std::size_t k = 0; k < 3; ++k)
-            if (face[k] == b && face[(k + 1) % 3] == a)
-                return unit_normal(surface.positions[b], surface.positions[a],
-                                   surface.positions[face[(k + 2) % 3]]);
+            if (face[k] == a && face[(k + 1) % 3] == b) return {f, k};
     }
-    return Vector3::Zero();
+    return {};
+}
+
+Vector3 normal_beyond(const Surface& surface, VertexId a, VertexId b) {
+    const FaceCorner beyond = corner_of_edge(surface, b, a);
+    if (beyond.face < 0) return Vector3::Zero();
+    return unit_normal(surface.positions[b], surface.positions[a],
+                       surface.positions[surface.faces[beyond.face][(beyond.corner + 2) % 3]]);
 }
 
 float mean_edge_length(const Surface& surface) {

@@ -62,6 +62,15 @@ inline Vector3 unit_normal(const Surface& surface, int face) {
     return area_vector(surface, face).normalized();
 }
 
+/// A face and one of its corners, 0 to 2; face -1: there is none.
+struct FaceCorner {
+    int face = -1;
+    std::size_t corner = 0;
+};
+
+/// The face with the edge from \p a to \p b in its sense of rotation, and the corner of \p a there.
+FaceCorner corner_of_edge(const Surface& surface, VertexId a, VertexId b);
+
 /// Unit normal of the face beyond the edge \p a to \p b of a face, which has it as b to a; 0 on a boundary.
 /// O(valence).
 Vector3 normal_beyond(const Surface& surface, VertexId a, VertexId b);

@@ -45,8 +45,10 @@ double FacingVote::share_along() const {
 
 std::vector<FacingVote> facing_votes(const Network& network, const TargetSpace& target) {
     std::vector<FacingVote> votes(static_cast<std::size_t>(network.component_count()));
-    if (!target.has_normals()) return votes;
     const PerVertex<int> component = network.components();
+    for (const auto& loop : boundary_loops(network.slot_count(), network.faces()))
+        votes[static_cast<std::size_t>(component[loop.front()])].open = true;
+    if (!target.has_normals()) return votes;
     const Surface surface(network);
     const FaceTree tree(surface);
     const std::vector<Point3f>& points = target.positions();
@@ -86,13 +88,11 @@ void orient_convex_side_outward(Network& network) {
 int orient_by_normals(Network& network, const TargetSpace& target) {
     const PerVertex<int> component = network.components();
     const std::vector<FacingVote> votes = facing_votes(network, target);
-    std::vector<char> open(votes.size(), 0), over(votes.size(), 0);
-    for (const auto& loop : boundary_loops(network.slot_count(), network.faces()))
-        open[static_cast<std::size_t>(component[loop.front()])] = 1;
+    std::vector<char> over(votes.size(), 0);
     int clear = 0;
     bool any_over = false;
     for (std::size_t i = 0; i < votes.size(); ++i) {
-        if (open[i] == 0 || !votes[i].is_clear()) continue;
+        if (!votes[i].open || !votes[i].is_clear()) continue;
         ++clear;
         over[i] = votes[i].against > votes[i].along ? 1 : 0;
         any_over = any_over || over[i] != 0;

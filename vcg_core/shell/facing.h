@@ -15,6 +15,7 @@ namespace neuralmesh {
 struct FacingVote {
     long long along = 0;    ///< of the points whose normals point to the side that it faces
     long long against = 0;  ///< to the other side
+    bool open = false;      ///< the component has a boundary
 
     /// More than six tenths of them point to one side.
     bool is_clear() const;

@@ -57,12 +57,8 @@ std::vector<int> Corridors::clear_faces(const Rim& rim) const {
     std::vector<int> found;
     for (std::size_t i = 0; i < rim.size(); ++i) {
         const VertexId a = rim[i], b = rim[(i + 1) % rim.size()];
-        if (!is_clear(a, b)) continue;
-        for (const int f : surface_.faces_around(a)) {
-            const Triangle& t = surface_.faces[f];
-            for (std::size_t k = 0; k < 3; ++k)
-                if (t[k] == a && t[(k + 1) % 3] == b) found.push_back(f);
-        }
+        const int face = corner_of_edge(surface_, a, b).face;
+        if (face >= 0 && is_clear(a, b)) found.push_back(face);
     }
     return found;
 }

@@ -101,12 +101,9 @@ FaceSignals face_signals(const Network& network, const Surface& surface, const s
     support.area.resize(surface.face_count());
     for (int f = 0; f < surface.face_count(); ++f) support.area[f] = area_vector(surface, f).norm() / 2;
     support.density = densities(network, surface, support);
-    const PerVertex<float>& density = support.density;
     support.expected.resize(surface.face_count());
-    for (int f = 0; f < surface.face_count(); ++f) {
-        const Triangle& face = surface.faces[f];
-        support.expected[f] = support.area[f] * (density[face[0]] + density[face[1]] + density[face[2]]) / 3;
-    }
+    for (int f = 0; f < surface.face_count(); ++f)
+        support.expected[f] = support.expected_on(surface.faces[f], support.area[f]);
     return support;
 }
 

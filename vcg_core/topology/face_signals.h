@@ -33,6 +33,10 @@ struct FaceSignals {
     PerFace<float> area;
     PerVertex<float> density;  ///< signals per area around the vertex
 
+    /// Signals that \p face, also one that the surface does not have, of this area would win.
+    float expected_on(const Triangle& face, float of_area) const {
+        return of_area * (density[face[0]] + density[face[1]] + density[face[2]]) / 3;
+    }
     Span<const Assigned> of(int face) const {
         return {signals.data() + first[face], signals.data() + first[face + 1]};
     }

@@ -169,13 +169,8 @@ std::vector<int> region_of(const Surface& surface, const FaceSignals& signals, i
 }  // namespace
 
 int face_beyond(const Surface& surface, int face, std::size_t edge) {
-    const VertexId a = surface.faces[face][edge], b = surface.faces[face][(edge + 1) % 3];
-    for (const int f : surface.faces_around(b)) {
-        const Triangle& t = surface.faces[f];
-        for (std::size_t k = 0; k < 3; ++k)
-            if (t[k] == b && t[(k + 1) % 3] == a) return f;
-    }
-    return -1;
+    const Triangle& f = surface.faces[face];
+    return corner_of_edge(surface, f[(edge + 1) % 3], f[edge]).face;
 }
 
 bool complete(const Surface& surface, const FaceSignals& signals, Membrane& membrane) {

@@ -61,8 +61,7 @@ float Surroundings::squared_distance(const Vector3& signal, const Triangle& face
 }
 
 float Surroundings::expected(const Triangle& face) const {
-    const auto& d = support_.density;
-    return area_vector(face, surface_.positions).norm() / 2 * (d[face[0]] + d[face[1]] + d[face[2]]) / 3;
+    return support_.expected_on(face, area_vector(face, surface_.positions).norm() / 2);
 }
 
 float Surroundings::cost(const std::vector<Triangle>& patch) const {
