@@ -10,8 +10,9 @@
 
 namespace neuralmesh {
 
-/// Root mean square distance of \p samples random points of \p target from their nearest faces of \p network,
-/// in the core's frame (1 is the diagonal of the bounding box). O((faces + samples) log faces) expected.
+/// Root mean square distance of \p target from the nearest faces of \p network, in the core's frame (1 is the
+/// diagonal of the bounding box): of all points, each by its weight, if \p target is a cloud of at most
+/// \p samples points; else of \p samples random ones. O((faces + samples) log faces) expected.
 /// \pre \p network has a face; samples > 0
 double rms_distance(const TargetSpace& target, const Network& network, int samples, Random& random);
 

@@ -69,6 +69,7 @@ StopReason Learner::run(int landing_signals, Progress& progress) {
 
     if (!settle(landing_signals, first, false)) return StopReason::cancelled;
     const StopReason grown = grow(second);
+    mends_notches_ = false;
     if (grown != StopReason::target_reached) return grown;
     return settle(options.settling_signals_per_vertex, third) ? grown : StopReason::cancelled;
 }
@@ -78,6 +79,7 @@ StopReason Learner::grow(Progress& progress) {
     const int begin = network().vertex_count();
     double done = 0;  // of growth; collapses do not take it back
     schedule_.begin(signals());
+    mends_notches_ = !state_.to_the_letter() && network().boundary_loop_count() > 0;
     TopologyStages stages(begin, goal);
     while (network().vertex_count() < goal) {
         learn_batch(batch_size(), [this] {
@@ -97,10 +99,18 @@ StopReason Learner::grow(Progress& progress) {
     return StopReason::target_reached;
 }
 
+void Learner::keep_boundary_signals(const std::vector<StepResult>& steps, const vcg::Point3f* signals) {
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        if (network().ring(steps[i].winner).open != 0)
+            state_.boundary_signals.add(steps[i].winner, signals[i]);
+}
+
 /// Draws and learns \p count signals. Calls \p after_signal() after the counters of each.
 template <class AfterSignal>
 void Learner::learn_batch(int count, const AfterSignal& after_signal) {
-    const std::vector<StepResult>& steps = basic_steps(stream_.take(count), count);
+    const vcg::Point3f* signals = stream_.take(count);
+    const std::vector<StepResult>& steps = basic_steps(signals, count);
+    if (mends_notches_) keep_boundary_signals(steps, signals);
     const auto draw = [&] { stream_.draw_ahead(count); };
     const auto drawing = batch_.run_in_background(draw);
     const auto last = static_cast<std::size_t>(count) - 1;
@@ -146,6 +156,7 @@ bool Learner::vertex_split() {
 
 int Learner::half_edge_collapse() {
     if (!state_.to_the_letter()) mend_boundary_faces(state_, true);
+    state_.boundary_signals.clear();
     const int removed = neuralmesh::half_edge_collapse(state_, schedule_.last_collapse());
     schedule_.collapsed(signals(), network().vertex_count());
     return removed;

@@ -96,6 +96,7 @@ public:
     bool forced() const { return forced_; }
 
 private:
+    void keep_boundary_signals(const std::vector<StepResult>& steps, const vcg::Point3f* signals);
     template <class AfterSignal>
     void learn_batch(int count, const AfterSignal& after_signal);
     StopReason grow(Progress& progress);
@@ -110,6 +111,7 @@ private:
     CreaseMeasure crease_measure_;
     GrowthSchedule schedule_;
     bool forced_ = false;
+    bool mends_notches_ = false;  ///< needs the signals that boundary vertices win
 
     SignalStream stream_;
     BasicStepBatch batch_;

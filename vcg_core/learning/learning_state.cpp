@@ -83,6 +83,7 @@ void LearningState::regularise(VertexId v) {
 }
 
 void LearningState::renumber(const std::vector<VertexId>& order) {
+    boundary_signals.clear();  // their winners get other numbers
     network.renumber(order);
     utility_counters.renumber(order);
     feature_counters.renumber(order);

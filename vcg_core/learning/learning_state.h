@@ -9,6 +9,7 @@
 
 #include "vcg_core/engine/winner_search.h"
 #include "vcg_core/learning/activity.h"
+#include "vcg_core/learning/boundary_signals.h"
 #include "vcg_core/learning/feature_counter.h"
 #include "vcg_core/learning/learner_options.h"
 #include "vcg_core/learning/utility_counter.h"
@@ -46,7 +47,8 @@ struct LearningState {
     UtilityCounters utility_counters;
     FeatureCounters feature_counters;
     Activity activity;
-    std::int64_t signals = 0;  ///< learned so far
+    BoundarySignals boundary_signals;  ///< won since the boundaries were last mended
+    std::int64_t signals = 0;          ///< learned so far
     std::int64_t splits = 0;
     std::int64_t collapses = 0;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Flattened and folded faces along a boundary.
+// Flattened and folded faces along a boundary, and its notches.
 #include "vcg_core/learning/boundary_faces.h"
 
 #include <gtest/gtest.h>
@@ -23,21 +23,21 @@ constexpr float kHeight = 0.8660254F;  ///< of an equilateral triangle
 
 LearnerOptions options() {
     LearnerOptions result;
-    result.grow_to = 100;
+    result.grow_to = 200;
     return result;
 }
 
-/// The vertices of a flat patch of equilateral triangles with edges of length 1, at most two edges from the
-/// middle.
+/// The vertices of a flat patch of equilateral triangles with edges of length 1, at most \p radius edges from
+/// the middle.
 struct Patch {
     std::vector<Point3f> positions;
     std::vector<Triangle> faces;
 
-    Patch() {
+    explicit Patch(int radius = 2) {
         std::map<std::pair<int, int>, VertexId> at;
-        for (int i = -2; i <= 2; ++i)
-            for (int j = -2; j <= 2; ++j) {
-                if (std::abs(i + j) > 2) continue;
+        for (int i = -radius; i <= radius; ++i)
+            for (int j = -radius; j <= radius; ++j) {
+                if (std::abs(i + j) > radius) continue;
                 at[{i, j}] = static_cast<VertexId>(positions.size());
                 positions.emplace_back(static_cast<float>(i) + 0.5F * static_cast<float>(j),
                                        kHeight * static_cast<float>(j), 0.0F);
@@ -77,9 +77,12 @@ int folded_faces(const Network& network) {
     return count;
 }
 
+using Signals = std::vector<std::pair<VertexId, Point3f>>;
+
 /// Mends \p network. \return the number of faces changed
-int mend(Network& network, bool may_remove) {
+int mend(Network& network, bool may_remove, const Signals& won = {}) {
     LearningState state(options(), network);
+    for (const auto& [winner, signal] : won) state.boundary_signals.add(winner, signal);
     const int changed = mend_boundary_faces(state, may_remove);
     network = state.network;
     EXPECT_EQ(network.validate(), "");
@@ -124,6 +127,74 @@ TEST(BoundaryFaces, LoseAnEarThatNoFlipUnfolds) {
     EXPECT_EQ(mend(network, true), 1);
     EXPECT_EQ(network.vertex_count(), 19);
     EXPECT_EQ(folded_faces(network), 0);
+}
+
+/// A patch with a boundary of 6 x \p radius edges. In the middle of its lowest row of faces, one face is a
+/// notch whose mouth has the width \p mouth and the middle (x, y).
+struct Notched {
+    int radius;
+    float x = radius % 2 == 0 ? -0.5F : 0.0F;
+    float y = -static_cast<float>(radius) * kHeight;
+    Patch patch{radius};
+    VertexId left = patch.nearest({x - 0.5F, y, 0});
+    VertexId right = patch.nearest({x + 0.5F, y, 0});
+
+    Network network(float mouth) const {
+        Network network = patch.network();
+        network.open_face(network.ring(left)[0] == right ? left : right);
+        network.set_position(left, {x - mouth / 2, y, 0});
+        network.set_position(right, {x + mouth / 2, y, 0});
+        return network;
+    }
+    /// A signal that the left corner has won.
+    Signals signal(float to_right, float inward, float aside = 0) const {
+        return {{left, {x + to_right, y + inward * kHeight, aside}}};
+    }
+};
+
+constexpr int kShort = 2;
+constexpr int kLong = 7;
+
+TEST(BoundaryFaces, FillAnAcuteNotch) {
+    const Notched notched{kLong};
+    Network network = notched.network(1);
+    EXPECT_EQ(mend(network, false), 1);
+    EXPECT_EQ(network.vertex_count(), static_cast<int>(notched.patch.positions.size()));
+    EXPECT_EQ(network.face_count(), static_cast<int>(notched.patch.faces.size()));
+    EXPECT_EQ(folded_faces(network), 0);
+    Network wide = notched.network(2.2F);
+    EXPECT_EQ(mend(wide, true), 0);
+}
+
+TEST(BoundaryFaces, FillANotchOfAShortBoundaryWhereItHasSignals) {
+    const Notched notched{kShort};
+    Network network = notched.network(1);
+    EXPECT_EQ(mend(network, false), 0);
+    EXPECT_EQ(mend(network, false, notched.signal(0, 0.8F)), 0) << "beside the notch itself";
+    EXPECT_EQ(mend(network, false, notched.signal(-0.3F, 0.1F)), 0) << "beside its side";
+    EXPECT_EQ(mend(network, false, notched.signal(0, -0.2F)), 0) << "beyond its mouth";
+    EXPECT_EQ(mend(network, false, notched.signal(0, 0.2F, 0.6F)), 0) << "of other surface";
+    EXPECT_EQ(mend(network, false, notched.signal(0, 0.2F, 0.1F)), 1);
+    EXPECT_EQ(network.face_count(), static_cast<int>(notched.patch.faces.size()));
+}
+
+TEST(BoundaryFaces, JoinTheSidesOfASlit) {
+    const Notched notched{kLong};
+    for (const float mouth : {0.2F, -0.2F}) {  // open, and overlapping
+        Network network = notched.network(mouth);
+        EXPECT_EQ(mend(network, false), 0) << "no vertex may be removed";
+        EXPECT_EQ(mend(network, true), 1);
+        EXPECT_EQ(network.vertex_count(), static_cast<int>(notched.patch.positions.size()) - 1);
+        EXPECT_EQ(network.face_count(), static_cast<int>(notched.patch.faces.size()) - 1);
+        EXPECT_EQ(folded_faces(network), 0);
+    }
+    Network of_short = Notched{kShort}.network(0.2F);
+    EXPECT_EQ(mend(of_short, true), 0);
+}
+
+TEST(BoundaryFaces, DoNotTakeASpikeForANotch) {
+    Network spike = Patch().with_ear(-0.5F, -4.5F * kHeight);
+    EXPECT_EQ(mend(spike, true), 0);
 }
 
 }  // namespace
