@@ -24,14 +24,14 @@ constexpr std::size_t kPointsPerCarried = 2;
 /// million from 500 points, would take all memory at once; learning takes its time and can be cancelled.
 constexpr int kMostPerCarried = 64;
 
-/// The vertices that learning and fit place by the points; the fit inserts the others, which boundaries would
-/// not let it do in any number. All, unless the surface is closed, the fit may redistribute vertices and only
-/// their number ends growth, or where there are too few points for a fit.
+/// The vertices that learning and fit place by the points; the fit inserts the others. All, unless the cloud
+/// is no sheet, the fit may redistribute vertices and only their number ends growth, or where there are too
+/// few points for a fit.
 int carried_vertices(const LearningTask& task, const Settings& settings) {
     constexpr std::size_t kFewestPoints = 256;
     const int wanted = settings.target_vertices;
     if (!settings.redistributes_vertices() || !task.encloses_space || task.target().has_faces() ||
-        task.network.boundary_loop_count() > 0 || task.target().positions().size() < kFewestPoints)
+        task.target().positions().size() < kFewestPoints)
         return wanted;
     const std::size_t carried = task.target().positions().size() / kPointsPerCarried;
     if (static_cast<std::size_t>(wanted) / kMostPerCarried > carried) return wanted;

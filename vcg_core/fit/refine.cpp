@@ -40,7 +40,7 @@ PerVertex<Vector3> vertex_normals(const Network& network) {
     return normals;
 }
 
-/// The inner edges that have \p at_least this share of the longest one's length, as splits in the middles of
+/// The edges that have \p at_least this share of the longest one's length, as splits in the middles of
 /// curves, the longest first. The gain is the squared length.
 std::vector<EdgeSplit> splits_of_edges(const Network& network, float at_least) {
     const PerVertex<Vector3> normals = vertex_normals(network);
@@ -49,8 +49,7 @@ std::vector<EdgeSplit> splits_of_edges(const Network& network, float at_least) {
     for (const VertexId a : network.vertices()) {
         const Ring& ring = network.ring(a);
         for (int i = 0; i < ring.valence; ++i) {
-            const bool on_boundary = ring.open != 0 && (i == 0 || i + 1 == ring.valence);
-            if (ring[i] < a || on_boundary) continue;
+            if (ring[i] < a) continue;
             const Vector3 p = to_eigen(network.position(a));
             const Vector3 q = to_eigen(network.position(ring[i]));
             splits.push_back(

@@ -6,11 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
+#include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/fit/fitter.h"
+#include "vcg_core/mesh/self_crossings.h"
 #include "vcg_core/reconstruct.h"
 
 namespace neuralmesh {
@@ -39,6 +42,20 @@ TEST(Refine, ReachesTheNumberAndKeepsTopologyAndVertices) {
     expect_refined(shapes::icosphere(2), 2000);
     expect_refined(shapes::torus_grid(12, 8), 1000);
     expect_refined(shapes::bipyramid(14), 1000);
+}
+
+TEST(Refine, SplitsBoundaryEdgesToo) {
+    expect_refined(shapes::grid(5, 5), 2000);
+    expect_refined(shapes::tube(8, 3), 1000);
+    Network network = referee::network_of(shapes::grid(5, 5));
+    PerVertex<VertexId> sources = own_sources(network);
+    NoProgress progress;
+    refine(network, 2000, sources, progress);
+    float longest = 0;  // a boundary edge was .25 or more; edges of an even mesh are about .024
+    for (const VertexId v : network.vertices())
+        for (const VertexId u : network.ring(v))
+            longest = std::max(longest, (network.position(u) - network.position(v)).Norm());
+    EXPECT_LT(longest, 0.06);
 }
 
 TEST(Refine, LeavesEnoughVerticesAlone) {
@@ -99,6 +116,23 @@ TEST(FewPoints, MakeASmoothMeshOfAllVerticesAskedFor) {
     EXPECT_TRUE(soundness::has_warning(mesh, "carry about 200 vertices"));
     EXPECT_LT(mesh.report.signals, 300000);
     for (const vcg::Point3d& p : mesh.positions) EXPECT_NEAR(p.Norm(), 1, 0.03);
+}
+
+TEST(FewPoints, MakeASmoothOpenMesh) {
+    const shapes::Cloud half =
+        open_shapes::cut(shapes::sphere_cloud(3000), [](const vcg::Point3d& p) { return p[2] < 0; });
+    Settings settings;
+    settings.target_vertices = 4000;
+    NoProgress progress;
+    const NeuralMesh mesh = reconstruct(soundness::target_of(half), settings, progress);
+    soundness::expect_exact(mesh, settings);
+    EXPECT_EQ(mesh.report.boundary_loops, 1);
+    EXPECT_TRUE(soundness::has_warning(mesh, "carry about"));
+    for (const vcg::Point3d& p : mesh.positions) EXPECT_NEAR(p.Norm(), 1, 0.03);
+    std::vector<vcg::Point3f> positions;
+    for (const vcg::Point3d& p : mesh.positions) positions.push_back(vcg::Point3f::Construct(p));
+    ThreadTeam team(1);
+    EXPECT_TRUE(self_crossings(Surface(Network(positions, mesh.faces)), team).empty());
 }
 
 TEST(FewPoints, EnoughPointsGiveNoWarning) {
