@@ -25,6 +25,10 @@ constexpr double kLargestShare = 0.01;      ///< of all points
 constexpr double kSmallShare = 0.002;       ///< of all points; larger groups need a wider gap
 constexpr double kMostInClumps = 0.05;      ///< of all points; above, the cloud as a whole consists of clumps
 constexpr int kNeighbours = 10;
+/// Noise as wide as the spacing fills the space between so few neighbours, also on a sheet. Larger groups
+/// have to fill the space between more of them, too.
+constexpr int kManyNeighbours = 40;
+constexpr std::size_t kLargeGroup = 320;
 constexpr double kFillsSpace = 0.08;  ///< mean surface variation; surfaces have .00 to .05, balls .11 to .17
 constexpr double kThick = 0.1;        ///< surface variation of a group as a whole
 constexpr double kGap = 2.2, kWideGap = 6;  ///< distance to the rest in the group's own spacings
@@ -68,6 +72,20 @@ std::vector<std::vector<Place>> small_groups(const NearestPoints& cloud,
     return groups;
 }
 
+/// Mean surface variation of the points of \p group with their nearest \p neighbours.
+double mean_variation(const NearestPoints& group, int neighbours) {
+    std::vector<NearestPoints::Neighbour> near;
+    std::vector<Place> places;
+    double sum = 0;
+    for (Place p = 0; p < group.size(); ++p) {
+        group.nearest(p, neighbours, near);
+        places.assign(1, p);
+        for (const NearestPoints::Neighbour& n : near) places.push_back(n.place);
+        sum += surface_variation(group, places);
+    }
+    return sum / static_cast<double>(group.size());
+}
+
 /// Is \p group a clump? Its spacing is the median distance to the tenth neighbour within it.
 bool is_clump(const NearestPoints& cloud, const std::vector<Place>& group,
               const std::vector<std::uint8_t>& out) {
@@ -75,18 +93,14 @@ bool is_clump(const NearestPoints& cloud, const std::vector<Place>& group,
     std::vector<vcg::Point3f> points;
     for (const Place p : group) points.push_back(cloud.point(p));
     const NearestPoints inner(points);
+    if (mean_variation(inner, kNeighbours) < kFillsSpace) return false;
+    if (group.size() >= kLargeGroup && mean_variation(inner, kManyNeighbours) < kFillsSpace) return false;
     std::vector<NearestPoints::Neighbour> near;
-    std::vector<Place> places;
     std::vector<float> spacings;
-    double variation = 0;
     for (Place p = 0; p < inner.size(); ++p) {
         inner.nearest(p, kNeighbours, near);
-        places.assign(1, p);
-        for (const NearestPoints::Neighbour& n : near) places.push_back(n.place);
-        variation += surface_variation(inner, places) / static_cast<double>(inner.size());
         spacings.push_back(std::sqrt(near.back().squared_distance));
     }
-    if (variation < kFillsSpace) return false;
     std::nth_element(spacings.begin(), spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2),
                      spacings.end());
     const bool small = static_cast<double>(group.size()) <= kSmallShare * static_cast<double>(cloud.size());

@@ -140,6 +140,18 @@ TEST(OutlierRemoval, KeepsABlade) {
     EXPECT_LE(found_beside_a_sphere(blade, random), 3u);
 }
 
+TEST(OutlierRemoval, KeepsASmallBentSheetUnderNoise) {
+    // Half a sphere whose noise is as wide as its points are apart.
+    Random random(1);
+    Cloud sheet;
+    while (sheet.size() < 900) {
+        const vcg::Point3f p =
+            direction(random) * (0.05F + 0.005F * static_cast<float>(shapes::signed_unit(random)));
+        if (p[2] > 0) sheet.push_back(p + vcg::Point3f(0, 0, 0.4F));
+    }
+    EXPECT_EQ(found_beside_a_sphere(sheet, random, 100000), 0U);
+}
+
 TEST(OutlierRemoval, KeepsTheRowsOfASparseView) {
     Random random(6);
     Cloud rows;  // dense along each row, ten times as far from one to the next
