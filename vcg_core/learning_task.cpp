@@ -23,8 +23,9 @@ namespace neuralmesh {
 
 namespace {
 
-/// A shell lies outside the cloud by its radius. This many signals per vertex bring it down.
-constexpr int kLandingSignals = 100;
+/// A shell lies outside the cloud by its radius. This many signals per vertex bring it down. An open start
+/// lies on the cloud, but its vertices were vertices of a finer mesh.
+constexpr int kLandingSignals = 100, kLandingSignalsOfOpen = 30;
 /// Start vertices for each one asked for, where the fit reduces them: walls of half an edge need seven
 /// (shell.h).
 constexpr int kMostPerFinal = 8, kMostStartVertices = 50000;
@@ -40,9 +41,9 @@ constexpr double kOpeningSpacings = 3, kSheetSpacings = 5;
 constexpr double kToldSpacings = 4;
 /// Planes that are thicker than this say nothing about where the cloud is open.
 constexpr double kTooThick = 0.45;
-/// An open start mesh with more handles than this share of its vertices follows gaps between the points.
-/// Scanned rooms and buildings have up to .035.
-constexpr double kMostHandles = 0.05;
+/// An open start mesh with more handles than this, or than one for so many vertices, follows gaps between the
+/// points. Scanned rooms and buildings have up to 21.
+constexpr int kMostHandles = 30, kVerticesPerHandle = 20;
 
 /// The start mesh of the paper, in the middle of the cloud, which is the origin of the core's frame.
 Network tetrahedron() {
@@ -223,7 +224,7 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const StartMesh& she
                           (target.has_faces() || may_be_open(shell, target, settings, start.spacing)) &&
                           (settings.close_holes_up_to >= 0 || start.widest_loop > widest_closed(target));
         if (open && start.thickness < kTooThick && vertices <= settings.target_vertices &&
-            start.genus <= kMostHandles * vertices)
+            start.genus <= std::min(kMostHandles, vertices / kVerticesPerHandle))
             return start;
     } catch (const InputError&) {
     }
@@ -245,7 +246,7 @@ void begin_open(LearningTask& task, OpenStart start, const Settings& settings) {
     remove_groups_without_component(task, start.outliers, start.positions);
     task.parts_faced_by_normals = start.faced_by_normals;
     task.network = Network(start.positions, start.faces);
-    task.landing_signals = kLandingSignals;
+    task.landing_signals = kLandingSignalsOfOpen;
 }
 
 std::string too_large(const StartMesh& shell, int final_vertices) {

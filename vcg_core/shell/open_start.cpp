@@ -42,7 +42,13 @@ constexpr std::size_t kManyContradictions = 20;
 /// most of them thin, and its share of the vertices is enough to show its shape.
 constexpr int kPlanesOfSheet = 40;
 constexpr float kThinPart = 0.35F, kThinShare = 0.9F;
-constexpr double kLeastPartVertices = 8;
+/// Noise makes all planes thick. Then thin is what is no thicker than so many times the median.
+constexpr float kThinOfMedian = 2, kThickestThin = 0.55F;
+constexpr double kLeastPartVertices = 3;
+
+/// Vertices asked for, for each one of the start mesh. Edges of a coarser one are wider than bays of the
+/// boundary, or parts beside it: what they span or fold there stays while the network grows.
+constexpr int kFinalPerVertex = 2;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -65,6 +71,11 @@ Enough enough_points(std::size_t points, const OpenStartOptions& options) {
     const auto carrying = static_cast<long long>(kLeastPartVertices * all / options.target_vertices);
     return {std::max<long long>(OpenStartOptions::kLeastPoints, share),
             std::max<long long>(OpenStartOptions::kLeastCloud, carrying)};
+}
+
+int wanted_vertices(std::size_t points, const OpenStartOptions& options) {
+    const auto carried = static_cast<int>(points / OpenStartOptions::kPointsPerVertex);
+    return std::min({options.max_vertices, options.target_vertices / kFinalPerVertex, carried});
 }
 
 /// \throws InputError if most planes are none
@@ -137,13 +148,14 @@ public:
     PartsThatCount(const TangentPlanes& planes, const std::vector<int>& part_of_plane, int parts,
                    const Enough& enough)
         : enough_(enough), sums_(at(parts)) {
+        const float thin = std::clamp(kThinOfMedian * planes.thickness, kThinPart, kThickestThin);
         for (std::size_t i = 0; i < part_of_plane.size(); ++i) {
             if (part_of_plane[i] < 0) continue;
             Sum& sum = sums_[at(part_of_plane[i])];
             const TangentPlane& plane = planes.planes[i];
             sum.points += plane.points;
             ++sum.planes;
-            sum.thin += plane.thickness < kThinPart && !plane.on_curve ? 1 : 0;
+            sum.thin += plane.thickness < thin && !plane.on_curve ? 1 : 0;
         }
     }
     bool operator()(int part) const {
@@ -341,7 +353,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
 
     progress(0.8, "Start mesh: reducing it");
     Network network(contour.mesh.positions, contour.mesh.faces);
-    simplify(network, std::min(options.max_vertices, options.target_vertices / 4));
+    simplify(network, wanted_vertices(points.size(), options));
     network.compact();
     orient_convex_side_outward(network);
     if (options.use_normals) result.faced_by_normals = orient_by_normals(network, target);

@@ -25,9 +25,9 @@ namespace neuralmesh {
 
 /// What the open start may cost and how it decides. The defaults were found by experiment (open_table.py).
 struct OpenStartOptions {
-    /// Wanted number of vertices: min(max_vertices, target_vertices / 4). More if the topology cannot be kept
-    /// otherwise.
-    int max_vertices = 600;
+    /// Wanted number of vertices: min(max_vertices, target_vertices / 2, points / kPointsPerVertex). More if
+    /// the topology cannot be kept otherwise.
+    int max_vertices = 50000;
     int target_vertices = 10000;
     /// Holes are filled up to this diameter of the smallest sphere around them, in the core's frame (shares
     /// of the bounding-box diagonal); negative: chosen from the spacing of the points.
@@ -46,6 +46,8 @@ struct OpenStartOptions {
     int samples = 100000;
 
     static constexpr int kLeastPoints = 20;
+    /// Fewer points do not tell where a vertex of the start mesh belongs.
+    static constexpr int kPointsPerVertex = 4;
     /// Fewer points show no boundary.
     static constexpr int kLeastCloud = 100;
     /// A cloud with a larger share of outliers is one of another kind than thought: they are to be learned.

@@ -69,8 +69,9 @@ TEST(OpenStart, HasTheTopologyOfTheSurface) {
         EXPECT_EQ(start.loops, each.loops);
         EXPECT_TRUE(start.outliers.empty());
         EXPECT_TRUE(start.warnings.empty());
-        EXPECT_LE(network.vertex_count(), 600);
-        EXPECT_LT(farthest(start, target), 0.045);
+        EXPECT_LE(network.vertex_count(), 5000) << "half of the default target";
+        EXPECT_LE(static_cast<std::size_t>(network.vertex_count()), each.cloud.size() / 4);
+        EXPECT_LT(farthest(start, target), 0.02);
     }
 }
 
@@ -84,7 +85,7 @@ TEST(OpenStart, IsSmallWhereFewVerticesAreWanted) {
     OpenStartOptions options;
     options.target_vertices = 40;
     const OpenStart start = start_of(shapes::plane_cloud(3000), options);
-    EXPECT_LE(start.positions.size(), 10U);
+    EXPECT_LE(start.positions.size(), 20U);
     EXPECT_EQ(start.loops, 1);
 }
 
@@ -179,8 +180,18 @@ TEST(OpenStart, KeepsASmallSheetButNoClump) {
     EXPECT_TRUE(start_of(sheet).outliers.empty());
     EXPECT_EQ(start_of(clump).components, 1);
     OpenStartOptions few;
-    few.target_vertices = 500;  // of which the square would get three
+    few.target_vertices = 250;  // of which the square would get two
     EXPECT_EQ(start_of(sheet, few).components, 1);
+}
+
+TEST(OpenStart, KeepsASmallSheetUnderNoise) {
+    // Noise about as wide as the points are apart, on half a sphere and on a square with .7 % of the points.
+    Cloud sheet =
+        open_shapes::cut(shapes::sphere_cloud(200000, 0.007), [](const vcg::Point3d& p) { return p[2] < 0; });
+    Random random(2);
+    for (const vcg::Point3d& p : shapes::plane_cloud(700))
+        sheet.push_back(p * 0.2 + vcg::Point3d(0, 0, 1 + 0.007 * shapes::signed_unit(random)));
+    EXPECT_EQ(start_of(sheet).components, 2);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "tests/unit/support/shell_shapes.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/base/error.h"
+#include "vcg_core/mesh/boundary_loops.h"
 #include "vcg_core/reconstruct.h"
 
 namespace neuralmesh {
@@ -158,6 +159,28 @@ TEST(OpenSurface, HasItsBoundaryWhereThePointsEnd) {
     EXPECT_NEAR(area, 1, 0.02);
     for (const vcg::Point3d& p : mesh.positions)
         for (int k = 0; k < 2; ++k) EXPECT_LT(std::abs(p[k]), 0.55);  // 1.5 mean edges beyond
+}
+
+double boundary_length(const NeuralMesh& mesh) {
+    double length = 0;
+    const auto at = [&](VertexId v) { return mesh.positions[static_cast<std::size_t>(v)]; };
+    for (const auto& loop : boundary_loops(static_cast<int>(mesh.positions.size()), mesh.faces))
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            length += (at(loop[i]) - at(loop[(i + 1) % loop.size()])).Norm();
+    return length;
+}
+
+// A start mesh too coarse for the boundary folds there.
+TEST(OpenSurface, OfFewVerticesHasABoundaryAsLongAsThatOfTheCloud) {
+    const double radius = 0.7;  // of the ball that is cut out of the tube of a torus
+    const Cloud cloud = open_shapes::cut(shapes::torus_cloud(100000), [&](const vcg::Point3d& p) {
+        return (p - vcg::Point3d(1, 0, 0.25)).Norm() > radius;
+    });
+    const NeuralMesh fine = learn(cloud, settings_with(5000, kAutomatic));
+    const NeuralMesh coarse = learn(cloud, settings_with(300, kAutomatic));
+    EXPECT_EQ(coarse.report.boundary_loops, fine.report.boundary_loops);
+    EXPECT_EQ(coarse.report.genus, fine.report.genus);
+    EXPECT_NEAR(boundary_length(coarse) / boundary_length(fine), 1, 0.1);
 }
 
 TEST(OpenSurface, OfALayerWithFacesEndsWhereTheyEnd) {
