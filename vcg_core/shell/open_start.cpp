@@ -46,9 +46,9 @@ constexpr float kThinPart = 0.35F, kThinShare = 0.9F;
 constexpr float kThinOfMedian = 2, kThickestThin = 0.55F;
 constexpr double kLeastPartVertices = 3;
 
-/// Vertices asked for, for each one of the start mesh. Edges of a coarser one are wider than bays of the
+/// Vertices of the start mesh for each one asked for. Edges of a coarser one are wider than bays of the
 /// boundary, or parts beside it: what they span or fold there stays while the network grows.
-constexpr int kFinalPerVertex = 2;
+constexpr double kStartShare = 2.0 / 3;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -75,7 +75,8 @@ Enough enough_points(std::size_t points, const OpenStartOptions& options) {
 
 int wanted_vertices(std::size_t points, const OpenStartOptions& options) {
     const auto carried = static_cast<int>(points / OpenStartOptions::kPointsPerVertex);
-    return std::min({options.max_vertices, options.target_vertices / kFinalPerVertex, carried});
+    const auto of_final = static_cast<int>(kStartShare * options.target_vertices);
+    return std::min({options.max_vertices, of_final, carried});
 }
 
 /// \throws InputError if most planes are none

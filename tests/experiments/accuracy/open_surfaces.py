@@ -106,6 +106,13 @@ def points_of(path):
     return meshes.current_mesh().vertex_matrix()
 
 
+def spacing_of(cloud, points):
+    """The median distance of the points from the nearest one at another place of the cloud, a cKDTree."""
+    apart = cloud.query(points, k=8)[0]
+    apart = np.where(apart > 0, apart, np.inf).min(1)
+    return float(np.median(apart[np.isfinite(apart)]))
+
+
 def half_of_scan(path, noise):
     points = points_of(path)
     rng = np.random.default_rng(3)
@@ -113,7 +120,7 @@ def half_of_scan(path, noise):
     learned = np.zeros(len(points), bool)
     learned[rng.choice(len(points), len(points) // 2, replace=False)] = True
     rest = points[~learned]
-    spacing = np.median(cKDTree(points).query(points[::20], k=2)[0][:, 1])
+    spacing = spacing_of(cKDTree(points), points[::20])
     return Case(points[learned], rest[rng.choice(len(rest), min(SAMPLES, len(rest)), replace=False)],
                 (points, np.empty((0, 3), int)), len(points) * 4 * spacing**2)
 

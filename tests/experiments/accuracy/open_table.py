@@ -79,7 +79,7 @@ def trimmed_poisson(cloud):
     points = cKDTree(meshes.current_mesh().vertex_matrix())
     peers.reconstruct_poisson(meshes, 0)
     vertices, faces = meshes.current_mesh().vertex_matrix(), meshes.current_mesh().face_matrix()
-    spacing = np.median(points.query(points.data[::50], k=2)[0][:, 1])
+    spacing = open_surfaces.spacing_of(points, points.data[::50])
     return vertices, faces[points.query(vertices[faces].mean(1))[0] < 4 * spacing]
 
 
