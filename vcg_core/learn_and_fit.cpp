@@ -10,6 +10,7 @@
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/learning/learner.h"
 #include "vcg_core/mesh/simplify.h"
+#include "vcg_core/thickening.h"
 
 namespace neuralmesh {
 
@@ -99,20 +100,31 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
                          stream_seed(settings.random_seed, Stream::fit), progress);
 }
 
-LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, int grow_to, int carried,
-                            MonotoneProgress& progress) {
-    PartOf learning(progress, kPrepared, settings.fit_to_points ? kLearned : 1);
-    PartOf fitting(progress, kLearned, 1);
-    Learner learner(task.target(), learner_options(task, settings, grow_to, carried), task.network);
+/// Before the fit.
+LearnedNetwork learned_by(const Learner& learner, StopReason reason) {
     LearnedNetwork result;
-    result.stop_reason = learner.run(task.landing_signals, learning);
+    result.stop_reason = reason;
     result.network = learner.network();
     result.forced = learner.forced();
     result.topology_changes = learner.topology_changes();
     result.signals = learner.signals();
     result.splits = learner.splits();
     result.collapses = learner.collapses();
+    return result;
+}
 
+LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, int grow_to, int carried,
+                            MonotoneProgress& progress) {
+    PartOf learning(progress, kPrepared, settings.fit_to_points ? kLearned : 1);
+    PartOf fitting(progress, kLearned, 1);
+    const Thickening thickening(task);
+    ThreadTeam team(thread_count(settings.threads));
+    const std::optional<TargetSpace> thicker = thickening.thicker(task, team);
+    Learner learner(thicker ? *thicker : task.target(), learner_options(task, settings, grow_to, carried),
+                    task.network);
+    const StopReason reason = learner.run(task.landing_signals, learning);
+    LearnedNetwork result = learned_by(learner, reason);
+    thickening.take_back(result.network, team);
     FitReport report;
     if (settings.fit_to_points && !progress.stopped())
         report = fit(result.network, task, settings, carried, fitting);

@@ -259,7 +259,10 @@ std::string too_large(const StartMesh& shell, int final_vertices) {
 
 void begin_closed(LearningTask& task, StartMesh shell, const Settings& settings) {
     task.warnings.insert(task.warnings.end(), shell.warnings.begin(), shell.warnings.end());
+    const double diagonal = task.target().frame().diagonal;
     remove_groups_without_component(task, shell.outliers, shell.positions);
+    for (float& length : shell.thickenings)
+        length *= static_cast<float>(diagonal / task.target().frame().diagonal);
     const auto vertices = static_cast<int>(shell.positions.size());
     if ((settings.redistributes_vertices() ? shell.fewest_vertices : vertices) > settings.target_vertices) {
         task.warnings.push_back(too_large(shell, settings.target_vertices));
@@ -267,6 +270,7 @@ void begin_closed(LearningTask& task, StartMesh shell, const Settings& settings)
         return;
     }
     task.network = Network(shell.positions, shell.faces);
+    task.thickenings = std::move(shell.thickenings);
     task.landing_signals = kLandingSignals;
     task.encloses_space = shell.encloses_space;
     task.topology_confidence = shell.confidence;

@@ -29,7 +29,8 @@ struct LearningTask {
         cleaned;       ///< without repeated points and outliers, or weighted; empty: as given
     int outliers = 0;  ///< number of points removed as such
     Network network;
-    int landing_signals = 0;  ///< per vertex, before growth, to bring a shell down to the points
+    std::vector<float> thickenings;  ///< by vertex of the network, as in StartMesh; empty: none
+    int landing_signals = 0;         ///< per vertex, before growth, to bring a shell down to the points
     /// False for a sheet that is closed: its start mesh has two layers with nothing between them.
     bool encloses_space = true;
     /// Noise of the points in mean edges of the mesh asked for (cloud_noise.h). Infinite for layers with

@@ -140,11 +140,7 @@ def test_exact_closed_and_of_the_right_topology(learned, name):
     assert ours["backward_max"] <= 3 * ours["forward_max"], "a web or a spike"
 
 
-THIN = pytest.mark.xfail(strict=True, reason="with 2,000 vertices the wall is half an edge thick, and the nearest "
-                                             "vertex to a signal may be on its other side")
-
-
-@pytest.mark.parametrize("name", ["bunny", "torus", "linked-tori", "two-spheres", pytest.param("cup", marks=THIN)])
+@pytest.mark.parametrize("name", ["bunny", "torus", "linked-tori", "two-spheres", "cup"])
 def test_does_not_cut_through_itself(learned, name):
     ours = learned(name)
     assert ours["self_intersecting_faces"] <= 0.001 * ours["faces"]

@@ -44,6 +44,8 @@ constexpr float kHalfLevel = 0.5F;
 /// Edges are this much shorter than walls and gaps are wide. With 1 some vertices land on the wrong side,
 /// with 0.6 no fewer than with this (wall_table.py).
 constexpr double kEdgeOverWidth = 0.75;
+/// Walls thinner than this, in edges of an even mesh of as many vertices as asked for, are learned thicker.
+constexpr double kThickEdges = 1.5;
 /// Points are the two sides of walls where so many of them have a layer of others opposite: with walls of 4
 /// to 7 spacings .37 at least, on single scans, rooms and facades .21 at most (wall_table.py).
 constexpr double kWalled = 0.35;
@@ -79,8 +81,10 @@ double vertices_of(const Network& network, const PerVertex<float>& lengths) {
     return count;
 }
 
-/// Reduces \p closed to \p vertices vertices, or to more where the surface is close to itself.
-void reduce(ClosedMesh& closed, const Lattice& lattice, int vertices, double most) {
+/// Reduces \p closed to \p vertices vertices, or to more, up to \p most, where the surface is close to
+/// itself. \return StartMesh::thickenings for a mesh of \p final_vertices vertices
+std::vector<float> reduce(ClosedMesh& closed, const Lattice& lattice, int vertices, double most,
+                          int final_vertices) {
     Network& network = closed.network;
     double area = 0;
     for (const VertexId v : network.vertices()) area += area_around(network, v);
@@ -90,11 +94,17 @@ void reduce(ClosedMesh& closed, const Lattice& lattice, int vertices, double mos
         local_widths(network, lattice, closed.solid, radius, static_cast<float>(even_edge / kEdgeOverWidth));
     for (const VertexId v : network.vertices()) lengths[v] *= static_cast<float>(kEdgeOverWidth);
     const double wanted = std::min(vertices_of(network, lengths), most);
-    if (wanted > kWorthwhile * vertices) {
-        simplify(network, static_cast<int>(wanted), lengths);
-    } else {
+    std::vector<float> moves;
+    if (!(wanted > kWorthwhile * vertices)) {
         simplify(network, vertices);
+        return moves;
     }
+    simplify(network, static_cast<int>(wanted), lengths);
+    const double thick = kThickEdges * std::sqrt(area / (kAreaPerVertex * final_vertices));
+    const PerVertex<float> by_vertex =
+        thickenings(network, lattice, closed.solid, radius, static_cast<float>(thick));
+    for (const VertexId v : network.vertices()) moves.push_back(by_vertex[v]);
+    return moves;
 }
 
 /// Reduces the mesh of \p closed and puts it into \p result, with its topology. \p points: their number.
@@ -110,7 +120,7 @@ void set_mesh(ClosedMesh& closed, const Lattice& lattice, std::size_t points, co
     const double most = std::min(told, static_cast<double>(options.most_vertices));
     // A sheet is nowhere far from itself.
     if (result.encloses_space && most > kWorthwhile * vertices) {
-        reduce(closed, lattice, vertices, most);
+        result.thickenings = reduce(closed, lattice, vertices, most, options.target_vertices);
     } else {
         simplify(network, vertices);
     }

@@ -71,8 +71,11 @@ struct ShellOptions {
 /// A closed, oriented, simplicial 2-manifold with valences from 3 to 12, in the core's frame.
 struct StartMesh : IndexedMesh<float> {
     int components = 0;
-    int genus = 0;                 ///< of all components together
-    int fewest_vertices = 0;       ///< that its components and handles need
+    int genus = 0;            ///< of all components together
+    int fewest_vertices = 0;  ///< that its components and handles need
+    /// How far the points below each vertex may be moved outwards while they are learned, so that the two
+    /// sides of thin walls are further from each other (local_width.h); empty: nowhere.
+    std::vector<float> thickenings;
     double confidence = 0;         ///< share of the votes for components and genus, in [0, 1]
     double radius = 0;             ///< of the ball; the mesh lies about this far outside the points
     double resolution = 0;         ///< distance of the lattice nodes

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "vcg_core/base/bits.h"
+#include "vcg_core/base/parallel_for.h"
 
 namespace neuralmesh {
 
@@ -219,6 +220,19 @@ std::optional<TargetSpace> TargetSpace::evenly(const CloudSurvey& survey) const 
     return even;
 }
 
+TargetSpace TargetSpace::moved(Move move, ThreadTeam& team) const {
+    TargetSpace result = *this;
+    if (is_exact()) {
+        result.move_ = std::move(move);
+        return result;
+    }
+    constexpr std::size_t kChunk = 512;
+    for_chunks(positions_.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) result.positions_[i] = move(positions_[i]);
+    });
+    return result;
+}
+
 vcg::Point3f TargetSpace::sample(Random& random) const {
     if (is_weighted()) {
         const std::size_t first = runs_.draw(random) * PointAreas::kRun;
@@ -226,6 +240,10 @@ vcg::Point3f TargetSpace::sample(Random& random) const {
         return positions_[first + random.below(static_cast<std::uint32_t>(points))];
     }
     if (!is_exact()) return positions_[random.below(static_cast<std::uint32_t>(positions_.size()))];
+    return move_ ? move_(draw_exact(random)) : draw_exact(random);
+}
+
+vcg::Point3f TargetSpace::draw_exact(Random& random) const {
     if (!has_faces()) return frame_.inside(sampler_(random));
     const FacePoint at = draw_from_faces(random);
     return interpolated(positions_[at.corner], positions_[at.corner + 1], positions_[at.corner + 2], at.u,

@@ -19,6 +19,7 @@
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/packed_normal.h"
 #include "vcg_core/base/random.h"
+#include "vcg_core/base/thread_team.h"
 #include "vcg_core/target/alias_table.h"
 #include "vcg_core/target/point_areas.h"
 
@@ -87,6 +88,13 @@ public:
     /// points span no surface. O(points). \pre !has_faces()
     std::optional<TargetSpace> without(const std::vector<std::uint8_t>& left_out) const;
 
+    using Move = std::function<vcg::Point3f(const vcg::Point3f&)>;
+
+    /// The same target with every signal p at \p move(p), in the same frame. The points of a cloud are moved
+    /// by this call, on the threads of \p team; signals from faces or from a sampler when they are drawn, and
+    /// positions() stays as it is. \p move is called from several threads at a time. O(points)
+    TargetSpace moved(Move move, ThreadTeam& team) const;
+
     /// The cloud without duplicate points, in the same frame, if more than a tenth of the points are exact
     /// duplicates; nothing otherwise, or for triangles. The share is estimated from samples of about 100,000
     /// points and exact for smaller clouds. O(points), or O(points log points) if duplicates are removed.
@@ -130,6 +138,7 @@ private:
         float u, v;
     };
     FacePoint draw_from_faces(Random& random) const;
+    vcg::Point3f draw_exact(Random& random) const;
 
     Frame frame_;
     bool off_centre_ = false;  ///< the origin is the centre of most points, not of the box
@@ -140,6 +149,7 @@ private:
     std::vector<Color> colors_;          ///< of the positions; may be empty
     std::vector<PackedNormal> normals_;  ///< the same
     Sampler sampler_;                    ///< may be empty
+    Move move_;                          ///< of exact signals; may be empty
 };
 
 template <class PointAt>

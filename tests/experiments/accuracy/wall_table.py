@@ -5,12 +5,13 @@
 """Meshes of things with thin walls: topology, self-intersections and errors, beside the plain chain.
 
     wall_table.py --learn LEARN [--shapes cup slab ...] [--walls .6 1 2] [--points 200000] [--noise 0]
-                  [--vertices 5000] [--seeds 1] [--chain] [parameter=value ...]
+                  [--views 10] [--vertices 5000] [--seeds 1] [--chain] [parameter=value ...]
 
 LEARN is the program tests/experiments/tools/learn.cpp. Walls are given in mean edges of an even mesh of as many
 vertices. "cut" is the share of faces that others cut, "turned" that of faces whose normal is more than 90 degrees from
 those of the surface next to them; both in %. Errors are those of evaluate.py. "plain chain" is normals, Screened Poisson
-of depth 8 and quadric edge collapse.
+of depth 8 and quadric edge collapse. With --views the points are what that many virtual views see, with the noise along
+the view; their spacing is that of as many even points.
 """
 
 import argparse
@@ -27,6 +28,7 @@ import evaluate
 import models
 import open_surfaces
 import peers
+import scans
 import wall_shapes
 
 
@@ -59,6 +61,13 @@ def measured(mesh, truth):
     return result
 
 
+def cloud_of(surface, options, seed):
+    if not options.views:
+        return models.make_cloud(*surface, options.points, options.noise, seed)
+    level = scans.Level(options.noise / 100, 0, 0, 0)
+    return scans.scan(*surface, level, views=options.views, seed=seed).points
+
+
 def learned(learn, cloud, parameters, folder):
     models.save_ply(folder / "in.ply", cloud)
     done = subprocess.run([learn, folder / "in.ply", folder / "out.ply", *parameters], capture_output=True, text=True)
@@ -81,6 +90,7 @@ def main():
     parser.add_argument("--walls", nargs="+", type=float, default=[.6, 1, 2])
     parser.add_argument("--points", type=int, default=200_000)
     parser.add_argument("--noise", type=float, default=0, help="%% of the diagonal")
+    parser.add_argument("--views", type=int, default=0, help="virtual views of 300 x 300 pixels instead of --points")
     parser.add_argument("--vertices", type=int, default=5000)
     parser.add_argument("--seeds", nargs="+", type=int, default=[1])
     parser.add_argument("--chain", action="store_true", help="the plain chain, too")
@@ -94,9 +104,9 @@ def main():
         for edges in options.walls:
             surface, wall = walled(make, edges, options.vertices)
             truth = evaluate.Truth(*surface)
-            spacings = wall / np.sqrt(open_surfaces.area_of(*surface) / options.points)
             for seed in options.seeds:
-                cloud = models.make_cloud(*surface, options.points, options.noise, seed)
+                cloud = cloud_of(surface, options, seed)
+                spacings = wall / np.sqrt(open_surfaces.area_of(*surface) / len(cloud))
                 with tempfile.TemporaryDirectory() as folder:
                     mesh, report, log = learned(
                         options.learn, cloud, [f"target_vertices={options.vertices}", f"random_seed={seed}", *parameters],

@@ -87,5 +87,51 @@ TEST(LocalWidth, IsNeverLessThanTheLatticeTells) {
     for (const float width : widths_where(foil, 0.04F, in_the_middle)) EXPECT_FLOAT_EQ(width, 0.04F);
 }
 
+struct PlateSides {
+    std::vector<float> outer, facing;
+};
+
+/// The thickenings at the two sides of the lower of two plates of \p thickness that are \p gap apart.
+PlateSides thickenings_of_plates(float thickness, float gap, float radius, float thick) {
+    constexpr float kBottom = -0.4F;
+    const Solid plates = solid_of([&](const vcg::Point3f& p) {
+        const float z = p[2] - kBottom;
+        const bool in_plate = (z > 0 && z < thickness) || (z > thickness + gap && z < 2 * thickness + gap);
+        return std::abs(p[0]) < 0.5F && std::abs(p[1]) < 0.5F && in_plate;
+    });
+    const PerVertex<float> lengths = thickenings(plates.shell, plates.lattice, plates.nodes, radius, thick);
+    PlateSides sides;
+    for (const VertexId v : plates.shell.vertices()) {
+        const vcg::Point3f& p = plates.shell.position(v);
+        const float z = p[2] - kBottom;
+        if (!in_the_middle(p) || z > thickness + gap / 2) continue;
+        (z < thickness / 2 ? sides.outer : sides.facing).push_back(lengths[v]);
+    }
+    EXPECT_FALSE(sides.outer.empty() || sides.facing.empty());
+    return sides;
+}
+
+TEST(Thickenings, FillAQuarterOfTheRoomUpToHalfTheRadius) {
+    // The wall between the points is .06 thick.
+    const PlateSides some = thickenings_of_plates(0.18F, 0.3F, 0.06F, 0.16F);
+    for (const float length : some.outer) EXPECT_NEAR(length, 0.025F, kStep / 2);
+    for (const float length : some.facing) EXPECT_NEAR(length, 0.025F, kStep / 2);
+    const PlateSides most = thickenings_of_plates(0.18F, 0.3F, 0.06F, 0.5F);
+    for (const float length : most.outer) EXPECT_EQ(length, 0.03F);
+    for (const float length : most.facing) EXPECT_EQ(length, 0.03F);
+}
+
+TEST(Thickenings, AreZeroAtThickWalls) {
+    const PlateSides plate = thickenings_of_plates(0.3F, 0.3F, 0.04F, 0.15F);
+    for (const float length : plate.outer) EXPECT_EQ(length, 0);
+    for (const float length : plate.facing) EXPECT_EQ(length, 0);
+}
+
+TEST(Thickenings, AreZeroBeforeGapsNarrowerThanTheWall) {
+    const PlateSides plate = thickenings_of_plates(0.3F, 0.1F, 0.04F, 0.5F);
+    for (const float length : plate.outer) EXPECT_GT(length, 0);
+    for (const float length : plate.facing) EXPECT_EQ(length, 0);
+}
+
 }  // namespace
 }  // namespace neuralmesh

@@ -221,6 +221,26 @@ TEST(TargetSpace, DrawsUniformlyWithinATriangle) {
               limit(cells * cells - 1));
 }
 
+TEST(TargetSpace, MovesWhatItDraws) {
+    const auto moved = [](const vcg::Point3f& p) { return p * 1.25F; };
+    const auto on_sphere = [](Random& random) {
+        const Point3d p = shapes::in_ball(random);
+        return p / p.Norm();
+    };
+    ThreadTeam team(2);
+    for (const TargetSpace& target : {target_of(shapes::sphere_cloud(2000)), target_of(shapes::cube()),
+                                      TargetSpace::drawn_by(on_sphere, 1000)}) {
+        const TargetSpace other = target.moved(moved, team);
+        EXPECT_EQ(other.frame().diagonal, target.frame().diagonal);
+        Random random(4), again(4);
+        for (int i = 0; i < 1000; ++i) ASSERT_EQ(other.sample(again), moved(target.sample(random)));
+        for (std::size_t i = 0; i < target.positions().size(); ++i) {
+            const vcg::Point3f& p = target.positions()[i];
+            ASSERT_EQ(other.positions()[i], target.is_exact() ? p : moved(p));
+        }
+    }
+}
+
 TEST(TargetSpace, RefusesFacesWithoutArea) {
     shapes::Shape flat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 1}, {2, 3, 3}}};
     try {
