@@ -72,6 +72,10 @@ constexpr double kMovedShare = 0.05;
 constexpr double kRemovedShare = 0.12;
 constexpr int kReducingPointsPerVertex = 25;
 constexpr std::size_t kMinReducingPoints = 25000;
+/// Where the points are calm and the surface is closed, this many of those held out judge as well as all:
+/// clean, bunny, koala, fandisk and rocker-arm have .99 to 1.00 of the error with 10,000. Under noise they do
+/// not: fandisk with noise of 0.3 % and 2,000 vertices has 1.18 of the error.
+constexpr std::size_t kCalmHeldOut = 3000;
 /// Attempts at a change of the connectivity. Each leaves out the vertices at which earlier ones made the
 /// surface cut itself; if all fail, nothing is changed.
 constexpr int kTries = 3;
@@ -114,10 +118,18 @@ bool Fitter::untangle_surface(Progress& progress) {
 PointsByFace Fitter::locate_points(const Surface& surface) {
     const std::vector<Hit> hits = nearest_by_tree(surface, fitted_, team_);
     if (!(outlier_distance_ > 0)) outlier_distance_ = outlier_distance(surface, hits);
-    held_out_.locate(surface, team_);
     PointsByFace points = assign(surface, hits);
+    if (is_calm(surface) && !surface.has_boundary()) held_out_.keep_at_most(kCalmHeldOut);
+    held_out_.locate(surface, team_);
     examine_layers(surface, points);
     return points;
+}
+
+bool Fitter::is_calm(const Surface& surface) const {
+    // In edges. Clean clouds come to .005 to .02 (curved faces spread their points, too), clouds with noise
+    // of .3 % of the diagonal to .12 to .17 with 2,000 vertices.
+    constexpr float kCalmNoise = 0.05F;
+    return std::sqrt(noise_variance_) < kCalmNoise * mean_edge_length(surface);
 }
 
 double Fitter::error_at(const HeldOut& held_out, const Surface& surface) const {

@@ -93,6 +93,8 @@ private:
                                   const PointsByFace& points) const;
     std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
     LeastSplitGain least_split_gain(const Surface& surface) const;
+    /// Whether the noise is small beside the edges of \p surface.
+    bool is_calm(const Surface& surface) const;
     template <class Change>
     auto guarded(const Surface& surface, const Change& change);
     void place_vertices(const Surface& surface);
