@@ -15,7 +15,7 @@ namespace neuralmesh {
 /// What the fit may change. The defaults were chosen by tests/experiments/accuracy.
 struct FitOptions {
     /// Most rounds of least squares, each with new nearest faces. 0: 20 up to 2,000 vertices, falling to 8
-    /// from 5,000 on.
+    /// from 5,000 on; 8 up to 1,000 vertices if reduce_to is set and the mesh is closed.
     int rounds = 0;
     bool flip_edges = true;
     /// Move vertices from where they matter little to where the error is large (Hoppe et al. 1993). Turn it
