@@ -27,6 +27,9 @@ constexpr float kNoisiest = 0.15F;    ///< with more noise nothing moves: planes
 constexpr float kBetter = 0.3F;       ///< largest share of the squared error of a quadratic height field ...
 constexpr float kMuchBetter = 0.04F;  ///< ... and of what noise leaves unexplained of it
 constexpr int kFewestPoints = 10;     ///< of a plane
+/// About as many points of the two-ring are used: with more the error is no smaller, and a fit of few
+/// vertices longer (tests/experiments/accuracy/compare_accuracy.py).
+constexpr int kRingPoints = 256;
 constexpr int kRefinements = 4;
 constexpr float kHopeless = 4;  ///< times the largest squared error, after which no refinement helps
 constexpr int kVerticesAtATime = 64;
@@ -121,11 +124,19 @@ private:
     void collect_points(const Vector3& vertex, float reach) {
         samples_.clear();
         reach_ = static_cast<double>(reach);
-        for (const int f : faces_)
-            for (const PointsByFace::Assignment& point : points_.of(f)) {
-                const float x = 1 + (point.point - vertex).squaredNorm() / (reach * reach);
-                samples_.push_back({point.point - vertex, point.influence / (x * x)});
+        int count = 0;
+        for (const int f : faces_) count += points_.of(f).size();
+        const int step = std::max(1, count / kRingPoints);
+        int next = 0;
+        for (const int f : faces_) {
+            const Span<const PointsByFace::Assignment> of_face = points_.of(f);
+            for (; next < of_face.size(); next += step) {
+                const Vector3 place = of_face[next].point - vertex;
+                const float x = 1 + place.squaredNorm() / (reach * reach);
+                samples_.push_back({place, of_face[next].influence / (x * x)});
             }
+            next -= of_face.size();
+        }
         for (Plane& plane : planes_) plane.point -= vertex;
     }
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "vcg_core/base/median.h"
@@ -68,14 +67,10 @@ constexpr float kSmallNoise = 0.06F;
 constexpr float kFlipVariances = 6;
 /// Share of the vertices that one redistribution may move.
 constexpr double kMovedShare = 0.05;
-/// Share of the vertices that one round of the reduction removes, and the number of points it uses.
-constexpr double kRemovedShare = 0.12;
-constexpr int kReducingPointsPerVertex = 25;
-constexpr std::size_t kMinReducingPoints = 25000;
-/// Attempts at a change of the connectivity. Each leaves out the vertices at which earlier ones made the
-/// surface cut itself; if all fail, nothing is changed. Collapses that take the place of barred ones may cut,
-/// too: with 3 attempts the reduction ended early on a cup whose walls are an edge thick.
-constexpr int kTries = 12;
+/// Where the points are calm and the surface is closed, this many of those held out judge as well as all:
+/// clean, bunny, koala, fandisk and rocker-arm have .99 to 1.00 of the error with 10,000. Under noise they do
+/// not: fandisk with noise of 0.3 % and 2,000 vertices has 1.18 of the error.
+constexpr std::size_t kCalmHeldOut = 3000;
 
 float outlier_distance(const Surface& surface, const std::vector<Hit>& hits) {
     std::vector<float> distances(hits.size());
@@ -115,10 +110,18 @@ bool Fitter::untangle_surface(Progress& progress) {
 PointsByFace Fitter::locate_points(const Surface& surface) {
     const std::vector<Hit> hits = nearest_by_tree(surface, fitted_, team_);
     if (!(outlier_distance_ > 0)) outlier_distance_ = outlier_distance(surface, hits);
-    held_out_.locate(surface, team_);
     PointsByFace points = assign(surface, hits);
+    if (is_calm(surface) && !surface.has_boundary()) held_out_.keep_at_most(kCalmHeldOut);
+    held_out_.locate(surface, team_);
     examine_layers(surface, points);
     return points;
+}
+
+bool Fitter::is_calm(const Surface& surface) const {
+    // In edges. Clean clouds come to .005 to .02 (curved faces spread their points, too), clouds with noise
+    // of .3 % of the diagonal to .12 to .17 with 2,000 vertices.
+    constexpr float kCalmNoise = 0.05F;
+    return std::sqrt(noise_variance_) < kCalmNoise * mean_edge_length(surface);
 }
 
 double Fitter::error_at(const HeldOut& held_out, const Surface& surface) const {
@@ -248,30 +251,12 @@ LeastSplitGain Fitter::least_split_gain(const Surface& surface) const {
             std::sqrt(noise_variance_) / kSmallNoise, mean_edge_length(surface)};
 }
 
-/// Carries out \p change(barred) on the network, whose surface is \p surface. If the guard objects to the
-/// result, restores the network and tries again with the vertices of the new self-crossings barred. \return
-/// the result of the last call
-template <class Change>
-auto Fitter::guarded(const Surface& surface, const Change& change) {
-    const Network before = network_;
-    PerVertex<char> barred(network_.slot_count(), 0);
-    for (int tries = 0;; ++tries) {
-        if (tries == kTries) std::fill(barred.begin(), barred.end(), 1);
-        auto done = change(barred);
-        const std::vector<VertexId> objections =
-            guard_.objections(update_self_crossings(Surface(network_), surface, guard_.accepted(), team_));
-        if (objections.empty() || tries == kTries) return done;
-        for (VertexId v : objections)
-            if (v < barred.size()) barred[v] = 1;
-        network_ = before;
-    }
-}
-
 /// Moves the starts of walks from removed vertices to the vertices they were collapsed into.
 void Fitter::redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses) {
     PerVertex<VertexId> survivor(network_.slot_count());
     std::iota(survivor.begin(), survivor.end(), 0);
-    for (const VertexMoves::DoneCollapse& collapse : collapses) survivor[collapse.gone] = collapse.into;
+    for (auto collapse = collapses.rbegin(); collapse != collapses.rend(); ++collapse)
+        survivor[collapse->gone] = survivor[collapse->into];
     for (TrackedPoints* tracked : {&fitted_, &held_out_.tracked()})
         for (WalkStart& start : tracked->last_hit) start.vertex = survivor[start.vertex];
 }
@@ -308,73 +293,6 @@ int Fitter::mend_boundary(const Surface& surface, const PointsByFace& points) {
         const int opened = open_webs(network_, surface, points, barred);
         return opened + neuralmesh::fill_notches(network_, notches, barred);
     });
-}
-
-bool Fitter::reduce_to(int vertices, Progress& progress) {
-    PartOf reducing(progress, 0, 0.9);
-    PartOf untangling(progress, 0.9, 1);
-    const int at_start = network_.vertex_count();
-    const auto stopped = [&] {
-        const int left = network_.vertex_count();
-        const std::string text = "Fitting to the points: " + std::to_string(left) + " vertices left of " +
-                                 std::to_string(at_start) + ", to come down to " + std::to_string(vertices);
-        return !reducing(static_cast<double>(at_start - left) / (at_start - vertices), text.c_str());
-    };
-    if (stopped()) return false;
-    set_points_aside();
-    Surface surface(network_);
-    PointsByFace points = locate_points(surface);
-    set_directions(surface);
-    solve(points, surface);
-    while (network_.vertex_count() > vertices) {
-        if (stopped()) return false;
-        if (surface.has_boundary() || expects_strays_)
-            points = assign_faces(surface);  // what is astray or missing is told by the surface as it is
-        else
-            points.update_feet(surface, team_);  // the next search follows once the vertices are removed
-        if (surface.has_boundary() && mend_boundary(surface, points) > 0) {
-            surface = Surface(network_);
-            points = assign_faces(surface);
-        }
-        const int max_count = std::min(network_.vertex_count() - vertices,
-                                       1 + static_cast<int>(kRemovedShare * network_.vertex_count()));
-        if (!remove_vertices(surface, points, max_count)) return false;
-        surface = Surface(network_);
-        points = assign_faces(surface);
-        set_directions(surface);
-        solve(points, surface);
-    }
-    fitted_.points.insert(fitted_.points.end(), set_aside_.points.begin(), set_aside_.points.end());
-    fitted_.weights.insert(fitted_.weights.end(), set_aside_.weights.begin(), set_aside_.weights.end());
-    set_aside_ = {};
-    sources_ = own_sources(network_);
-    return guard_.accepted().empty() || untangle_surface(untangling);
-}
-
-/// \return whether any vertex was removed
-bool Fitter::remove_vertices(const Surface& surface, const PointsByFace& points, int max_count) {
-    const std::vector<Collapse> collapses = find_collapses(network_, surface, points, team_);
-    const std::vector<VertexMoves::DoneCollapse> done = guarded(surface, [&](const PerVertex<char>& barred) {
-        return reduce(network_, collapses, max_count, barred);
-    });
-    redirect_to_survivors(done);
-    return !done.empty();
-}
-
-/// Part of the points, which are in random order, suffices for the reduction.
-void Fitter::set_points_aside() {
-    const std::size_t kept =
-        std::min(fitted_.points.size(),
-                 std::max(kMinReducingPoints, static_cast<std::size_t>(kReducingPointsPerVertex) *
-                                                  static_cast<std::size_t>(network_.vertex_count())));
-    const auto set_aside = [kept](auto& from, auto& to) {
-        if (from.empty()) return;
-        const auto rest = from.begin() + static_cast<std::ptrdiff_t>(kept);
-        to.assign(rest, from.end());
-        from.erase(rest, from.end());
-    };
-    set_aside(fitted_.points, set_aside_.points);
-    set_aside(fitted_.weights, set_aside_.weights);
 }
 
 PerVertex<VertexId> own_sources(const Network& network) {

@@ -4,6 +4,7 @@
 // The steps of the fit, on one network and its points.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "vcg_core/base/progress.h"
@@ -44,8 +45,10 @@ public:
     /// Removes self-crossings where smoothing can, and from then on lets no step add any. \return false if
     /// \p progress asks to stop; then the network is unchanged.
     bool untangle_surface(Progress& progress);
-    /// Removes the vertices whose removal costs least, in rounds that each end with a least-squares solution.
-    /// Uses part of the points. \return false if \p progress asks to stop or no more vertices can go
+    /// Removes the vertices whose removal costs least. On closed surfaces quadric errors tell which while
+    /// many more than \p vertices are left; then rounds follow that measure the costs at the points and end
+    /// with a least-squares solution each. Uses part of the points. \return false if \p progress asks to
+    /// stop or no more vertices can go
     /// \pre the network has more than \p vertices vertices
     bool reduce_to(int vertices, Progress& progress);
 
@@ -93,11 +96,18 @@ private:
                                   const PointsByFace& points) const;
     std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
     LeastSplitGain least_split_gain(const Surface& surface) const;
+    /// Whether the noise is small beside the edges of \p surface.
+    bool is_calm(const Surface& surface) const;
+    /// Carries out \p change(barred) on the network, whose surface is \p surface. If the guard objects to the
+    /// result, restores the network and tries again with the vertices of the new self-crossings barred; if
+    /// all tries fail, with all barred. \return the result of the last call
     template <class Change>
     auto guarded(const Surface& surface, const Change& change);
     void place_vertices(const Surface& surface);
     void redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses);
     void set_points_aside();
+    void collapse_by_quadrics(int vertices, Surface& surface, PointsByFace& points);
+    PointsByFace update_for_removal(Surface& surface, PointsByFace points);
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count);
 
     Network& network_;
@@ -116,6 +126,25 @@ private:
     PerVertex<VertexId> sources_;
     CrossingGuard guard_;  ///< has accepted the present surface
 };
+
+template <class Change>
+auto Fitter::guarded(const Surface& surface, const Change& change) {
+    // Collapses that take the place of barred ones may cut, too: with 3 attempts the reduction ended early on a
+    // cup whose walls are an edge thick.
+    constexpr int kTries = 12;
+    const Network before = network_;
+    PerVertex<char> barred(network_.slot_count(), 0);
+    for (int tries = 0;; ++tries) {
+        if (tries == kTries) std::fill(barred.begin(), barred.end(), 1);
+        auto done = change(barred);
+        const std::vector<VertexId> objections =
+            guard_.objections(update_self_crossings(Surface(network_), surface, guard_.accepted(), team_));
+        if (objections.empty() || tries == kTries) return done;
+        for (VertexId v : objections)
+            if (v < barred.size()) barred[v] = 1;
+        network_ = before;
+    }
+}
 
 /// The sources of a network without inserted vertices: every vertex itself, -1 for free slots.
 PerVertex<VertexId> own_sources(const Network& network);
