@@ -39,17 +39,8 @@ constexpr int kFirstRounds = 5;
 /// Rounds after the insertion of vertices that the points do not carry: by then the mesh is near the points.
 constexpr int kRefinedRounds = 4;
 
-/// 20 rounds for small meshes, where a round is cheap and every vertex counts, but 8 for the smallest closed
-/// ones that were reduced: a preview has to come at once, and 500 vertices gain nothing by more
-/// (tests/experiments/accuracy/compare_accuracy.py).
-int automatic_rounds(const Network& network, const FitOptions& options) {
-    constexpr int kFewestRounds = 8;
-    constexpr int kPreview = 1000;
-    const int vertices = network.vertex_count();
-    if (options.reduce_to > 0 && vertices <= kPreview && network.boundary_loop_count() == 0)
-        return kFewestRounds;
-    return std::min(20, std::max(kFewestRounds, 40000 / std::max(vertices, 1)));
-}
+/// 20 rounds for small meshes, where a round is cheap and every vertex counts.
+int automatic_rounds(int vertices) { return std::min(20, std::max(8, 40000 / std::max(vertices, 1))); }
 
 /// For every inserted vertex the vertex of \p before at whose place it lies: the nearest one that a walk
 /// finds from the vertex beside which it was inserted. So a counter stays where it was learned.
@@ -77,7 +68,7 @@ public:
           fitter_(fitter),
           options_(options),
           report_(report),
-          rounds_(options.rounds > 0 ? options.rounds : automatic_rounds(network, options)),
+          rounds_(options.rounds > 0 ? options.rounds : automatic_rounds(network.vertex_count())),
           at_start_(fitter.held_out()),
           best_(network) {}
 

@@ -15,15 +15,14 @@ namespace neuralmesh {
 /// What the fit may change. The defaults were chosen by tests/experiments/accuracy.
 struct FitOptions {
     /// Most rounds of least squares, each with new nearest faces. 0: 20 up to 2,000 vertices, falling to 8
-    /// from 5,000 on; 8 up to 1,000 vertices if reduce_to is set and the mesh is closed.
+    /// from 5,000 on.
     int rounds = 0;
     bool flip_edges = true;
     /// Move vertices from where they matter little to where the error is large (Hoppe et al. 1993). Turn it
     /// off for meshes whose density must follow something else than the error.
     bool redistribute = true;
-    /// Reduce the network to this number of vertices first, removing those whose removal costs least: by
-    /// quadric errors far above it on closed surfaces, else measured at the points. 0, or at least the
-    /// present number: keep it.
+    /// Reduce the network to this number of vertices first, removing those whose removal costs least. 0, or
+    /// at least the present number: keep it.
     int reduce_to = 0;
     /// Leave out stray points (stray_points.h). For clouds that had outliers: those close to the surface are
     /// still there.

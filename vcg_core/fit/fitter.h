@@ -45,10 +45,8 @@ public:
     /// Removes self-crossings where smoothing can, and from then on lets no step add any. \return false if
     /// \p progress asks to stop; then the network is unchanged.
     bool untangle_surface(Progress& progress);
-    /// Removes the vertices whose removal costs least. On closed surfaces quadric errors tell which while
-    /// many more than \p vertices are left; then rounds follow that measure the costs at the points and end
-    /// with a least-squares solution each. Uses part of the points. \return false if \p progress asks to
-    /// stop or no more vertices can go
+    /// Removes the vertices whose removal costs least, in rounds that each end with a least-squares solution.
+    /// Uses part of the points. \return false if \p progress asks to stop or no more vertices can go
     /// \pre the network has more than \p vertices vertices
     bool reduce_to(int vertices, Progress& progress);
 
@@ -106,7 +104,6 @@ private:
     void place_vertices(const Surface& surface);
     void redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses);
     void set_points_aside();
-    void collapse_by_quadrics(int vertices, Surface& surface, PointsByFace& points);
     PointsByFace update_for_removal(Surface& surface, PointsByFace points);
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count);
 
@@ -129,8 +126,8 @@ private:
 
 template <class Change>
 auto Fitter::guarded(const Surface& surface, const Change& change) {
-    // Collapses that take the place of barred ones may cut, too: with 3 attempts the reduction ended early on a
-    // cup whose walls are an edge thick.
+    // Collapses that take the place of barred ones may cut, too: with 3 attempts the reduction ended early on
+    // a cup whose walls are an edge thick.
     constexpr int kTries = 12;
     const Network before = network_;
     PerVertex<char> barred(network_.slot_count(), 0);

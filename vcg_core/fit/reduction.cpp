@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The reduction of the fit: far above the goal by quadric errors, near it by measured costs.
+// The reduction of the fit: vertices are removed by the costs that are measured at the points.
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
 #include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/fitter.h"
-#include "vcg_core/fit/quadric_collapse.h"
 
 namespace neuralmesh {
 
@@ -38,7 +36,6 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
     PointsByFace points = locate_points(surface);
     set_directions(surface);
     solve(points, surface);
-    collapse_by_quadrics(vertices, surface, points);
     while (network_.vertex_count() > vertices) {
         if (stopped()) return false;
         points = update_for_removal(surface, std::move(points));
@@ -55,24 +52,6 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
     set_aside_ = {};
     sources_ = own_sources(network_);
     return guard_.accepted().empty() || untangle_surface(untangling);
-}
-
-/// Comes down to the geometric mean of the present number and \p vertices, and solves once. From there,
-/// costs measured at the points lead to about the same error as from the start; at 500 vertices quadric
-/// errors alone have 1.03 times that error, at 10,000 coming down to 1.5 times the vertices has the least
-/// (tests/experiments/accuracy/compare_accuracy.py). Not with boundaries, whose shape quadric errors do not
-/// count, and not with points astray, which only a search on the surface as it is tells.
-void Fitter::collapse_by_quadrics(int vertices, Surface& surface, PointsByFace& points) {
-    if (surface.has_boundary() || expects_strays_) return;
-    const int goal = static_cast<int>(std::sqrt(static_cast<double>(network_.vertex_count()) * vertices));
-    const std::vector<VertexMoves::DoneCollapse> done = guarded(surface, [&](const PerVertex<char>& barred) {
-        return neuralmesh::collapse_by_quadrics(network_, goal, barred);
-    });
-    redirect_to_survivors(done);
-    surface = Surface(network_);
-    points = assign_faces(surface);
-    set_directions(surface);
-    solve(points, surface);
 }
 
 /// \return the points on the surface after the last solution, mended where it has a boundary

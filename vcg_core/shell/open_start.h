@@ -25,7 +25,7 @@ namespace neuralmesh {
 
 /// What the open start may cost and how it decides. The defaults were found by experiment (open_table.py).
 struct OpenStartOptions {
-    /// Wanted number of vertices: min(max_vertices, 2/3 target_vertices, points / kPointsPerVertex). More if
+    /// Wanted number of vertices: min(max_vertices, target_vertices / 2, points / kPointsPerVertex). More if
     /// the topology cannot be kept otherwise.
     int max_vertices = 50000;
     int target_vertices = 10000;
