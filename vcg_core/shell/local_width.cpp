@@ -89,6 +89,7 @@ PerVertex<float> thickenings(const Network& start, const Lattice& lattice, const
     const float farthest = std::max(2 * thick, 4 * radius);
     for (const VertexId v : start.vertices()) {
         const Widths at = widths_at(lattice, solid, radius, start.position(v), normals[v], farthest);
+        if (at.wall < kLeastSteps * lattice.step) continue;  // both sides may be one, as of a fin
         // Moved by a quarter of the room on either side, the wall is still no wider than the gap.
         const float room = std::max(0.0F, std::min(at.gap, thick) - at.wall);
         lengths[v] = std::min(kMostRadii * radius, room / 4);
