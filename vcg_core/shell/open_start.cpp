@@ -38,10 +38,12 @@ constexpr double kMostWithoutSurface = 0.5;
 /// So many links between planes contradict each other along a cut; fewer do at rough places.
 constexpr std::size_t kManyContradictions = 20;
 
-/// A part with fewer points than options.component_share counts if it is a sheet of at least so many planes,
-/// most of them thin, and its share of the vertices is enough to show its shape.
-constexpr int kPlanesOfSheet = 40;
-constexpr float kThinPart = 0.35F, kThinShare = 0.9F;
+/// A part with fewer points than options.component_share counts if it is a sheet of at least so many points
+/// and planes, most of them thin, and its share of the vertices is enough to show its shape. In a single view
+/// of 20,000 points a strip beside an occluded place has some hundred; clumps of outliers have fewer planes.
+constexpr int kPointsOfSheet = 60;
+constexpr int kPlanesOfSheet = 20;
+constexpr float kThinPart = 0.35F, kThinShare = 0.85F;
 /// Noise makes all planes thick. Then thin is what is no thicker than so many times the median.
 constexpr float kThinOfMedian = 2, kThickestThin = 0.55F;
 constexpr double kLeastPartVertices = 3;
@@ -71,7 +73,7 @@ Enough enough_points(std::size_t points, const OpenStartOptions& options) {
     const auto share = static_cast<long long>(options.component_share * all);
     const auto carrying = static_cast<long long>(kLeastPartVertices * all / options.target_vertices);
     return {std::max<long long>(OpenStartOptions::kLeastPoints, share),
-            std::max<long long>(OpenStartOptions::kLeastCloud, carrying)};
+            std::max<long long>(kPointsOfSheet, carrying)};
 }
 
 int wanted_vertices(std::size_t points, const OpenStartOptions& options) {
