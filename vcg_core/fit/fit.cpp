@@ -60,6 +60,13 @@ void find_sources(const Network& before, const Network& after, PerVertex<VertexI
     }
 }
 
+/// Of two steps, each with the vertex by its id before for every slot after: the same for both together.
+PerVertex<VertexId> chained(const PerVertex<VertexId>& first, PerVertex<VertexId> second) {
+    for (VertexId& v : second)
+        if (v >= 0) v = first[v];
+    return second;
+}
+
 /// The rounds of a fit and the best mesh so far.
 class FitRounds {
 public:
@@ -180,14 +187,16 @@ void refine_and_fit(Network& network, const TargetSpace& target, const FitOption
                     std::uint64_t seed, Progress& progress, FitReport& report) {
     const double learned_share = learned_share_of(network, target);
     PartOf inserting(progress, 0, 0.1);
-    report.inserted = refine(network, options.refine_to, report.sources, inserting);
+    const int inserted = refine(network, options.refine_to, NewVertices::curved, report.sources, inserting);
+    report.inserted += inserted;
     PointChoice points = points_for(network.vertex_count(), target, options, seed);
-    if (report.inserted == 0 || points.fitted.points.size() < kMinPoints) return;
+    if (inserted == 0 || points.fitted.points.size() < kMinPoints) return;
     Fitter fitter(network, std::move(points), team);
     if (options.expect_strays) fitter.expect_strays();
     PartOf untangling(progress, 0.1, 0.2);
     PartOf fitting(progress, 0.2, 1);
     if (!fitter.untangle_surface(untangling)) return;
+    report.sources = chained(report.sources, chained(fitter.origins(), own_sources(network)));
     const Network before = network;
     FitOptions of_refined = options;
     of_refined.rounds = kRefinedRounds;
@@ -218,9 +227,11 @@ FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitO
     if (!fitter.untangle_surface(untangling)) return report;
     if (reduces) {
         const bool reduced = fitter.reduce_to(vertices, reducing);
-        report.sources = own_sources(network);
+        report.sources = chained(fitter.origins(), own_sources(network));
         if (!reduced) return report;
     }
+    const PerVertex<VertexId> origins = chained(fitter.origins(), own_sources(network));
+    for (VertexId v : network.vertices()) report.inserted += origins[v] != v ? 1 : 0;
     const Network before = network;
     FitRounds rounds(network, fitter, options, report);
     rounds.run(fitting);
@@ -228,9 +239,10 @@ FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitO
     if (report.improved) {
         network = std::move(rounds.best());
         find_sources(before, network, report.sources);
+        report.sources = chained(origins, std::move(report.sources));
     } else {
         network = before;
-        report.sources = own_sources(before);
+        report.sources = origins;
     }
     return report;
 }

@@ -46,7 +46,8 @@ struct FitReport {
     int rounds = 0;
     int flips = 0;
     int moved_vertices = 0;  ///< removed in one place and inserted in another
-    int inserted = 0;        ///< vertices added because of options.refine_to
+    /// Vertices added because of options.refine_to, or for those removed with faces that cut others.
+    int inserted = 0;
     /// False: the result of the rounds was discarded. What comes before them stays: the smoothing of a mesh
     /// that cuts itself, and the reduction.
     bool improved = false;
@@ -64,7 +65,8 @@ struct FitReport {
 /// - Between rounds, vertices move to creases of the points (crease_moves.h), where flips then put edges.
 /// - What stays: components, handles, boundary loops, and the number of vertices unless options.reduce_to is
 ///   less. No face turns over, folds onto a neighbour or becomes a sliver.
-/// - Self-crossings are smoothed out first where possible; the fit adds none.
+/// - Self-crossings are smoothed out first where possible; the fit adds none. If there is a boundary, faces
+///   that still cut others are removed, the topology with them where it must be; see sound_start.h.
 /// - Outliers: the influence of a far point falls with its squared distance; with options.expect_strays,
 /// points
 ///   that are far for their surroundings have none.

@@ -18,8 +18,8 @@
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/noise.h"
 #include "vcg_core/fit/notches.h"
+#include "vcg_core/fit/sound_start.h"
 #include "vcg_core/fit/stray_points.h"
-#include "vcg_core/fit/untangle.h"
 #include "vcg_core/fit/webs.h"
 
 namespace neuralmesh {
@@ -99,11 +99,13 @@ Fitter::Fitter(Network& network, PointChoice points, ThreadTeam& team)
       team_(team),
       fitted_(std::move(points.fitted)),
       held_out_(std::move(points.held_out)),
-      sources_(own_sources(network)) {}
+      origins_(own_sources(network)),
+      sources_(origins_) {}
 
 bool Fitter::untangle_surface(Progress& progress) {
-    std::optional<std::vector<SelfCrossing>> left = untangle(network_, team_, progress);
+    std::optional<std::vector<SelfCrossing>> left = make_sound(network_, origins_, team_, progress);
     if (left) guard_ = CrossingGuard(std::move(*left));
+    sources_ = own_sources(network_);
     return left.has_value();
 }
 

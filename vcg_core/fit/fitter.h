@@ -42,7 +42,7 @@ public:
     /// From now on leaves out points that StrayPoints tells, anew with each assignment.
     void expect_strays() { expects_strays_ = true; }
 
-    /// Removes self-crossings where smoothing can, and from then on lets no step add any. \return false if
+    /// Removes self-crossings, see make_sound(), and from then on lets no step add any. \return false if
     /// \p progress asks to stop; then the network is unchanged.
     bool untangle_surface(Progress& progress);
     /// Removes the vertices whose removal costs least, in rounds that each end with a least-squares solution.
@@ -81,8 +81,12 @@ public:
     int mend_boundary(const Surface& surface, const PointsByFace& points);
 
     const HeldOut& held_out() const { return held_out_; }
-    /// For every slot of the network: itself, or for an inserted vertex one that was near it.
+    /// For every slot of the network: itself, or for a vertex inserted since untangle_surface() one that was
+    /// near it.
     const PerVertex<VertexId>& sources() const { return sources_; }
+    /// For every slot after untangle_surface(): itself, or for a vertex that it inserted one that was near
+    /// it.
+    const PerVertex<VertexId>& origins() const { return origins_; }
     float noise_variance() const { return noise_variance_; }
 
 private:
@@ -120,6 +124,7 @@ private:
     bool expects_strays_ = false;
     bool solved_ = false;  ///< vertices have moved
     BendingSearch bending_;
+    PerVertex<VertexId> origins_;
     PerVertex<VertexId> sources_;
     CrossingGuard guard_;  ///< has accepted the present surface
 };

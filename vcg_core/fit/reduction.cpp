@@ -50,8 +50,9 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
     fitted_.points.insert(fitted_.points.end(), set_aside_.points.begin(), set_aside_.points.end());
     fitted_.weights.insert(fitted_.weights.end(), set_aside_.weights.begin(), set_aside_.weights.end());
     set_aside_ = {};
+    if (!guard_.accepted().empty()) return untangle_surface(untangling);
     sources_ = own_sources(network_);
-    return guard_.accepted().empty() || untangle_surface(untangling);
+    return true;
 }
 
 /// \return the points on the surface after the last solution, mended where it has a boundary

@@ -42,7 +42,7 @@ PerVertex<Vector3> vertex_normals(const Network& network) {
 
 /// The edges that have \p at_least this share of the longest one's length, as splits in the middles of
 /// curves, the longest first. The gain is the squared length.
-std::vector<EdgeSplit> splits_of_edges(const Network& network, float at_least) {
+std::vector<EdgeSplit> splits_of_edges(const Network& network, NewVertices where, float at_least) {
     const PerVertex<Vector3> normals = vertex_normals(network);
     std::vector<EdgeSplit> splits;
     float longest = 0;
@@ -52,8 +52,10 @@ std::vector<EdgeSplit> splits_of_edges(const Network& network, float at_least) {
             if (ring[i] < a) continue;
             const Vector3 p = to_eigen(network.position(a));
             const Vector3 q = to_eigen(network.position(ring[i]));
-            splits.push_back(
-                {(p - q).squaredNorm(), a, ring[i], middle_of_curve(p, normals[a], q, normals[ring[i]])});
+            const Vector3 middle = where == NewVertices::on_edges
+                                       ? Vector3(0.5F * (p + q))
+                                       : middle_of_curve(p, normals[a], q, normals[ring[i]]);
+            splits.push_back({(p - q).squaredNorm(), a, ring[i], middle});
             longest = std::max(longest, splits.back().gain);
         }
     }
@@ -66,15 +68,17 @@ std::vector<EdgeSplit> splits_of_edges(const Network& network, float at_least) {
 
 }  // namespace
 
-int refine(Network& network, int vertices, PerVertex<VertexId>& sources, Progress& progress) {
+int refine(Network& network, int vertices, NewVertices where, PerVertex<VertexId>& sources,
+           Progress& progress) {
     const int before = network.vertex_count();
     while (network.vertex_count() < vertices) {
         const double done_share = static_cast<double>(network.vertex_count()) / vertices;
         if (!progress(done_share, "Fitting to the points: more vertices")) break;
         const int missing = vertices - network.vertex_count();
-        std::vector<VertexMoves::Insertion> done = insert(network, splits_of_edges(network, kLong), missing);
+        std::vector<VertexMoves::Insertion> done =
+            insert(network, splits_of_edges(network, where, kLong), missing);
         // The ends of the longest edges may have as many neighbours as a vertex can.
-        if (done.empty()) done = insert(network, splits_of_edges(network, 0), missing);
+        if (done.empty()) done = insert(network, splits_of_edges(network, where, 0), missing);
         if (done.empty()) break;
         sources.resize(network.slot_count(), -1);
         for (const VertexMoves::Insertion& insertion : done)

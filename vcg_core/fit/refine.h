@@ -9,11 +9,17 @@
 
 namespace neuralmesh {
 
+/// Where refine() puts the new vertices.
+enum class NewVertices {
+    on_edges,  ///< adds no self-crossing
+    curved,    ///< the surface curves by the normals at the ends of the edges
+};
+
 /// Splits inner edges of \p network, the longest first, until it has \p vertices vertices or no edge can be
-/// split. The new vertices curve the surface by the normals at the ends of the edges. \p sources, of
-/// own_sources() and FitReport, gets an entry for each new vertex: that of an end of its edge. O(n log n) for
-/// every doubling of the vertices. \p progress is asked before each pass. \return the number of vertices
-/// inserted
-int refine(Network& network, int vertices, PerVertex<VertexId>& sources, Progress& progress);
+/// split. \p sources, of own_sources() and FitReport, gets an entry for each new vertex: that of an end of
+/// its edge. O(n log n) for every doubling of the vertices. \p progress is asked before each pass. \return
+/// the number of vertices inserted
+int refine(Network& network, int vertices, NewVertices where, PerVertex<VertexId>& sources,
+           Progress& progress);
 
 }  // namespace neuralmesh

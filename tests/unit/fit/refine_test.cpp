@@ -24,7 +24,8 @@ void expect_refined(const shapes::Shape& shape, int vertices) {
     Network network = before;
     PerVertex<VertexId> sources = own_sources(network);
     NoProgress progress;
-    EXPECT_EQ(refine(network, vertices, sources, progress), vertices - before.vertex_count());
+    EXPECT_EQ(refine(network, vertices, NewVertices::curved, sources, progress),
+              vertices - before.vertex_count());
     EXPECT_EQ(network.vertex_count(), vertices);
     EXPECT_EQ(network.validate(), "");
     EXPECT_EQ(network.genus(), before.genus());
@@ -50,7 +51,7 @@ TEST(Refine, SplitsBoundaryEdgesToo) {
     Network network = referee::network_of(shapes::grid(5, 5));
     PerVertex<VertexId> sources = own_sources(network);
     NoProgress progress;
-    refine(network, 2000, sources, progress);
+    refine(network, 2000, NewVertices::curved, sources, progress);
     float longest = 0;  // a boundary edge was .25 or more; edges of an even mesh are about .024
     for (const VertexId v : network.vertices())
         for (const VertexId u : network.ring(v))
@@ -62,7 +63,7 @@ TEST(Refine, LeavesEnoughVerticesAlone) {
     Network network = referee::network_of(shapes::icosphere(2));
     PerVertex<VertexId> sources = own_sources(network);
     NoProgress progress;
-    EXPECT_EQ(refine(network, 100, sources, progress), 0);
+    EXPECT_EQ(refine(network, 100, NewVertices::curved, sources, progress), 0);
     EXPECT_EQ(network.vertex_count(), 162);
 }
 
@@ -74,7 +75,7 @@ TEST(Refine, EndsWhenProgressAsksToStop) {
     } once;
     Network network = referee::network_of(shapes::icosphere(2));
     PerVertex<VertexId> sources = own_sources(network);
-    EXPECT_GT(refine(network, 5000, sources, once), 0);
+    EXPECT_GT(refine(network, 5000, NewVertices::curved, sources, once), 0);
     EXPECT_EQ(once.calls, 2);
     EXPECT_LT(network.vertex_count(), 5000);
     EXPECT_EQ(network.validate(), "");
@@ -84,7 +85,7 @@ TEST(Refine, CurvesTheSurface) {
     Network network = referee::network_of(shapes::icosphere(1));
     PerVertex<VertexId> sources = own_sources(network);
     NoProgress progress;
-    refine(network, 500, sources, progress);
+    refine(network, 500, NewVertices::curved, sources, progress);
     for (const VertexId v : network.vertices())
         EXPECT_NEAR(network.position(v).Norm(), 1, 0.02) << "middles of edges are up to .05 inside";
 }
@@ -93,7 +94,7 @@ TEST(Refine, EvensTheEdges) {
     Network network = referee::network_of(shapes::icosphere(1));
     PerVertex<VertexId> sources = own_sources(network);
     NoProgress progress;
-    refine(network, 1000, sources, progress);
+    refine(network, 1000, NewVertices::curved, sources, progress);
     float shortest = 1;
     float longest = 0;
     for (const VertexId v : network.vertices())

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/fit/cut_faces.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "vcg_core/mesh/exact_cuts.h"
+
+namespace neuralmesh {
+
+namespace {
+
+/// Most faces that go together. A boundary that pierces a sheet does so by a few; more would be surface.
+constexpr std::size_t kMostTogether = 12;
+/// One face in so many may go in all.
+constexpr int kKeptPerGone = 10;
+
+/// By their sorted corners.
+using Faces = std::set<Triangle>;
+
+Triangle sorted(Triangle face) {
+    std::sort(face.begin(), face.end());
+    return face;
+}
+
+/// The face between neighbours i and i + 1 of \p v, sorted.
+Triangle face_at(const Network& network, VertexId v, int i) {
+    const Ring& ring = network.ring(v);
+    return sorted({v, ring[i], ring.next(i)});
+}
+
+/// The face with these corners, sorted, in the orientation of the network; nothing if there is none.
+std::optional<Triangle> find_face(const Network& network, const Triangle& corners) {
+    if (!network.alive(corners[0])) return {};
+    const Ring& ring = network.ring(corners[0]);
+    for (int i = 0; i < ring.face_count(); ++i)
+        if (face_at(network, corners[0], i) == corners) return Triangle{corners[0], ring[i], ring.next(i)};
+    return {};
+}
+
+/// The faces around \p v that are not \p gone, by the fans that they form.
+std::vector<std::vector<Triangle>> fans_left(const Network& network, VertexId v, const Faces& gone) {
+    std::vector<std::vector<Triangle>> fans;
+    const int count = network.ring(v).face_count();
+    const auto is_gone = [&](int i) { return gone.count(face_at(network, v, i)) > 0; };
+    for (int i = 0; i < count; ++i) {
+        if (is_gone(i)) continue;
+        if (i == 0 || is_gone(i - 1)) fans.emplace_back();
+        fans.back().push_back(face_at(network, v, i));
+    }
+    const bool is_cycle = network.ring(v).open == 0 && fans.size() > 1 && !is_gone(0) && !is_gone(count - 1);
+    if (is_cycle) {
+        fans.front().insert(fans.front().end(), fans.back().begin(), fans.back().end());
+        fans.pop_back();
+    }
+    return fans;
+}
+
+/// Adds to \p gone what it would cut off at the corners of its faces: all fans but the largest. \return
+/// whether there was any
+bool add_lesser_fans(const Network& network, Faces& gone) {
+    std::set<VertexId> corners;
+    for (const Triangle& face : gone) corners.insert(face.begin(), face.end());
+    const std::size_t before = gone.size();
+    for (const VertexId v : corners) {
+        std::vector<std::vector<Triangle>> fans = fans_left(network, v, gone);
+        if (fans.size() < 2) continue;
+        const auto larger = [](const auto& a, const auto& b) { return a.size() < b.size(); };
+        fans.erase(std::max_element(fans.begin(), fans.end(), larger));
+        for (const std::vector<Triangle>& fan : fans) gone.insert(fan.begin(), fan.end());
+    }
+    return gone.size() > before;
+}
+
+/// The face and all that has to go with it, so that what is left is a manifold; nothing if that is too much.
+Faces with_lesser_fans(const Network& network, const Triangle& face) {
+    Faces gone{face};
+    while (gone.size() <= kMostTogether)
+        if (!add_lesser_fans(network, gone)) return gone;
+    return {};
+}
+
+/// Whether the removal of the faces leaves the Euler characteristic: that of the faces, edges and vertices
+/// that go is 0. As the boundary of what is left changes only where they were, it leaves loops and
+/// components, too.
+bool keeps_topology(const Network& network, const Faces& gone) {
+    int euler = static_cast<int>(gone.size());
+    std::set<VertexId> corners;
+    for (const Triangle& face : gone) corners.insert(face.begin(), face.end());
+    for (const VertexId v : corners) {
+        const Ring& ring = network.ring(v);
+        const auto is_gone = [&](int i) { return gone.count(face_at(network, v, i)) > 0; };
+        bool vertex_goes = true;
+        for (int i = 0; i < ring.face_count(); ++i) vertex_goes = vertex_goes && is_gone(i);
+        euler += vertex_goes ? 1 : 0;
+        for (int i = 0; i < ring.valence; ++i) {
+            const bool has_after = ring.open == 0 || i + 1 < ring.valence;
+            const bool has_before = ring.open == 0 || i > 0;
+            const int before = i == 0 ? ring.valence - 1 : i - 1;
+            const bool edge_goes = (!has_after || is_gone(i)) && (!has_before || is_gone(before));
+            // Both its ends are corners of the faces that go.
+            euler -= edge_goes && v < ring[i] ? 1 : 0;
+        }
+    }
+    return euler == 0;
+}
+
+int corners_on_boundary(const Network& network, const Triangle& face) {
+    return static_cast<int>(
+        std::count_if(face.begin(), face.end(), [&](VertexId v) { return network.ring(v).open != 0; }));
+}
+
+float perimeter(const Network& network, const Triangle& face) {
+    const auto edge = [&](int i, int j) {
+        return (network.position(face[i]) - network.position(face[j])).Norm();
+    };
+    return edge(0, 1) + edge(1, 2) + edge(2, 0);
+}
+
+/// Whether a corner of one face is one of the other, or next to one: the surface is folded there. Else two
+/// sheets meet, and collapses would eat a hole into one of them.
+bool are_close(const Network& network, const Triangle& first, const Triangle& second) {
+    return std::any_of(first.begin(), first.end(), [&](VertexId a) {
+        return std::any_of(second.begin(), second.end(),
+                           [&](VertexId b) { return a == b || network.adjacent(a, b); });
+    });
+}
+
+/// Of two faces in a fold, collapses the shortest edge that can be collapsed. \return the number of faces
+/// removed
+int collapse_shortest(Network& network, const Triangle& first, const Triangle& second) {
+    if (!are_close(network, first, second)) return 0;
+    struct Choice {
+        float length;
+        VertexId gone, kept;
+    };
+    std::vector<Choice> choices;
+    for (const Triangle& face : {first, second})
+        for (const VertexId gone : face)
+            for (const VertexId kept : face)
+                if (gone != kept && network.can_collapse(gone, kept))
+                    choices.push_back(
+                        {(network.position(gone) - network.position(kept)).SquaredNorm(), gone, kept});
+    if (choices.empty()) return 0;
+    const auto shorter = [](const Choice& a, const Choice& b) { return a.length < b.length; };
+    const Choice best = *std::min_element(choices.begin(), choices.end(), shorter);
+    const Ring& kept = network.ring(best.kept);
+    const bool along_boundary =
+        kept.open != 0 && (kept[0] == best.gone || kept[kept.valence - 1] == best.gone);
+    network.collapse(best.gone, best.kept);
+    return along_boundary ? 1 : 2;
+}
+
+/// \return the number of faces removed with the one given by its sorted corners
+int remove_face(Network& network, const Triangle& face, Removal kind) {
+    const bool inside = corners_on_boundary(network, face) == 0;
+    if (inside && kind != Removal::inner_faces) return 0;
+    const Faces gone = with_lesser_fans(network, face);
+    if (gone.empty() || (kind == Removal::boundary_faces && !keeps_topology(network, gone))) return 0;
+    std::vector<Triangle> oriented;
+    for (const Triangle& f : gone) oriented.push_back(*find_face(network, f));
+    if (!network.can_exchange_faces(oriented, {})) return 0;
+    network.exchange_faces(oriented, {});
+    return static_cast<int>(oriented.size());
+}
+
+/// A face, or what goes with it, of every crossing whose faces are still there. \return the number of faces
+/// removed
+int remove_once(Network& network, const std::vector<SelfCrossing>& crossings, Removal kind, int most_faces) {
+    int removed = 0;
+    for (const SelfCrossing& crossing : crossings) {
+        if (removed >= most_faces) break;
+        Triangle first{crossing[0], crossing[1], crossing[2]}, second{crossing[3], crossing[4], crossing[5]};
+        if (!find_face(network, first) || !find_face(network, second)) continue;
+        const auto rank = [&](const Triangle& face) {
+            return std::pair(corners_on_boundary(network, face), perimeter(network, face));
+        };
+        if (rank(second) > rank(first)) std::swap(first, second);
+        if (kind == Removal::folds) {
+            removed += collapse_shortest(network, first, second);
+            continue;
+        }
+        const int done = remove_face(network, first, kind);
+        removed += done > 0 ? done : remove_face(network, second, kind);
+    }
+    return removed;
+}
+
+}  // namespace
+
+int remove_cut_faces(Network& network, Removal most, std::vector<SelfCrossing>& crossings, ThreadTeam& team) {
+    constexpr std::array<Removal, 4> kInOrder{Removal::boundary_faces, Removal::folds, Removal::strands,
+                                              Removal::inner_faces};
+    const int most_faces = network.face_count() / kKeptPerGone;
+    drop_apparent(Surface(network), crossings);
+    int removed = 0;
+    for (std::size_t level = 0; level < kInOrder.size() && kInOrder[level] <= most && !crossings.empty();) {
+        const Surface before(network);
+        const int now = remove_once(network, crossings, kInOrder[level], most_faces - removed);
+        removed += now;
+        level = now > 0 ? 0 : level + 1;
+        if (now == 0) continue;
+        const Surface after(network);
+        crossings = update_self_crossings(after, before, crossings, team);
+        drop_apparent(after, crossings);
+    }
+    return removed;
+}
+
+}  // namespace neuralmesh

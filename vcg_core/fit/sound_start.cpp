@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/fit/sound_start.h"
+
+#include "vcg_core/fit/cut_faces.h"
+#include "vcg_core/fit/refine.h"
+#include "vcg_core/fit/untangle.h"
+
+namespace neuralmesh {
+
+std::optional<std::vector<SelfCrossing>> make_sound(Network& network, PerVertex<VertexId>& origins,
+                                                    ThreadTeam& team, Progress& progress) {
+    std::optional<std::vector<SelfCrossing>> left = untangle(network, kGentle, team, progress);
+    if (!left || left->empty() || network.boundary_loop_count() == 0) return left;
+    NoProgress unasked;  // a stop from here on would leave fewer vertices
+    const int vertices = network.vertex_count();
+    // What keeps the topology goes before the boundary draws back, which moves vertices away from the points.
+    std::vector<SelfCrossing> cuts = *left;
+    int removed = remove_cut_faces(network, Removal::boundary_faces, cuts, team);
+    if (!cuts.empty()) {
+        cuts = *untangle(network, kThorough, team, unasked);
+        removed += remove_cut_faces(network, Removal::inner_faces, cuts, team);
+        left = self_crossings(Surface(network), team);
+    }
+    if (removed == 0) return left;
+    refine(network, vertices, NewVertices::on_edges, origins, unasked);
+    return self_crossings(Surface(network), team);
+}
+
+}  // namespace neuralmesh

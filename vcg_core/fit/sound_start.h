@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The mesh that the fit begins with: as free of self-crossings as can be.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "vcg_core/base/progress.h"
+#include "vcg_core/base/thread_team.h"
+#include "vcg_core/mesh/network.h"
+#include "vcg_core/mesh/self_crossings.h"
+
+namespace neuralmesh {
+
+/// Removes the self-crossings of \p network. On a closed surface by smoothing alone, see untangle(). If there
+/// is a boundary and some remain, also by removing faces that cut others, see remove_cut_faces(); as many
+/// vertices as go with them are inserted on the longest edges. \p origins gets an entry for each: that of an
+/// end of its edge. The result does not depend on the number of threads.
+///
+/// \param progress asked before every round of the first smoothing; if it asks to stop, the network stays
+/// unchanged
+/// \return the remaining self-crossings, sorted; nothing if stopped
+std::optional<std::vector<SelfCrossing>> make_sound(Network& network, PerVertex<VertexId>& origins,
+                                                    ThreadTeam& team, Progress& progress);
+
+}  // namespace neuralmesh
