@@ -109,7 +109,7 @@ private:
     void redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses);
     void set_points_aside();
     PointsByFace update_for_removal(Surface& surface, PointsByFace points);
-    bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count);
+    bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
 
     Network& network_;
     ThreadTeam& team_;

@@ -49,6 +49,19 @@ bool collapse_untouched(Network& network, const Collapse& collapse, PerVertex<ch
     return true;
 }
 
+/// Whether the faces around \p v and those beyond its ring are still the ones that its cost was measured on.
+/// Each corner of a face that a collapse has made is \p touched: a neighbour of the vertex that went.
+bool is_as_measured(const Network& network, VertexId v, const PerVertex<char>& touched) {
+    if (touched[v] != 0) return false;
+    const Ring& ring = network.ring(v);
+    for (int i = 0; i < ring.face_count(); ++i) {
+        if (touched[ring[i]] == 0 || touched[ring.next(i)] == 0) continue;
+        const Ring& around = network.ring(ring[i]);
+        if (touched[around.previous(around.find_existing(ring.next(i)))] != 0) return false;
+    }
+    return true;
+}
+
 /// The best splits that touch no \p touched vertex and not each other; marks their corners.
 std::vector<EdgeSplit> choose_splits(const Network& network, const std::vector<EdgeSplit>& splits,
                                      int max_count, PerVertex<char>& touched) {
@@ -110,6 +123,26 @@ std::vector<VertexMoves::DoneCollapse> reduce(Network& network, const std::vecto
     for (const Collapse& collapse : collapses) {
         if (static_cast<int>(done.size()) >= max_count || collapse.into < 0) break;
         if (collapse_untouched(network, collapse, touched)) done.push_back({collapse.gone, collapse.into});
+    }
+    return done;
+}
+
+std::vector<VertexMoves::DoneCollapse> reduce_densely(Network& network,
+                                                      const std::vector<Collapse>& collapses, int max_count,
+                                                      const PerVertex<char>& barred) {
+    PerVertex<char> touched(network.slot_count(), 0);
+    std::vector<VertexMoves::DoneCollapse> done;
+    const auto is_barred = [&](VertexId v) { return barred[v] != 0; };
+    for (const Collapse& collapse : collapses) {
+        if (static_cast<int>(done.size()) >= max_count || collapse.into < 0) break;
+        const Ring ring = network.ring(collapse.gone);
+        if (is_barred(collapse.gone) || std::any_of(ring.begin(), ring.end(), is_barred) ||
+            !is_as_measured(network, collapse.gone, touched) ||
+            !network.can_collapse(collapse.gone, collapse.into))
+            continue;
+        for (const VertexId u : ring) touched[u] = 1;
+        network.collapse(collapse.gone, collapse.into);
+        done.push_back({collapse.gone, collapse.into});
     }
     return done;
 }

@@ -41,4 +41,10 @@ std::vector<VertexMoves::Insertion> insert(Network& network, const std::vector<E
 std::vector<VertexMoves::DoneCollapse> reduce(Network& network, const std::vector<Collapse>& collapses,
                                               int max_count, const PerVertex<char>& barred);
 
+/// The same with more collapses at once: they may have neighbours in common, but none removes a vertex whose
+/// faces, or faces beyond its ring, are new. So the cost of each still holds.
+std::vector<VertexMoves::DoneCollapse> reduce_densely(Network& network,
+                                                      const std::vector<Collapse>& collapses, int max_count,
+                                                      const PerVertex<char>& barred);
+
 }  // namespace neuralmesh

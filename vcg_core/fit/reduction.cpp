@@ -13,10 +13,14 @@ namespace neuralmesh {
 
 namespace {
 
-/// Share of the vertices that one round of the reduction removes, and the number of points it uses.
+/// Largest share of the vertices that one round of the reduction removes, and the number of points it uses.
 constexpr double kRemovedShare = 0.12;
 constexpr int kReducingPointsPerVertex = 25;
 constexpr std::size_t kMinReducingPoints = 25000;
+/// With more than this many times the vertices wanted, rounds remove densely: about 12 % of the vertices
+/// instead of 8 %. Clean, bunny, koala, fandisk, block, kitten and feline then have .98, 1.01 and 1.00 of the
+/// error at 500, 1,000 and 2,000 vertices. From twice the vertices on, 10,000 would have 1.01.
+constexpr int kDenseFrom = 2;
 
 }  // namespace
 
@@ -36,12 +40,14 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
     PointsByFace points = locate_points(surface);
     set_directions(surface);
     solve(points, surface);
+    // Not where each round finds the boundary or the stray points anew.
+    const bool dense = at_start > kDenseFrom * vertices && !surface.has_boundary() && !expects_strays_;
     while (network_.vertex_count() > vertices) {
         if (stopped()) return false;
         points = update_for_removal(surface, std::move(points));
         const int max_count = std::min(network_.vertex_count() - vertices,
                                        1 + static_cast<int>(kRemovedShare * network_.vertex_count()));
-        if (!remove_vertices(surface, points, max_count)) return false;
+        if (!remove_vertices(surface, points, max_count, dense)) return false;
         surface = Surface(network_);
         points = assign_faces(surface);
         set_directions(surface);
@@ -70,10 +76,11 @@ PointsByFace Fitter::update_for_removal(Surface& surface, PointsByFace points) {
 }
 
 /// \return whether any vertex was removed
-bool Fitter::remove_vertices(const Surface& surface, const PointsByFace& points, int max_count) {
+bool Fitter::remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense) {
     const std::vector<Collapse> collapses = find_collapses(network_, surface, points, team_);
     const std::vector<VertexMoves::DoneCollapse> done = guarded(surface, [&](const PerVertex<char>& barred) {
-        return reduce(network_, collapses, max_count, barred);
+        return dense ? reduce_densely(network_, collapses, max_count, barred)
+                     : reduce(network_, collapses, max_count, barred);
     });
     redirect_to_survivors(done);
     return !done.empty();

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "tests/unit/fit/fit_scene.h"
 
@@ -159,6 +160,72 @@ TEST(Reduce, RemovesTheCheapestThatDoNotTouch) {
                 touched[u] = 1;
             }
         }
+    }
+}
+
+/// The corners of the faces around \p v and of those beyond its ring, as costs are measured on them.
+std::set<std::array<VertexId, 3>> measured_faces(const Network& network, VertexId v) {
+    std::set<std::array<VertexId, 3>> faces;
+    const auto add = [&](VertexId a, VertexId b, VertexId c) {
+        std::array<VertexId, 3> corners{a, b, c};
+        std::sort(corners.begin(), corners.end());
+        faces.insert(corners);
+    };
+    const Ring& ring = network.ring(v);
+    for (int i = 0; i < ring.valence; ++i) {
+        const Ring& around = network.ring(ring[i]);
+        add(v, ring[i], ring.next(i));
+        add(ring[i], ring.next(i), around.previous(around.find(ring.next(i))));
+    }
+    return faces;
+}
+
+TEST(ReduceDensely, RemovesOnlyWhatIsAsMeasured) {
+    const FitScene scene = cube_scene();
+    ThreadTeam team(1);
+    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
+    const PerVertex<char> none(scene.network.slot_count(), 0);
+    for (int max_count : {1, 20, 10000}) {
+        Network network = scene.network;
+        const auto done = reduce_densely(network, collapses, max_count, none);
+        EXPECT_EQ(network.validate(), "");
+        EXPECT_EQ(network.genus(), 0);
+        EXPECT_LE(static_cast<int>(done.size()), max_count);
+        EXPECT_EQ(network.vertex_count(), scene.network.vertex_count() - static_cast<int>(done.size()));
+        EXPECT_EQ(done.front().gone, collapses.front().gone);
+        Network again = scene.network;
+        for (const VertexMoves::DoneCollapse& collapse : done) {
+            EXPECT_EQ(measured_faces(again, collapse.gone), measured_faces(scene.network, collapse.gone));
+            ASSERT_TRUE(again.can_collapse(collapse.gone, collapse.into));
+            again.collapse(collapse.gone, collapse.into);
+        }
+        EXPECT_EQ(again.faces(), network.faces());
+    }
+}
+
+TEST(ReduceDensely, RemovesMoreThanCollapsesThatDoNotTouch) {
+    const FitScene scene = cube_scene();
+    ThreadTeam team(1);
+    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
+    const PerVertex<char> none(scene.network.slot_count(), 0);
+    Network apart = scene.network;
+    Network dense = scene.network;
+    const std::size_t fewer = reduce(apart, collapses, 10000, none).size();
+    EXPECT_GT(reduce_densely(dense, collapses, 10000, none).size(), fewer + fewer / 4);
+}
+
+TEST(ReduceDensely, LeavesBarredVerticesAlone) {
+    const FitScene scene = cube_scene();
+    ThreadTeam team(1);
+    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
+    PerVertex<char> barred(scene.network.slot_count(), 0);
+    for (VertexId v = 0; v < barred.size(); v += 7) barred[v] = 1;
+    Network network = scene.network;
+    EXPECT_FALSE(reduce_densely(network, collapses, 10000, barred).empty());
+    EXPECT_EQ(network.validate(), "");
+    for (VertexId v = 0; v < barred.size(); v += 7) {
+        ASSERT_TRUE(network.alive(v));
+        EXPECT_EQ(network.ring(v).valence, scene.network.ring(v).valence);
     }
 }
 
