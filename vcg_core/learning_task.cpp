@@ -169,7 +169,7 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, P
     options.target_vertices = settings.target_vertices;
     options.close_holes_up_to = settings.close_holes_up_to / target.frame().diagonal;
     options.learn_outliers = !settings.remove_outliers;
-    if (settings.surface == kAutomatic && settings.close_holes_up_to < 0)
+    if (settings.surface != kOpenSurface && settings.close_holes_up_to < 0)
         options.closed_up_to = widest_closed(target);
     options.use_normals = settings.use_normals;
     Random random(stream_seed(settings.random_seed, Stream::shell));
@@ -211,8 +211,14 @@ void warn_of_thin_walls(LearningTask& task, const LayerFigures& layers, const ch
     task.warnings.push_back(text.str());
 }
 
-/// The start mesh of one layer of a cloud that may be open; nothing if the cloud has none that learning can
-/// begin with, or if it is closed and its shell is the better start.
+/// Whether the start mesh of one layer is closed where the shell found no space: balls that do not get
+/// through the widest gap between the points are as wide as the walls there.
+bool encloses_more(const OpenStart& start, const StartMesh& shell) {
+    return start.loops == 0 && !start.layers.are_two() && !shell.encloses_space;
+}
+
+/// The start mesh of one layer of a cloud that may be open, or whose shell encloses no space; nothing if the
+/// cloud has none that learning can begin with, or if its shell is the better start.
 std::optional<OpenStart> try_open_start(LearningTask& task, const StartMesh& shell, const Settings& settings,
                                         Progress& progress) {
     const TargetSpace& target = task.target();
@@ -220,10 +226,11 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const StartMesh& she
         OpenStart start = make_open_start(target, settings, progress);
         warn_of_thin_walls(task, start.layers, shell.encloses_space ? kSidesMayCross : kOneSheetClosed);
         const auto vertices = static_cast<int>(start.positions.size());
-        const bool open = start.loops > 0 && !start.layers.are_two() &&
+        const bool open = settings.surface == kAutomatic && start.loops > 0 && !start.layers.are_two() &&
                           (target.has_faces() || may_be_open(shell, target, settings, start.spacing)) &&
                           (settings.close_holes_up_to >= 0 || start.widest_loop > widest_closed(target));
-        if (open && start.thickness < kTooThick && vertices <= settings.target_vertices &&
+        if ((open || encloses_more(start, shell)) && start.thickness < kTooThick &&
+            vertices <= settings.target_vertices &&
             start.genus <= std::min(kMostHandles, vertices / kVerticesPerHandle))
             return start;
     } catch (const InputError&) {
@@ -320,7 +327,8 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
     PartOf closing(progress, 0, kShellMade);
     PartOf opening(progress, kShellMade, 1);
     StartMesh shell = make_shell(task.target(), settings, closing);
-    if (settings.surface == kAutomatic && may_be_open(shell, task.target(), settings, 0)) {
+    const bool may_open = settings.surface == kAutomatic && may_be_open(shell, task.target(), settings, 0);
+    if (may_open || !shell.encloses_space) {
         std::optional<OpenStart> start = try_open_start(task, shell, settings, opening);
         if (start) {
             begin_open(task, std::move(*start), settings);

@@ -46,6 +46,29 @@ inline Cloud helix(int count) {
     return cloud;
 }
 
+/// The upright wall, .1 thick, of a tube of radius .5 and length 1, with a gap half as wide as the wall on
+/// the inside: a ball that cannot pass the gap does not fit into the wall.
+inline Cloud tube_with_gap(int count) {
+    constexpr double kOuter = 0.5, kInner = 0.4, kGap = 0.05;
+    const vcg::Point3d gap(kInner, 0, 0.5);
+    Random random(1);
+    const auto unit = [&] { return static_cast<double>(random.unit()); };
+    Cloud cloud;
+    while (static_cast<int>(cloud.size()) < count) {
+        const double angle = 2 * shapes::kPi * unit();
+        // By area: the sides by their radii, the two ends by half the difference of the squares.
+        const double part = (kOuter + kInner + kOuter * kOuter - kInner * kInner) * unit();
+        double radius = part < kOuter ? kOuter : kInner, height = unit();
+        if (part > kOuter + kInner) {
+            radius = std::sqrt(kInner * kInner + unit() * (kOuter * kOuter - kInner * kInner));
+            height = height < 0.5 ? 0 : 1;
+        }
+        const vcg::Point3d p(radius * std::cos(angle), radius * std::sin(angle), height);
+        if ((p - gap).Norm() > kGap) cloud.push_back(p);
+    }
+    return cloud;
+}
+
 struct Case {
     std::string name;
     Cloud cloud;

@@ -50,6 +50,18 @@ TEST(OpenSurface, ComesOutWithItsTopologyAndExactlyAsManyVertices) {
     }
 }
 
+TEST(OpenSurface, IsTheStartOfWallsWithGapsAsWideAsTheyAreThick) {
+    const Cloud cloud = open_shapes::tube_with_gap(66000);
+    for (const int surface : {kAutomatic, kClosedSurface}) {
+        const NeuralMesh mesh = learn(cloud, settings_with(1500, surface));
+        EXPECT_EQ(mesh.report.components, 1);
+        EXPECT_EQ(mesh.report.genus, 1);
+        EXPECT_EQ(mesh.report.boundary_loops, 0);
+        EXPECT_LT(mesh.report.rms_error, 0.1);
+        EXPECT_FALSE(has_warning(mesh, "enclose no space"));
+    }
+}
+
 TEST(OpenSurface, IsChosenWhereTheCloudEnclosesNoSpace) {
     for (const Case& each : open_shapes::cases()) {
         SCOPED_TRACE(each.name);
