@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <set>
 #include <utility>
@@ -135,24 +136,23 @@ bool are_close(const Network& network, const Triangle& first, const Triangle& se
 /// removed
 int collapse_shortest(Network& network, const Triangle& first, const Triangle& second) {
     if (!are_close(network, first, second)) return 0;
-    struct Choice {
-        float length;
-        VertexId gone, kept;
-    };
-    std::vector<Choice> choices;
+    float shortest = HUGE_VALF;
+    VertexId best_gone = -1, best_kept = -1;
     for (const Triangle& face : {first, second})
         for (const VertexId gone : face)
-            for (const VertexId kept : face)
-                if (gone != kept && network.can_collapse(gone, kept))
-                    choices.push_back(
-                        {(network.position(gone) - network.position(kept)).SquaredNorm(), gone, kept});
-    if (choices.empty()) return 0;
-    const auto shorter = [](const Choice& a, const Choice& b) { return a.length < b.length; };
-    const Choice best = *std::min_element(choices.begin(), choices.end(), shorter);
-    const Ring& kept = network.ring(best.kept);
+            for (const VertexId kept : face) {
+                if (gone == kept) continue;
+                const float length = (network.position(gone) - network.position(kept)).SquaredNorm();
+                if (!(length < shortest) || !network.can_collapse(gone, kept)) continue;
+                shortest = length;
+                best_gone = gone;
+                best_kept = kept;
+            }
+    if (best_gone < 0) return 0;
+    const Ring& kept = network.ring(best_kept);
     const bool along_boundary =
-        kept.open != 0 && (kept[0] == best.gone || kept[kept.valence - 1] == best.gone);
-    network.collapse(best.gone, best.kept);
+        kept.open != 0 && (kept[0] == best_gone || kept[kept.valence - 1] == best_gone);
+    network.collapse(best_gone, best_kept);
     return along_boundary ? 1 : 2;
 }
 
@@ -197,17 +197,17 @@ int remove_cut_faces(Network& network, Removal most, std::vector<SelfCrossing>& 
     constexpr std::array<Removal, 4> kInOrder{Removal::boundary_faces, Removal::folds, Removal::strands,
                                               Removal::inner_faces};
     const int most_faces = network.face_count() / kKeptPerGone;
-    drop_apparent(Surface(network), crossings);
+    Surface surface(network);
+    drop_apparent(surface, crossings);
     int removed = 0;
     for (std::size_t level = 0; level < kInOrder.size() && kInOrder[level] <= most && !crossings.empty();) {
-        const Surface before(network);
         const int now = remove_once(network, crossings, kInOrder[level], most_faces - removed);
         removed += now;
         level = now > 0 ? 0 : level + 1;
         if (now == 0) continue;
-        const Surface after(network);
-        crossings = update_self_crossings(after, before, crossings, team);
-        drop_apparent(after, crossings);
+        const Surface before = std::exchange(surface, Surface(network));
+        crossings = update_self_crossings(surface, before, crossings, team);
+        drop_apparent(surface, crossings);
     }
     return removed;
 }

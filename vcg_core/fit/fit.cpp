@@ -225,12 +225,10 @@ FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitO
     PartOf reducing(progress, 0.1, 0.5);
     PartOf fitting(progress, reduces ? 0.5 : 0.1, 1);
     if (!fitter.untangle_surface(untangling)) return report;
-    if (reduces) {
-        const bool reduced = fitter.reduce_to(vertices, reducing);
-        report.sources = chained(fitter.origins(), own_sources(network));
-        if (!reduced) return report;
-    }
+    const bool reduced = !reduces || fitter.reduce_to(vertices, reducing);
     const PerVertex<VertexId> origins = chained(fitter.origins(), own_sources(network));
+    report.sources = origins;
+    if (!reduced) return report;
     for (VertexId v : network.vertices()) report.inserted += origins[v] != v ? 1 : 0;
     const Network before = network;
     FitRounds rounds(network, fitter, options, report);

@@ -40,8 +40,8 @@ PerVertex<Vector3> vertex_normals(const Network& network) {
     return normals;
 }
 
-/// The edges that have \p at_least this share of the longest one's length, as splits in the middles of
-/// curves, the longest first. The gain is the squared length.
+/// The edges that have \p at_least this share of the longest one's length, as splits in the
+/// middle, the longest first. The gain is the squared length.
 std::vector<EdgeSplit> splits_of_edges(const Network& network, NewVertices where, float at_least) {
     const PerVertex<Vector3> normals = vertex_normals(network);
     std::vector<EdgeSplit> splits;

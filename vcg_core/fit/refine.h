@@ -15,7 +15,7 @@ enum class NewVertices {
     curved,    ///< the surface curves by the normals at the ends of the edges
 };
 
-/// Splits inner edges of \p network, the longest first, until it has \p vertices vertices or no edge can be
+/// Splits edges of \p network, the longest first, until it has \p vertices vertices or no edge can be
 /// split. \p sources, of own_sources() and FitReport, gets an entry for each new vertex: that of an end of
 /// its edge. O(n log n) for every doubling of the vertices. \p progress is asked before each pass. \return
 /// the number of vertices inserted

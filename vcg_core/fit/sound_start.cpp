@@ -17,13 +17,12 @@ std::optional<std::vector<SelfCrossing>> make_sound(Network& network, PerVertex<
     const int vertices = network.vertex_count();
     // What keeps the topology goes before the boundary draws back, which moves vertices away from the points.
     std::vector<SelfCrossing> cuts = *left;
-    int removed = remove_cut_faces(network, Removal::boundary_faces, cuts, team);
+    const int removed = remove_cut_faces(network, Removal::boundary_faces, cuts, team);
+    if (removed == 0 && cuts.empty()) return left;  // all of them are apparent
     if (!cuts.empty()) {
         cuts = *untangle(network, kThorough, team, unasked);
-        removed += remove_cut_faces(network, Removal::inner_faces, cuts, team);
-        left = self_crossings(Surface(network), team);
+        remove_cut_faces(network, Removal::inner_faces, cuts, team);
     }
-    if (removed == 0) return left;
     refine(network, vertices, NewVertices::on_edges, origins, unasked);
     return self_crossings(Surface(network), team);
 }
