@@ -62,7 +62,7 @@ void remove_repeated_points(LearningTask& task) {
                             std::to_string(all) + " points repeat others: every place was learned once.");
 }
 
-StartMesh make_shell(const TargetSpace& target, const Settings& settings, Progress& progress) {
+Shell make_shell(const TargetSpace& target, const Settings& settings, Progress& progress) {
     ShellOptions options;
     options.target_vertices = settings.target_vertices;
     // Without the fit, which takes vertices away again, more of them at the start would leave none to split.
@@ -71,7 +71,7 @@ StartMesh make_shell(const TargetSpace& target, const Settings& settings, Progre
     options.threads = settings.threads;
     options.learn_outliers = !settings.remove_outliers;
     Random random(stream_seed(settings.random_seed, Stream::shell));
-    return shell_of(target, options, random, progress);
+    return Shell(target, options, random, progress);
 }
 
 std::string share_of(std::size_t part, std::size_t all) {
@@ -179,7 +179,7 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, P
 /// Whether the cloud may be open: the shell closed wide openings, or a part of it has no space inside, and is
 /// no thin wall. A layer with faces is open where they end.
 /// \param spacing of the points, 0 if it is not known yet
-bool may_be_open(const StartMesh& shell, const TargetSpace& target, const Settings& settings,
+bool may_be_open(const Enclosure& shell, const TargetSpace& target, const Settings& settings,
                  double spacing) {
     const bool chosen = settings.close_holes_up_to >= 0;
     const double asked = settings.close_holes_up_to / target.frame().diagonal;
@@ -213,13 +213,13 @@ void warn_of_thin_walls(LearningTask& task, const LayerFigures& layers, const ch
 
 /// Whether the start mesh of one layer is closed where the shell found no space: balls that do not get
 /// through the widest gap between the points are as wide as the walls there.
-bool encloses_more(const OpenStart& start, const StartMesh& shell) {
+bool encloses_more(const OpenStart& start, const Enclosure& shell) {
     return start.loops == 0 && !start.layers.are_two() && !shell.encloses_space;
 }
 
 /// The start mesh of one layer of a cloud that may be open, or whose shell encloses no space; nothing if the
 /// cloud has none that learning can begin with, or if its shell is the better start.
-std::optional<OpenStart> try_open_start(LearningTask& task, const StartMesh& shell, const Settings& settings,
+std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& shell, const Settings& settings,
                                         Progress& progress) {
     const TargetSpace& target = task.target();
     try {
@@ -326,16 +326,18 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
     }
     PartOf closing(progress, 0, kShellMade);
     PartOf opening(progress, kShellMade, 1);
-    StartMesh shell = make_shell(task.target(), settings, closing);
-    const bool may_open = settings.surface == kAutomatic && may_be_open(shell, task.target(), settings, 0);
-    if (may_open || !shell.encloses_space) {
-        std::optional<OpenStart> start = try_open_start(task, shell, settings, opening);
+    const Shell shell = make_shell(task.target(), settings, closing);
+    const Enclosure& enclosure = shell.enclosure();
+    const bool may_open =
+        settings.surface == kAutomatic && may_be_open(enclosure, task.target(), settings, 0);
+    if (may_open || !enclosure.encloses_space) {
+        std::optional<OpenStart> start = try_open_start(task, enclosure, settings, opening);
         if (start) {
             begin_open(task, std::move(*start), settings);
             return;
         }
     }
-    begin_closed(task, std::move(shell), settings);
+    begin_closed(task, shell.mesh(closing), settings);
 }
 
 }  // namespace

@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/even_mesh.h"
@@ -131,17 +133,21 @@ void set_mesh(ClosedMesh& closed, const Lattice& lattice, std::size_t points, co
 
 /// Sets the figures that the lattice and the vote give.
 void set_figures(const LatticeSurvey& survey, int level, StartMesh& result) {
-    const Region& region = survey.chosen_region();
     result.confidence = survey.vote.confidence;
-    result.resolution = static_cast<double>(region.lattice.step);
+    result.resolution = static_cast<double>(survey.chosen_region().lattice.step);
     result.radius = result.resolution * std::sqrt(static_cast<double>(level));
-    result.widest_opening = region.widest_opening;
 }
 
-/// Whether the points lie on the two sides of walls too thin for the lattice to show the space between them.
-bool is_walled(const std::vector<LayerPlace>& places, const StartMesh& start) {
-    if (start.encloses_space && start.sheet_share <= kMostSheet) return false;
-    return share_with_opposite_layer(places) > kWalled;
+Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace>& places) {
+    Enclosure result;
+    result.encloses_space = survey.chosen_region().encloses_space;
+    result.sheet_share = sheet_share(survey.regions.front());
+    result.widest_opening = survey.chosen_region().widest_opening;
+    // Where the lattice shows no space, the points may lie on the two sides of walls too thin for it.
+    const bool unclear = !result.encloses_space || result.sheet_share > kMostSheet;
+    result.walled = unclear && share_with_opposite_layer(places) > kWalled;
+    result.encloses_space |= result.walled;
+    return result;
 }
 
 void set_outliers(const TargetSpace& target, const std::vector<Point3f>& points, const Region& region,
@@ -178,32 +184,49 @@ void warn_of_open_surface(StartMesh& result) {
 
 }  // namespace
 
-StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Random& random,
-                   Progress& progress) {
+struct Shell::Examined {
+    const TargetSpace& target;
+    const ShellOptions options;
+    const StartPoints start_points;
+    LatticeSurvey survey;
+    Enclosure enclosure;
+
+    Examined(const TargetSpace& of, const ShellOptions& chosen, Random& random)
+        : target(of), options(chosen), start_points(of, chosen.samples, random) {}
+};
+
+Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress) {
     check(options);
     progress(0.0, "Start mesh: measuring the density of the cloud");
-    const StartPoints start_points(target, options.samples, random);
-    const std::vector<Point3f>& points = start_points.all();
+    auto examined = std::make_unique<Examined>(target, options, random);
+    const std::vector<Point3f>& points = examined->start_points.all();
     const Box3f box = main_box(points);
 
     progress(0.2, "Start mesh: counting components and handles");
     const std::vector<LayerPlace> places = layer_places(CloudSurvey(points, options.threads));
-    const LatticeSurvey survey = survey_lattices(points, places, box, options);
-    const Region& region = survey.chosen_region();
+    examined->survey = survey_lattices(points, places, box, options);
+    examined->enclosure = enclosure_of(examined->survey, places);
+    examined_ = std::move(examined);
+}
 
+Shell::~Shell() = default;
+
+const Enclosure& Shell::enclosure() const { return examined_->enclosure; }
+
+StartMesh Shell::mesh(Progress& progress) const {
     progress(0.7, "Start mesh: building the mesh");
+    const std::vector<Point3f>& points = examined_->start_points.all();
+    const LatticeSurvey& survey = examined_->survey;
+    const Region& region = survey.chosen_region();
     ClosedMesh closed = closed_mesh(region, survey.vote);
     if (closed.network.vertex_count() == 0)
         throw InputError(
             "No part of the cloud holds enough points for a start mesh around it. Choose the tetrahedron as start mesh, or remove scattered points first.");
     StartMesh result;
-    result.encloses_space = region.encloses_space;
-    result.sheet_share = sheet_share(survey.regions.front());
-    result.walled = is_walled(places, result);
-    result.encloses_space |= result.walled;
-    set_mesh(closed, region.lattice, points.size(), options, result);
+    static_cast<Enclosure&>(result) = examined_->enclosure;
+    set_mesh(closed, region.lattice, points.size(), examined_->options, result);
     set_figures(survey, closed.level, result);
-    set_outliers(target, points, region, closed, options.learn_outliers, result);
+    set_outliers(examined_->target, points, region, closed, examined_->options.learn_outliers, result);
     warn_of_uncertain_topology(survey, result);
     warn_of_open_surface(result);
     const std::string outliers =
@@ -212,6 +235,11 @@ StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Rando
     if (!outliers.empty()) result.warnings.push_back(outliers);
     progress(1.0, "Start mesh: done");
     return result;
+}
+
+StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Random& random,
+                   Progress& progress) {
+    return Shell(target, options, random, progress).mesh(progress);
 }
 
 }  // namespace neuralmesh

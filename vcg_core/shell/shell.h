@@ -23,6 +23,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -68,8 +69,16 @@ struct ShellOptions {
     static constexpr double kMaxOutlierShare = 0.1;
 };
 
+/// What the lattices say of the space that the cloud encloses.
+struct Enclosure {
+    bool encloses_space = true;  ///< false for a sheet or a single scan: the mesh has a layer on both sides
+    bool walled = false;         ///< the points are the two sides of walls too thin for the lattice
+    double sheet_share = 0;      ///< share of the surface with no enclosed space beside it
+    double widest_opening = 0;   ///< radius of the widest sealed opening; 0: none
+};
+
 /// A closed, oriented, simplicial 2-manifold with valences from 3 to 12, in the core's frame.
-struct StartMesh : IndexedMesh<float> {
+struct StartMesh : IndexedMesh<float>, Enclosure {
     int components = 0;
     int genus = 0;            ///< of all components together
     int fewest_vertices = 0;  ///< that its components and handles need
@@ -79,15 +88,32 @@ struct StartMesh : IndexedMesh<float> {
     double confidence = 0;         ///< share of the votes for components and genus, in [0, 1]
     double radius = 0;             ///< of the ball; the mesh lies about this far outside the points
     double resolution = 0;         ///< distance of the lattice nodes
-    double widest_opening = 0;     ///< radius of the widest sealed opening; 0: none
-    bool walled = false;           ///< the points are the two sides of walls too thin for the lattice
-    bool encloses_space = true;    ///< false for a sheet or a single scan: the mesh has a layer on both sides
-    double sheet_share = 0;        ///< share of the surface with no enclosed space beside it
     long long ignored_points = 0;  ///< outliers: the mesh leaves them out
     /// 1 for each outlier of the cloud. Empty if all points are to be learned: there are no outliers, they
     /// exceed kMaxOutlierShare, or the target has faces.
     std::vector<std::uint8_t> outliers;
     std::vector<std::string> warnings;  ///< full sentences for the log
+};
+
+/// The shell of a target, in two steps: whether it encloses space is known before its mesh is made, which for
+/// an open cloud takes as long and serves for nothing.
+class Shell {
+public:
+    /// Examines the lattices. Keeps a reference to \p target. Draws from \p random only if the target has
+    /// faces. \p progress gets fractions up to 0.7 of both steps; its answer to stop is ignored.
+    /// \throws SettingError if an option is out of range
+    Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress);
+    ~Shell();
+    Shell(const Shell&) = delete;
+    Shell& operator=(const Shell&) = delete;
+
+    const Enclosure& enclosure() const;
+    /// The mesh; see shell_of(). \throws InputError if no part of the cloud holds enough points
+    StartMesh mesh(Progress& progress) const;
+
+private:
+    struct Examined;
+    std::unique_ptr<const Examined> examined_;
 };
 
 /// The shell of \p target. Equal targets, options and states of \p random give equal meshes on every machine;
