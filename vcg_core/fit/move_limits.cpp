@@ -84,16 +84,19 @@ public:
     }
 
     PerVertex<Vector3> shorten_to_limits(CrossingGuard& guard, ThreadTeam& team) {
+        // Each pass moves few vertices, so it is compared with the one before.
         Surface now = surface_;
-        const std::vector<SelfCrossing> at_start = guard.accepted();
+        Surface last = surface_;
+        std::vector<SelfCrossing> crossings = guard.accepted();
         int crossed = 0;
         for (int pass = 0;; ++pass) {
             if (shorten(find_offending(), pass)) continue;
             now.positions = moved_;
+            crossings = update_self_crossings(now, last, crossings, team);
             PerVertex<char> offending(moved_.size(), 0);
-            for (VertexId v : guard.objections(update_self_crossings(now, surface_, at_start, team)))
-                offending[v] = 1;
+            for (VertexId v : guard.objections(crossings)) offending[v] = 1;
             if (!shorten(offending, crossed++)) return std::move(moved_);
+            last.positions = now.positions;
         }
     }
 
