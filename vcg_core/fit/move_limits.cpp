@@ -84,7 +84,7 @@ public:
     }
 
     PerVertex<Vector3> shorten_to_limits(CrossingGuard& guard, ThreadTeam& team) {
-        // Each pass moves few vertices, so it is compared with the one before.
+        // Every pass but the first shortens the moves of few vertices, so it is compared with the one before.
         Surface now = surface_;
         Surface last = surface_;
         std::vector<SelfCrossing> crossings = guard.accepted();

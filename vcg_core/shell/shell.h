@@ -95,12 +95,12 @@ struct StartMesh : IndexedMesh<float>, Enclosure {
     std::vector<std::string> warnings;  ///< full sentences for the log
 };
 
-/// The shell of a target, in two steps: whether it encloses space is known before its mesh is made, which for
-/// an open cloud takes as long and serves for nothing.
+/// shell_of() in two steps. Whether the cloud encloses space is known after the first; if it is open, the
+/// mesh, which may take as long, is not needed.
 class Shell {
 public:
-    /// Examines the lattices. Keeps a reference to \p target. Draws from \p random only if the target has
-    /// faces. \p progress gets fractions up to 0.7 of both steps; its answer to stop is ignored.
+    /// Examines the lattices and keeps them, and a reference to \p target. Draws from \p random only if the
+    /// target has faces. \p progress gets fractions up to 0.7 of both steps; its answer to stop is ignored.
     /// \throws SettingError if an option is out of range
     Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress);
     ~Shell();
