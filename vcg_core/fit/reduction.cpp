@@ -40,8 +40,8 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
     PointsByFace points = locate_points(surface);
     set_directions(surface);
     solve(points, surface);
-    // Not where each round finds the boundary or the stray points anew.
-    const bool dense = at_start > kDenseFrom * vertices && !surface.has_boundary() && !expects_strays_;
+    // Not where each round finds the stray points anew.
+    const bool dense = at_start > kDenseFrom * vertices && !expects_strays_;
     while (network_.vertex_count() > vertices) {
         if (stopped()) return false;
         points = update_for_removal(surface, std::move(points));
@@ -63,12 +63,12 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
 
 /// \return the points on the surface after the last solution, mended where it has a boundary
 PointsByFace Fitter::update_for_removal(Surface& surface, PointsByFace points) {
-    if (!surface.has_boundary() && !expects_strays_) {
+    if (expects_strays_) {
+        points = assign_faces(surface);  // what is astray is told by the surface as it is
+    } else {
         points.update_feet(surface, team_);  // the next search follows once the vertices are removed
-        return points;
     }
-    points = assign_faces(surface);  // what is astray or missing is told by the surface as it is
-    if (surface.has_boundary() && mend_boundary(surface, points) > 0) {
+    if (mend_boundary(surface, points) > 0) {
         surface = Surface(network_);
         points = assign_faces(surface);
     }
