@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "vcg_core/base/parallel_for.h"
@@ -139,7 +141,30 @@ private:
             support_.add(after, {u, a, b}, area_vector(at(u), at(a), at(b)).norm(),
                          counts[static_cast<std::size_t>(i)]);
         });
-        return std::max(sum, 0.0F) + support_.cost_of_change(before, after, step);
+        return std::max(sum, 0.0F) + support_.cost_of_change(before, after, step) +
+               static_cast<float>(before.points) * beyond_boundary(v, u) / (before.twice_area / 2);
+    }
+
+    /// If boundary vertex \p v goes into its neighbour \p u along the boundary, the new boundary edge may
+    /// span a bay or a corner, where no points are. The squared distance from the faces around \p v,
+    /// integrated over the surface there: by length x distance^3 / 3, as over a strip of which one side
+    /// touches these faces.
+    float beyond_boundary(VertexId v, VertexId u) const {
+        const Ring& ring = network_.ring(v);
+        const VertexId first = ring[0], last = ring[ring.valence - 1];
+        if (ring.open == 0 || (u != first && u != last)) return 0;
+        constexpr float kShares[] = {0.25F, 0.5F, 0.75F};
+        float sum = 0;
+        for (const float share : kShares) {
+            const Vector3 p = at(first) + share * (at(last) - at(first));
+            float least = std::numeric_limits<float>::max();
+            for (const int f : surface_.faces_around(v))
+                least = std::min(least, foot_on_triangle(p, surface_.corner(f, 0), surface_.corner(f, 1),
+                                                         surface_.corner(f, 2))
+                                            .squared_distance);
+            sum += least * std::sqrt(least) / 3;
+        }
+        return sum * (at(last) - at(first)).norm() / 3;
     }
 
     const Network& network_;

@@ -11,6 +11,7 @@
 #include "tests/unit/fit/fit_scene.h"
 #include "tests/unit/support/targets.h"
 #include "vcg_core/fit/boundary_targets.h"
+#include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/fit/notches.h"
 #include "vcg_core/fit/webs.h"
@@ -242,6 +243,38 @@ int webs_of_sheet(float end, int count, char barred = 0) {
     for (const Triangle& f : gone)
         for (const VertexId v : f) EXPECT_GT(before.position(v)[0], end - 0.01F);
     return opened;
+}
+
+/// The sheet without the quarter where x and y are positive.
+shapes::Shape three_quarters() {
+    const auto index = [](int x, int y) { return y <= 0 ? 9 * (y + 4) + x + 4 : 45 + 5 * (y - 1) + x + 4; };
+    shapes::Shape shape;
+    for (int y = -4; y <= 4; ++y)
+        for (int x = -4; x <= (y <= 0 ? 4 : 0); ++x) shape.positions.emplace_back(x, y, 0);
+    for (int y = -4; y < 4; ++y)
+        for (int x = -4; x < (y < 0 ? 4 : 0); ++x) {
+            shape.faces.push_back({index(x, y), index(x + 1, y), index(x + 1, y + 1)});
+            shape.faces.push_back({index(x, y), index(x + 1, y + 1), index(x, y + 1)});
+        }
+    return shape;
+}
+
+TEST(FindCollapses, CountsWhatReachesBeyondTheBoundary) {
+    shapes::Cloud cloud;
+    for (const vcg::Point3d& p : square(20000, 4))
+        if (p[0] < 0 || p[1] < 0) cloud.push_back(p);
+    const FitScene scene(referee::network_of(three_quarters()), cloud);
+    ThreadTeam team(1);
+    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
+    const auto corner = std::find_if(collapses.begin(), collapses.end(), [&](const Collapse& c) {
+        return scene.network.position(c.gone) == vcg::Point3f(0, 0, 0);
+    });
+    ASSERT_NE(corner, collapses.end());
+    ASSERT_GE(corner->into, 0);
+    // Along the boundary the corner would be spanned. The integral of min(x, y)^2 over the triangle (0, 0),
+    // (1, 0), (0, 1) is 1 / 48.
+    const double expected = static_cast<double>(cloud.size()) / 48 / 48;
+    EXPECT_NEAR(static_cast<double>(corner->cost), expected, expected / 4);
 }
 
 TEST(Webs, AreOpenedWhereThePointsEnd) {
