@@ -58,9 +58,8 @@ int vertices_to_grow(const LearningTask& task, const Settings& settings, int fin
     // Growth removes the vertices that the landing leaves without signals, far off.
     const int start = task.network.vertex_count();
     const int least = start > final_vertices ? start + start / 4 : start;
-    constexpr int kSmallSurplus = 2500;
     constexpr int kLargestSurplus = 10000;
-    int surplus = std::max(0, std::min(3 * final_vertices, kSmallSurplus - final_vertices / 2));
+    int surplus = surplus_vertices(settings, final_vertices);
     // A preview of 1,000 vertices has to come at once, so it gains nothing; 2,000 gain 3,000.
     const bool calm = is_calm(task);
     if (calm) surplus = std::max(surplus, std::min(3 * final_vertices - 1000, kLargestSurplus));
@@ -113,8 +112,9 @@ LearnedNetwork learned_by(const Learner& learner, StopReason reason) {
     return result;
 }
 
+/// \param last no other run follows, so this one must come down to the vertices asked for
 LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, int grow_to, int carried,
-                            MonotoneProgress& progress) {
+                            bool last, MonotoneProgress& progress) {
     PartOf learning(progress, kPrepared, settings.fit_to_points ? kLearned : 1);
     PartOf fitting(progress, kLearned, 1);
     const Thickening thickening(task);
@@ -128,11 +128,10 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
     FitReport report;
     if (settings.fit_to_points && !progress.stopped())
         report = fit(result.network, task, settings, carried, fitting);
-    if (progress.stopped()) {
-        result.stop_reason = StopReason::cancelled;
-        if (result.network.vertex_count() > settings.target_vertices)
-            simplify(result.network, settings.target_vertices);
-    }
+    if (progress.stopped()) result.stop_reason = StopReason::cancelled;
+    // The fit stops where the topology leaves only collapses that spoil the shape.
+    if ((last || progress.stopped()) && result.network.vertex_count() > settings.target_vertices)
+        simplify(result.network, settings.target_vertices);
     result.network.orient_outward();
     const bool moved = report.improved || report.inserted > 0;
     // If the rounds of the fit were discarded, no vertex has moved to the place of another.
@@ -148,12 +147,12 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
 LearnedNetwork learn_and_fit(const LearningTask& task, const Settings& settings, MonotoneProgress& progress) {
     const int carried = carried_vertices(task, settings);
     const int grow_to = vertices_to_grow(task, settings, carried);
-    LearnedNetwork first = grow_and_fit(task, settings, grow_to, carried, progress);
-    const bool stalled = first.forced || first.network.vertex_count() > settings.target_vertices;
     const int least = std::max(carried, task.network.vertex_count());
+    LearnedNetwork first = grow_and_fit(task, settings, grow_to, carried, grow_to == least, progress);
+    const bool stalled = first.forced || first.network.vertex_count() > settings.target_vertices;
     if (!stalled || grow_to == least || progress.stopped()) return first;
 
-    LearnedNetwork second = grow_and_fit(task, settings, least, carried, progress);
+    LearnedNetwork second = grow_and_fit(task, settings, least, carried, true, progress);
     second.signals += first.signals;
     second.splits += first.splits;
     second.collapses += first.collapses;

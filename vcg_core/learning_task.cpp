@@ -29,6 +29,9 @@ constexpr int kLandingSignals = 100, kLandingSignalsOfOpen = 30;
 /// Start vertices for each one asked for, where the fit reduces them: walls of half an edge need seven
 /// (shell.h).
 constexpr int kMostPerFinal = 8, kMostStartVertices = 50000;
+/// Start vertices of an open mesh for each one that is grown. With two thirds a vertex of a square with 250
+/// stood out of its points by 2 % of the diagonal.
+constexpr double kStartShare = 0.5;
 constexpr double kShellMade = 0.6;  // of the progress
 /// Openings of closed models (places without points on large faces, cavities) are narrower than this share of
 /// the diagonal, those of scans and cut models wider. Chosen by open_table.py.
@@ -166,6 +169,8 @@ double widest_closed(const TargetSpace& target) {
 
 OpenStart make_open_start(const TargetSpace& target, const Settings& settings, Progress& progress) {
     OpenStartOptions options;
+    const int grown = settings.target_vertices + surplus_vertices(settings, settings.target_vertices);
+    options.wanted_vertices = std::clamp(static_cast<int>(kStartShare * grown), 4, kMostStartVertices);
     options.target_vertices = settings.target_vertices;
     options.close_holes_up_to = settings.close_holes_up_to / target.frame().diagonal;
     options.learn_outliers = !settings.remove_outliers;
@@ -217,6 +222,12 @@ bool encloses_more(const OpenStart& start, const Enclosure& shell) {
     return start.loops == 0 && !start.layers.are_two() && !shell.encloses_space;
 }
 
+/// Of those of an open start mesh; the fit, if there is one, reduces it.
+int vertices_needed(const OpenStart& start, const Settings& settings) {
+    return settings.redistributes_vertices() ? start.fewest_vertices
+                                             : static_cast<int>(start.positions.size());
+}
+
 /// The start mesh of one layer of a cloud that may be open, or whose shell encloses no space; nothing if the
 /// cloud has none that learning can begin with, or if its shell is the better start.
 std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& shell, const Settings& settings,
@@ -230,8 +241,9 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& she
                           (target.has_faces() || may_be_open(shell, target, settings, start.spacing)) &&
                           (settings.close_holes_up_to >= 0 || start.widest_loop > widest_closed(target));
         if ((open || encloses_more(start, shell)) && start.thickness < kTooThick &&
-            vertices <= settings.target_vertices &&
-            start.genus <= std::min(kMostHandles, vertices / kVerticesPerHandle))
+            vertices_needed(start, settings) <= settings.target_vertices &&
+            start.genus <=
+                std::min(kMostHandles, std::min(vertices, settings.target_vertices / 2) / kVerticesPerHandle))
             return start;
     } catch (const InputError&) {
     }
@@ -239,10 +251,11 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& she
 }
 
 void begin_open(LearningTask& task, OpenStart start, const Settings& settings) {
-    if (static_cast<int>(start.positions.size()) > settings.target_vertices)
+    const int needed = vertices_needed(start, settings);
+    if (needed > settings.target_vertices)
         throw SettingError("The open surface, with " + std::to_string(start.components) + " components, " +
                            std::to_string(start.loops) + " boundary loops and genus " +
-                           std::to_string(start.genus) + ", needs " + std::to_string(start.positions.size()) +
+                           std::to_string(start.genus) + ", needs " + std::to_string(needed) +
                            " vertices to begin with: raise " + "target_vertices from " +
                            std::to_string(settings.target_vertices) + ", or choose surface 1 (closed).");
     task.warnings.insert(task.warnings.end(), start.warnings.begin(), start.warnings.end());
@@ -341,6 +354,12 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
 }
 
 }  // namespace
+
+int surplus_vertices(const Settings& settings, int final_vertices) {
+    constexpr int kSurplus = 2500;
+    if (!settings.redistributes_vertices()) return 0;
+    return std::max(0, std::min(3 * final_vertices, kSurplus - final_vertices / 2));
+}
 
 LearningTask points_to_learn(const TargetSpace& given, const Settings& settings) {
     Survey survey(settings.threads);

@@ -45,6 +45,10 @@ struct LearningTask {
 /// no network yet. \p given must outlive the result. O(points log points)
 LearningTask points_to_learn(const TargetSpace& given, const Settings& settings);
 
+/// Vertices that learning grows beyond \p final_vertices, of which the fit takes away those that matter
+/// least. 0 unless settings.redistributes_vertices().
+int surplus_vertices(const Settings& settings, int final_vertices);
+
 /// Removes repeated points and, if settings.remove_outliers is on, outliers from \p given and makes the start
 /// mesh that \p settings asks for: the shell of the cloud, an open mesh of one layer, a tetrahedron, or \p
 /// start. If settings.even_sampling is on and settings.utility_counter does not follow the density of the

@@ -38,25 +38,22 @@ constexpr double kMostWithoutSurface = 0.5;
 /// So many links between planes contradict each other along a cut; fewer do at rough places.
 constexpr std::size_t kManyContradictions = 20;
 
-/// A part with fewer points than options.component_share counts if it is a sheet of at least so many points
-/// and planes, most of them thin, and its share of the vertices is enough to show its shape. In a single view
-/// of 20,000 points a strip beside an occluded place has some hundred; clumps of outliers have fewer planes.
-constexpr int kPointsOfSheet = 60;
+/// A part with fewer points than options.component_share counts if it is a sheet: of at least so many points
+/// and planes, most of them thin. In a single view of 20,000 points a strip beside an occluded place has some
+/// hundred, and islands seen by two views have 50; clumps of outliers have fewer planes.
+constexpr int kPointsOfSheet = 40;
 constexpr int kPlanesOfSheet = 20;
 constexpr float kThinPart = 0.35F, kThinShare = 0.85F;
 /// Noise makes all planes thick. Then thin is what is no thicker than so many times the median.
 constexpr float kThinOfMedian = 2, kThickestThin = 0.55F;
-constexpr double kLeastPartVertices = 3;
-
-/// Vertices of the start mesh for each one asked for. Edges of a coarser one are wider than bays of the
-/// boundary, or parts beside it: what they span or fold there stays while the network grows. With two thirds
-/// a vertex of a square with 250 stood out of its points by 2 % of the diagonal.
-constexpr double kStartShare = 0.5;
+/// The least share of the points that such a part may have, times the vertices asked for. It takes three of
+/// them, so more small parts than that would leave none for the others.
+constexpr double kLeastPartVertices = 0.3;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 void check(const OpenStartOptions& o) {
-    if (o.max_vertices < 4 || o.target_vertices < 4 || o.samples < 4 ||
+    if (o.wanted_vertices < 4 || o.target_vertices < 4 || o.samples < 4 ||
         !(o.component_share >= 0 && o.component_share < 1))
         throw SettingError(
             "The options of the open start mesh are out of range: at least 4 vertices and 4 samples are "
@@ -77,9 +74,7 @@ Enough enough_points(std::size_t points, const OpenStartOptions& options) {
 }
 
 int wanted_vertices(std::size_t points, const OpenStartOptions& options) {
-    const auto carried = static_cast<int>(points / OpenStartOptions::kPointsPerVertex);
-    const auto of_final = static_cast<int>(kStartShare * options.target_vertices);
-    return std::min({options.max_vertices, of_final, carried});
+    return std::min(options.wanted_vertices, static_cast<int>(points / OpenStartOptions::kPointsPerVertex));
 }
 
 /// \throws InputError if most planes are none
@@ -320,6 +315,12 @@ void check_enough_points(std::size_t points) {
                          std::to_string(OpenStartOptions::kLeastCloud) + ".");
 }
 
+/// Number of vertices that \p network can be reduced to, or \p wanted if that is more.
+int fewest_vertices(Network network, int wanted) {
+    if (network.vertex_count() > wanted) simplify(network, wanted);
+    return network.vertex_count();
+}
+
 /// Copies the mesh and its topology to \p result.
 void write_mesh(const Network& network, OpenStart& result) {
     IndexedMesh<float> mesh = indexed(network);
@@ -362,6 +363,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     orient_convex_side_outward(network);
     if (options.use_normals) result.faced_by_normals = orient_by_normals(network, target);
     write_mesh(network, result);
+    result.fewest_vertices = fewest_vertices(std::move(network), options.target_vertices);
     result.thickness = static_cast<double>(planes.thickness);
     result.spacing = static_cast<double>(planes.step);
     result.layers = layer_figures(points, planes);

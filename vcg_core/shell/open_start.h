@@ -25,10 +25,11 @@ namespace neuralmesh {
 
 /// What the open start may cost and how it decides. The defaults were found by experiment (open_table.py).
 struct OpenStartOptions {
-    /// Wanted number of vertices: min(max_vertices, target_vertices / 2, points / kPointsPerVertex). More if
-    /// the topology cannot be kept otherwise.
-    int max_vertices = 50000;
-    int target_vertices = 10000;
+    /// Wanted number of vertices: at most one for kPointsPerVertex points. More if the topology cannot be
+    /// kept otherwise. Edges of a coarse mesh are wider than bays of the boundary, or parts beside it: what
+    /// they span or fold there stays while the network grows.
+    int wanted_vertices = 5000;
+    int target_vertices = 10000;  ///< that stay when all is done
     /// Holes are filled up to this diameter of the smallest sphere around them, in the core's frame (shares
     /// of the bounding-box diagonal); negative: chosen from the spacing of the points.
     double close_holes_up_to = -1;
@@ -58,6 +59,8 @@ struct OpenStartOptions {
 struct OpenStart {
     std::vector<vcg::Point3f> positions;
     std::vector<Triangle> faces;
+    /// It can be reduced to so many vertices, or to OpenStartOptions::target_vertices.
+    int fewest_vertices = 0;
     int components = 0;
     int genus = 0;             ///< of all components together
     int loops = 0;             ///< boundary loops

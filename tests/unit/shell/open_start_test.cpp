@@ -83,9 +83,12 @@ TEST(OpenStart, CoversASquareOnce) {
 
 TEST(OpenStart, IsSmallWhereFewVerticesAreWanted) {
     OpenStartOptions options;
-    options.target_vertices = 40;
+    options.wanted_vertices = 40;
+    options.target_vertices = 20;
     const OpenStart start = start_of(shapes::plane_cloud(3000), options);
-    EXPECT_LE(start.positions.size(), 20U);
+    EXPECT_LE(start.positions.size(), 40U);
+    EXPECT_GT(start.positions.size(), 20U);
+    EXPECT_EQ(start.fewest_vertices, 20);
     EXPECT_EQ(start.loops, 1);
 }
 
@@ -180,7 +183,7 @@ TEST(OpenStart, KeepsASmallSheetButNoClump) {
     EXPECT_TRUE(start_of(sheet).outliers.empty());
     EXPECT_EQ(start_of(clump).components, 1);
     OpenStartOptions few;
-    few.target_vertices = 250;  // of which the square would get two
+    few.target_vertices = 40;  // of which the square would get a quarter of one
     EXPECT_EQ(start_of(sheet, few).components, 1);
 }
 

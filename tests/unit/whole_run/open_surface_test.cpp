@@ -249,6 +249,33 @@ TEST(OpenSurface, NeedsVerticesForItsTopology) {
     EXPECT_THROW(learn(holed.cloud, settings_with(8, kOpenSurface)), SettingError);
 }
 
+TEST(OpenSurface, ComesDownToTheVerticesThatItsTopologyNeeds) {
+    // Five by four bent squares apart from each other. The start mesh has more vertices than asked for.
+    Cloud cloud;
+    for (int i = 0; i < 20; ++i)
+        for (const vcg::Point3d& p : shapes::plane_cloud(300))
+            cloud.push_back(p + vcg::Point3d(3.0 * (i % 5), 3.0 * (i / 5), 0.2 * p[0] * p[1]));
+    for (const int vertices : {300, 120, 80, 70, 60}) {
+        SCOPED_TRACE(vertices);
+        const Settings settings = settings_with(vertices, kOpenSurface);
+        const NeuralMesh mesh = learn(cloud, settings);
+        soundness::expect_exact(mesh, settings);
+        EXPECT_EQ(mesh.report.components, 20);
+        EXPECT_EQ(mesh.report.boundary_loops, 20);
+    }
+}
+
+TEST(OpenSurface, OfTheFewestVerticesIsExact) {
+    for (const int vertices : {4, 5, 6, 8, 12}) {
+        SCOPED_TRACE(vertices);
+        for (const bool fit : {false, true}) {
+            Settings settings = settings_with(vertices, kOpenSurface);
+            settings.fit_to_points = fit;
+            soundness::expect_exact(learn(shapes::plane_cloud(2000), settings), settings);
+        }
+    }
+}
+
 TEST(OpenSurface, CannotStartFromATetrahedron) {
     Settings settings = settings_with(200, kOpenSurface);
     settings.start_mesh = kTetrahedron;
