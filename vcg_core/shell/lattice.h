@@ -74,9 +74,17 @@ inline constexpr std::array<NodeOffset, kNeighbourCount> kNeighbourOffsets = {
 template <class Visit>
 void for_each_neighbour_offset(const Lattice& l, NodeId i, const Visit& visit) {
     const auto [x, y, z] = l.coordinates(i);
-    for (int k = 0; k < kNeighbourCount; ++k) {
-        const auto& [dx, dy, dz] = kNeighbourOffsets[static_cast<std::size_t>(k)];
-        if (l.contains(x + dx, y + dy, z + dz)) visit(i + l.index(dx, dy, dz), k);
+    const auto visit_if = [&](const auto& is_inside) {
+        for (int k = 0; k < kNeighbourCount; ++k) {
+            const auto& [dx, dy, dz] = kNeighbourOffsets[static_cast<std::size_t>(k)];
+            if (is_inside(x + dx, y + dy, z + dz)) visit(i + l.index(dx, dy, dz), k);
+        }
+    };
+    const bool on_side = x == 0 || y == 0 || z == 0 || x + 1 == l.nx || y + 1 == l.ny || z + 1 == l.nz;
+    if (on_side) {
+        visit_if([&l](int u, int v, int w) { return l.contains(u, v, w); });
+    } else {
+        visit_if([](int, int, int) { return true; });
     }
 }
 

@@ -20,6 +20,15 @@ using CubeLevels = std::array<SquaredRadius, 8>;
 CubeLevels cube_levels(const Lattice& lattice, int x, int y, int z, const PerNode<SquaredRadius>& clearance,
                        SquaredRadius outside) {
     CubeLevels levels{};
+    if (x + 1 < lattice.nx && y + 1 < lattice.ny && z + 1 < lattice.nz) {  // nearly all cubes
+        const NodeId lines[4] = {lattice.index(x, y, z), lattice.index(x, y + 1, z),
+                                 lattice.index(x, y, z + 1), lattice.index(x, y + 1, z + 1)};
+        for (std::size_t k = 0; k < 4; ++k) {
+            levels[2 * k] = clearance[lines[k]];
+            levels[2 * k + 1] = clearance[lines[k] + 1];
+        }
+        return levels;
+    }
     for (int k = 0; k < 8; ++k) {
         const int cx = x + (k & 1), cy = y + ((k >> 1) & 1), cz = z + (k >> 2);
         levels[static_cast<std::size_t>(k)] =
@@ -52,8 +61,9 @@ PerLevel<int> euler_changes(const Lattice& lattice, const PerNode<SquaredRadius>
     const SquaredRadius outside = static_cast<SquaredRadius>(levels);
     for_each_node(lattice, [&](int x, int y, int z) {
         const CubeLevels corners = cube_levels(lattice, x, y, z, clearance, outside);
-        const auto [low, high] = std::minmax_element(corners.begin(), corners.end());
-        if (*low == *high) return;  // at one level the signs cancel out: 1 - 7 + 12 - 6
+        // At one level the signs cancel out: 1 - 7 + 12 - 6.
+        if (std::all_of(corners.begin(), corners.end(), [&](SquaredRadius l) { return l == corners[0]; }))
+            return;
         add_simplices(corners, changes);
     });
     return changes;

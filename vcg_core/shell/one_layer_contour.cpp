@@ -40,6 +40,32 @@ struct Relation {
     float remoteness;
 };
 
+/// The box of nodes around a plane; for each axis the first of them, and the way from the plane's centre to
+/// each.
+struct NodesNear {
+    std::array<int, 3> low{};
+    std::array<std::vector<float>, 3> ways;
+
+    /// \param height how high the plane holds above and below
+    void find(const Lattice& lattice, const TangentPlane& plane, float width, float height) {
+        const std::array<int, 3> count{lattice.nx, lattice.ny, lattice.nz};
+        for (int k = 0; k < 3; ++k) {
+            const auto i = static_cast<std::size_t>(k);
+            // The disc in which the plane holds is this wide along the axis.
+            const float n = plane.normal[k];
+            const float extent = width * std::sqrt(std::max(0.0F, 1 - n * n)) + height * std::abs(n);
+            const float at = plane.centre[k] - lattice.corner[k];
+            low[i] = std::max(0, static_cast<int>(std::ceil((at - extent) / lattice.step)));
+            const int high =
+                std::min(count[i] - 1, static_cast<int>(std::floor((at + extent) / lattice.step)));
+            ways[i].clear();
+            for (int node = low[i]; node <= high; ++node)
+                ways[i].push_back(lattice.corner[k] + static_cast<float>(node) * lattice.step -
+                                  plane.centre[k]);
+        }
+    }
+};
+
 /// What the planes say of every node.
 struct Field {
     Lattice lattice;
@@ -48,6 +74,7 @@ struct Field {
     PerNode<int> nearest;  ///< plane, by remoteness
     PerNode<float> weights;
     PerNode<float> values;
+    NodesNear nodes_near;  ///< of the plane that was looked at last
 
     Field(const Box3f& box, const TangentPlanes& of)
         : lattice(box, of.step, kMargin),
@@ -57,46 +84,40 @@ struct Field {
 
     const TangentPlane& plane(int i) const { return planes[static_cast<std::size_t>(i)]; }
     float height() const { return kHeight * lattice.step; }
-    bool relate(const TangentPlane& plane, const Point3f& p, Relation& relation) const;
+    /// Calls visit(node, relation) for the nodes where the plane holds.
     template <class Visit>
-    void for_nodes_near(const TangentPlane& plane, const Visit& visit) const;
+    void for_nodes_near(const TangentPlane& plane, const Visit& visit);
     void find_nearest();
     void blend();
     float above(int i, NodeId node) const;
     bool continuous(NodeId a, NodeId b) const;
 };
 
-/// \return whether the plane holds at \p p
-bool Field::relate(const TangentPlane& plane, const Point3f& p, Relation& relation) const {
-    const Point3f d = p - plane.centre;
-    relation.above = d * plane.normal;
-    const float width = kWidth * plane.spacing, reach = kReach * plane.spacing;
-    const float aside = d.SquaredNorm() - relation.above * relation.above;
-    if (std::abs(relation.above) > height() || aside > width * width) return false;
-    relation.remoteness = aside / (reach * reach) + relation.above * relation.above / (height() * height());
-    return true;
-}
-
 template <class Visit>
-void Field::for_nodes_near(const TangentPlane& plane, const Visit& visit) const {
-    std::array<int, 3> low, high;
-    const std::array<int, 3> count{lattice.nx, lattice.ny, lattice.nz};
-    const float width = kWidth * plane.spacing;
-    for (int k = 0; k < 3; ++k) {
-        const auto i = static_cast<std::size_t>(k);
-        // The disc in which the plane holds is this wide along the axis.
-        const float n = plane.normal[k];
-        const float extent = width * std::sqrt(std::max(0.0F, 1 - n * n)) + height() * std::abs(n);
-        const float at = plane.centre[k] - lattice.corner[k];
-        low[i] = std::max(0, static_cast<int>(std::ceil((at - extent) / lattice.step)));
-        high[i] = std::min(count[i] - 1, static_cast<int>(std::floor((at + extent) / lattice.step)));
+void Field::for_nodes_near(const TangentPlane& plane, const Visit& visit) {
+    const float width = kWidth * plane.spacing, reach = kReach * plane.spacing;
+    nodes_near.find(lattice, plane, width, height());
+    // Copies: for all that the compiler knows, visit() could change what these are computed from.
+    const float squared_width = width * width, squared_reach = reach * reach;
+    const float most_above = height(), squared_height = most_above * most_above;
+    const Point3f normal = plane.normal;
+    const float* const ways_x = nodes_near.ways[0].data();
+    const auto count_x = static_cast<int>(nodes_near.ways[0].size());
+    NodeId first_row = lattice.index(nodes_near.low[0], nodes_near.low[1], nodes_near.low[2]);
+    for (const float z : nodes_near.ways[2]) {
+        NodeId row = first_row;
+        for (const float y : nodes_near.ways[1]) {
+            for (int i = 0; i < count_x; ++i) {
+                const float x = ways_x[i];
+                const float above = x * normal[0] + y * normal[1] + z * normal[2];
+                const float aside = x * x + y * y + z * z - above * above;
+                if (std::abs(above) > most_above || aside > squared_width) continue;
+                visit(row + i, Relation{above, aside / squared_reach + above * above / squared_height});
+            }
+            row += lattice.nx;
+        }
+        first_row += lattice.nx * lattice.ny;
     }
-    Relation relation;
-    for (int z = low[2]; z <= high[2]; ++z)
-        for (int y = low[1]; y <= high[1]; ++y)
-            for (int x = low[0]; x <= high[0]; ++x)
-                if (relate(plane, lattice.position(x, y, z), relation))
-                    visit(lattice.index(x, y, z), relation);
 }
 
 void Field::find_nearest() {
