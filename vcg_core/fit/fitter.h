@@ -113,6 +113,7 @@ private:
 
     Network& network_;
     ThreadTeam& team_;
+    int final_vertices_;  ///< after the reduction
     TrackedPoints fitted_;
     TrackedPoints set_aside_;  ///< fitted points that the reduction does not use
     HeldOut held_out_;

@@ -35,6 +35,7 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
         return !reducing(static_cast<double>(at_start - left) / (at_start - vertices), text.c_str());
     };
     if (stopped()) return false;
+    final_vertices_ = vertices;
     set_points_aside();
     Surface surface(network_);
     PointsByFace points = locate_points(surface);
@@ -63,11 +64,16 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
 
 /// \return the points on the surface after the last solution, mended where it has a boundary
 PointsByFace Fitter::update_for_removal(Surface& surface, PointsByFace points) {
-    if (expects_strays_) {
-        points = assign_faces(surface);  // what is astray is told by the surface as it is
-    } else {
+    if (!expects_strays_) {
         points.update_feet(surface, team_);  // the next search follows once the vertices are removed
+        const Network before = network_;
+        const CrossingGuard guard = guard_;
+        if (mend_boundary(surface, points) == 0) return points;
+        // Points that are still with the face beside theirs leave theirs without any: search first.
+        network_ = before;
+        guard_ = guard;
     }
+    points = assign_faces(surface);  // what is astray or missing is told by the surface as it is
     if (mend_boundary(surface, points) > 0) {
         surface = Surface(network_);
         points = assign_faces(surface);
