@@ -13,6 +13,9 @@ namespace {
 
 using vcg::Point3d;
 
+/// Of so many places of a component most are within another, or are not. An odd number.
+constexpr std::size_t kPlaces = 9;
+
 /// Twice the signed area of a triangle, seen along the x axis. Exact but for the last sum.
 double area_along_x(const Point3d& a, const Point3d& b, const Point3d& c) {
     return (b[1] - a[1]) * (c[2] - a[2]) - (c[1] - a[1]) * (b[2] - a[2]);
@@ -45,21 +48,28 @@ std::vector<int> nesting_depths(const Network& network, const PerVertex<int>& co
     std::vector<vcg::Box3d> boxes(components);
     std::vector<char> open(components, 0);
     std::vector<std::vector<Triangle>> faces(components);
+    std::vector<std::vector<VertexId>> vertices(components);
     for (const VertexId v : network.vertices()) {
+        vertices[of(v)].push_back(v);
         boxes[of(v)].Add(at(v));
         if (network.ring(v).open != 0) open[of(v)] = 1;
     }
     for (const Triangle& f : network.faces()) faces[of(f[0])].push_back(f);
-    for (std::size_t i = 0; i < components; ++i) {
-        const Point3d p = at(faces[i].front()[0]);
+    const auto is_within = [&](const Point3d& p, std::size_t j) {
+        if (!boxes[j].IsIn(p)) return false;
+        const auto hit = std::count_if(faces[j].begin(), faces[j].end(), [&](const Triangle& f) {
+            return hits(p, at(f[0]), at(f[1]), at(f[2]));
+        });
+        return hit % 2 != 0;
+    };
+    for (std::size_t i = 0; i < components; ++i)
         for (std::size_t j = 0; j < components; ++j) {
-            if (j == i || open[j] != 0 || !boxes[j].IsIn(p)) continue;
-            const auto hit = std::count_if(faces[j].begin(), faces[j].end(), [&](const Triangle& f) {
-                return hits(p, at(f[0]), at(f[1]), at(f[2]));
-            });
-            depths[i] += hit % 2 != 0 ? 1 : 0;
+            if (j == i || open[j] != 0) continue;
+            std::size_t within = 0;
+            for (std::size_t k = 0; k < kPlaces; ++k)
+                within += is_within(at(vertices[i][k * vertices[i].size() / kPlaces]), j) ? 1 : 0;
+            depths[i] += within > kPlaces / 2 ? 1 : 0;
         }
-    }
     return depths;
 }
 

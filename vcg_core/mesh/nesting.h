@@ -10,8 +10,9 @@
 
 namespace neuralmesh {
 
-/// For each component the number of closed components around it; no component may cut another. \p component
-/// is network.components(), \p count the number of components. O(components^2 + faces x the depth)
+/// For each component the number of closed components around it: around most of it, where one cuts another.
+/// \p component is network.components(), \p count the number of components. O(components^2 + faces x the
+/// depth)
 std::vector<int> nesting_depths(const Network& network, const PerVertex<int>& component, int count);
 
 }  // namespace neuralmesh

@@ -71,6 +71,14 @@ TEST(Nesting, IsFoundWhereRaysMeetEdgesAndVertices) {
     EXPECT_EQ(depths_of(octahedra({{o, 1}, {Point3f(-3, 0, 0), 0.1F}})), (std::vector<int>{0, 0}));
 }
 
+TEST(Nesting, IsThatOfMostOfAComponent) {
+    // The first vertex of the inner surface sticks out of the outer one.
+    const Point3f o(0, 0, 0);
+    Network network = octahedra({{o, 2}, {o, 1}});
+    network.set_position(6, Point3f(2.5F, 0, 0));
+    EXPECT_EQ(depths_of(network), (std::vector<int>{0, 1}));
+}
+
 TEST(Nesting, OrientsHollowsInward) {
     const Point3f o(0, 0, 0);
     for (const float sign : {1.0F, -1.0F}) {
