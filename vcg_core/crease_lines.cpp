@@ -4,10 +4,12 @@
 #include "vcg_core/crease_lines.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "vcg_core/crease_edges.h"
 #include "vcg_core/learning/two_planes.h"
 #include "vcg_core/mesh/surface.h"
+#include "vcg_core/mesh/triangle.h"
 
 namespace neuralmesh {
 
@@ -18,6 +20,7 @@ using vcg::Point3f;
 // Chosen by tests/experiments/paper/crease_table.py.
 constexpr float kLongestGap = 2;      ///< that is bridged, in mean edges of the mesh
 constexpr float kFarthest = 0.5F;     ///< a place where two planes meet is within so many edges of the vertex
+constexpr float kOffMesh = 0.2F;      ///< ... and within so many of the mesh
 constexpr float kCornerReach = 1.5F;  ///< from the end of a line to another line that it joins, in mean edges
 constexpr float kShortest = 0.5F;     ///< of the edges of lines, in mean edges of the mesh
 /// A bridge may join two spurs, and what a spur leaves may be bridged.
@@ -47,11 +50,27 @@ int closed_lines(const CreaseEdges& chosen, const std::vector<VertexId>& vertice
     return closed;
 }
 
-/// The place of \p v on the line where two planes meet, if that is near.
+/// Squared, of \p p from the faces around \p v.
+float squared_distance_from_ring(const Network& network, VertexId v, const Point3f& p) {
+    const Ring& ring = network.ring(v);
+    const auto at = [&](VertexId u) { return to_eigen(network.position(u)); };
+    float least = std::numeric_limits<float>::max();
+    for (int i = 0; i < ring.face_count(); ++i)
+        least = std::min(
+            least, foot_on_triangle(to_eigen(p), at(v), at(ring[i]), at(ring.next(i))).squared_distance);
+    return least;
+}
+
+/// The place of \p v on the line where two planes meet, if that is near and no farther from the mesh than
+/// noise would bring it. Planes that turn with a curved side meet off the mesh.
 Point3f place_on_line(const Network& network, TwoPlanes& planes, VertexId v) {
     const Point3f p = network.position(v);
-    const Crease crease = planes.crease_near(p, mean_edge_at(network, v), v);
-    return crease.squared_distance < kFarthest * kFarthest ? p + crease.to_line : p;
+    const float edge = mean_edge_at(network, v);
+    const Crease crease = planes.crease_near(p, edge, v);
+    const Point3f place = p + crease.to_line;
+    const bool is_near = crease.squared_distance < kFarthest * kFarthest &&
+                         squared_distance_from_ring(network, v, place) < kOffMesh * kOffMesh * edge * edge;
+    return is_near ? place : p;
 }
 
 }  // namespace

@@ -15,6 +15,9 @@
 #include "tests/unit/support/cube_edges.h"
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
+#include "vcg_core/learning/two_planes.h"
+#include "vcg_core/mesh/surface.h"
+#include "vcg_core/mesh/triangle.h"
 
 namespace neuralmesh {
 namespace {
@@ -86,6 +89,22 @@ TEST(CreaseLines, ACubeHasTwelve) {
     EXPECT_EQ(graph.corners, 8);
     EXPECT_EQ(graph.edges.size(), 12u * kPieces);
     for (const vcg::Point3f& p : graph.positions) EXPECT_LT(distance_from_edge(p), 0.02);
+}
+
+TEST(CreaseLines, StayNearTheMesh) {
+    // Rough sides: two planes near a vertex may meet far from both.
+    const Network cube = referee::network_of(fine_cube(), 0.08);
+    const Surface surface(cube);
+    const CreaseGraph graph = crease_lines(cube, everywhere(cube, 2));
+    ASSERT_GT(graph.vertices.size(), 50U);
+    for (std::size_t i = 0; i < graph.vertices.size(); ++i) {
+        float least = 4;
+        for (int f = 0; f < surface.face_count(); ++f)
+            least = std::min(least, foot_on_triangle(to_eigen(graph.positions[i]), surface.corner(f, 0),
+                                                     surface.corner(f, 1), surface.corner(f, 2))
+                                        .squared_distance);
+        EXPECT_LE(std::sqrt(least), 0.21F * mean_edge_at(cube, graph.vertices[i]));
+    }
 }
 
 TEST(CreaseLines, NoiseMovesThemLessThanTheVertices) {
