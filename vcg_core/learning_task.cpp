@@ -242,8 +242,7 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& she
                           (settings.close_holes_up_to >= 0 || start.widest_loop > widest_closed(target));
         if ((open || encloses_more(start, shell)) && start.thickness < kTooThick &&
             vertices_needed(start, settings) <= settings.target_vertices &&
-            start.genus <=
-                std::min(kMostHandles, std::min(vertices, settings.target_vertices / 2) / kVerticesPerHandle))
+            start.genus <= std::min(kMostHandles, vertices / kVerticesPerHandle))
             return start;
     } catch (const InputError&) {
     }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "tests/unit/support/open_shapes.h"
@@ -247,6 +248,40 @@ TEST(OpenSurface, IsAnErrorWhereThereIsNone) {
 TEST(OpenSurface, NeedsVerticesForItsTopology) {
     const Case holed = open_shapes::cases()[6];
     EXPECT_THROW(learn(holed.cloud, settings_with(8, kOpenSurface)), SettingError);
+}
+
+/// Two square sheets, one above the other, joined by \p side x \p side tubes.
+Cloud joined_sheets(int side, int points) {
+    constexpr double kApart = 0.8, kHeight = 0.6, kTube = 0.2;
+    const double half = side * kApart / 2;
+    Random random(1);
+    Cloud cloud;
+    while (static_cast<int>(cloud.size()) < points) {
+        const vcg::Point3d p(half * shapes::signed_unit(random), half * shapes::signed_unit(random), 0);
+        vcg::Point3d from_tube(0, 0, 0);  // to the axis of the nearest one
+        for (int k = 0; k < 2; ++k)
+            from_tube[k] = p[k] - ((std::floor((p[k] + half) / kApart) + 0.5) * kApart - half);
+        const bool above = shapes::signed_unit(random) > 0;
+        if (from_tube.Norm() > kTube) {
+            cloud.push_back(p + vcg::Point3d(0, 0, above ? kHeight : 0));
+        } else {  // a disc has a third of the area of its tube
+            for (int i = 0; i < 3; ++i) {
+                const double height = kHeight * (shapes::signed_unit(random) + 1) / 2;
+                const vcg::Point3d axis = p - from_tube, way = shapes::in_ball(random);
+                cloud.push_back(axis + vcg::Point3d(way[0], way[1], 0).Normalize() * kTube +
+                                vcg::Point3d(0, 0, height));
+            }
+        }
+    }
+    return cloud;
+}
+
+TEST(OpenSurface, OfFewVerticesMayHaveManyHandles) {
+    const Settings settings = settings_with(500, kAutomatic);
+    const NeuralMesh mesh = learn(joined_sheets(4, 60000), settings);
+    soundness::expect_exact(mesh, settings);
+    EXPECT_EQ(mesh.report.boundary_loops, 2);
+    EXPECT_EQ(mesh.report.genus, 15);
 }
 
 TEST(OpenSurface, ComesDownToTheVerticesThatItsTopologyNeeds) {
