@@ -71,8 +71,8 @@ constexpr double kMovedShare = 0.05;
 /// clean, bunny, koala, fandisk and rocker-arm have .99 to 1.00 of the error with 10,000. Under noise they do
 /// not: fandisk with noise of 0.3 % and 2,000 vertices has 1.18 of the error.
 constexpr std::size_t kCalmHeldOut = 3000;
-/// Surfaces with boundary need more of them, as so many for each vertex that stays: with 3,000 and 2,000
-/// vertices, fandisk, block and genus3 with two cuts have 1.05 and 1.1 of the error.
+/// Surfaces with boundary need more: so many for each vertex that stays. With 3,000 points for 2,000
+/// vertices, fandisk, block and genus3 have 1.03 (cut by a sphere) and 1.1 (three planes) of the error.
 constexpr std::size_t kCalmHeldOutPerVertex = 6;
 
 float outlier_distance(const Surface& surface, const std::vector<Hit>& hits) {

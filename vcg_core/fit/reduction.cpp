@@ -69,7 +69,7 @@ PointsByFace Fitter::update_for_removal(Surface& surface, PointsByFace points) {
         const Network before = network_;
         const CrossingGuard guard = guard_;
         if (mend_boundary(surface, points) == 0) return points;
-        // Points that are still with the face beside theirs leave theirs without any: search first.
+        // A face may seem to lack points that are still with the face beside it: search first.
         network_ = before;
         guard_ = guard;
     }
