@@ -141,8 +141,10 @@ private:
             support_.add(after, {u, a, b}, area_vector(at(u), at(a), at(b)).norm(),
                          counts[static_cast<std::size_t>(i)]);
         });
-        return std::max(sum, 0.0F) + support_.cost_of_change(before, after, step) +
-               static_cast<float>(before.points) * beyond_boundary(v, u) / (before.twice_area / 2);
+        float cost = std::max(sum, 0.0F) + support_.cost_of_change(before, after, step);
+        if (before.twice_area > 0)
+            cost += static_cast<float>(before.points) * beyond_boundary(v, u) / (before.twice_area / 2);
+        return cost;
     }
 
     /// If boundary vertex \p v goes into its neighbour \p u along the boundary, the new boundary edge may
@@ -157,11 +159,7 @@ private:
         float sum = 0;
         for (const float share : kShares) {
             const Vector3 p = at(first) + share * (at(last) - at(first));
-            float least = std::numeric_limits<float>::max();
-            for (const int f : surface_.faces_around(v))
-                least = std::min(least, foot_on_triangle(p, surface_.corner(f, 0), surface_.corner(f, 1),
-                                                         surface_.corner(f, 2))
-                                            .squared_distance);
+            const float least = squared_distance_from(surface_, surface_.faces_around(v), p);
             sum += least * std::sqrt(least) / 3;
         }
         return sum * (at(last) - at(first)).norm() / 3;

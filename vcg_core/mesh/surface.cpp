@@ -3,6 +3,8 @@
 
 #include "vcg_core/mesh/surface.h"
 
+#include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace neuralmesh {
@@ -48,6 +50,15 @@ Vector3 normal_beyond(const Surface& surface, VertexId a, VertexId b) {
     if (beyond.face < 0) return Vector3::Zero();
     return unit_normal(surface.positions[b], surface.positions[a],
                        surface.positions[surface.faces[beyond.face][(beyond.corner + 2) % 3]]);
+}
+
+float squared_distance_from(const Surface& surface, Span<const int> faces, const Vector3& p) {
+    float least = std::numeric_limits<float>::max();
+    for (const int f : faces)
+        least = std::min(least,
+                         foot_on_triangle(p, surface.corner(f, 0), surface.corner(f, 1), surface.corner(f, 2))
+                             .squared_distance);
+    return least;
 }
 
 float mean_edge_length(const Surface& surface) {

@@ -83,6 +83,9 @@ inline bool is_beyond_boundary(const Surface& surface, const Hit& hit) {
     return false;
 }
 
+/// Squared, of \p p from the nearest of \p faces; the largest float if there are none. O(faces).
+float squared_distance_from(const Surface& surface, Span<const int> faces, const Vector3& p);
+
 /// Mean length of the edges; those on a boundary have half the weight. O(faces). \pre the surface has a face
 float mean_edge_length(const Surface& surface);
 

@@ -277,6 +277,24 @@ TEST(FindCollapses, CountsWhatReachesBeyondTheBoundary) {
     EXPECT_NEAR(static_cast<double>(corner->cost), expected, expected / 4);
 }
 
+TEST(FindCollapses, TakeAnEarWithoutArea) {
+    Network network = referee::network_of(sheet());
+    VertexId ear = -1;
+    for (const VertexId v : network.vertices())
+        if (network.ring(v).valence == 2) ear = v;
+    ASSERT_GE(ear, 0);
+    const Ring ring = network.ring(ear);
+    network.set_position(ear, (network.position(ring[0]) + network.position(ring[1])) / 2);
+    const FitScene scene(network, square(20000, 3.5));
+    ThreadTeam team(1);
+    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
+    const auto of_ear =
+        std::find_if(collapses.begin(), collapses.end(), [&](const Collapse& c) { return c.gone == ear; });
+    ASSERT_NE(of_ear, collapses.end());
+    EXPECT_GE(of_ear->into, 0);
+    EXPECT_EQ(of_ear->cost, 0);
+}
+
 TEST(Webs, AreOpenedWhereThePointsEnd) {
     EXPECT_GE(webs_of_sheet(1, 20000), 14);  // of 48 faces without points and 21 inner vertices
 }
