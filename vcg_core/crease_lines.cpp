@@ -4,12 +4,10 @@
 #include "vcg_core/crease_lines.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "vcg_core/crease_edges.h"
 #include "vcg_core/learning/two_planes.h"
 #include "vcg_core/mesh/surface.h"
-#include "vcg_core/mesh/triangle.h"
 
 namespace neuralmesh {
 
@@ -50,26 +48,17 @@ int closed_lines(const CreaseEdges& chosen, const std::vector<VertexId>& vertice
     return closed;
 }
 
-/// Squared, of \p p from the faces around \p v.
-float squared_distance_from_ring(const Network& network, VertexId v, const Point3f& p) {
-    const Ring& ring = network.ring(v);
-    const auto at = [&](VertexId u) { return to_eigen(network.position(u)); };
-    float least = std::numeric_limits<float>::max();
-    for (int i = 0; i < ring.face_count(); ++i)
-        least = std::min(
-            least, foot_on_triangle(to_eigen(p), at(v), at(ring[i]), at(ring.next(i))).squared_distance);
-    return least;
-}
-
 /// The place of \p v on the line where two planes meet, if that is near and no farther from the mesh than
-/// noise would bring it. Planes that turn with a curved side meet off the mesh.
-Point3f place_on_line(const Network& network, TwoPlanes& planes, VertexId v) {
+/// noise would bring it. Where the smoothed normals tilt the planes, they meet off the mesh.
+Point3f place_on_line(const Network& network, const Surface& surface, TwoPlanes& planes, VertexId v) {
     const Point3f p = network.position(v);
     const float edge = mean_edge_at(network, v);
     const Crease crease = planes.crease_near(p, edge, v);
     const Point3f place = p + crease.to_line;
-    const bool is_near = crease.squared_distance < kFarthest * kFarthest &&
-                         squared_distance_from_ring(network, v, place) < kOffMesh * kOffMesh * edge * edge;
+    const float most = kOffMesh * edge;
+    const bool is_near =
+        crease.squared_distance < kFarthest * kFarthest &&
+        squared_distance_from(surface, surface.faces_around(v), to_eigen(place)) < most * most;
     return is_near ? place : p;
 }
 
@@ -80,7 +69,8 @@ CreaseGraph crease_lines(const Network& network, const PerVertex<float>& measure
     CreaseEdges chosen(network, faces, measure);
     chosen.add_sharp_edges();
     chosen.open_triangles();
-    const float edge = mean_edge_length(Surface(network));
+    const Surface surface(network);
+    const float edge = mean_edge_length(surface);
     for (int pass = 0; pass < kPasses; ++pass) {
         chosen.bridge_gaps(kLongestGap * edge);
         chosen.drop_spurs();
@@ -102,7 +92,7 @@ CreaseGraph crease_lines(const Network& network, const PerVertex<float>& measure
         index[v] = static_cast<int>(graph.vertices.size());
         graph.vertices.push_back(v);
         const bool inner = chosen.degree(v) == 2;
-        graph.positions.push_back(inner ? place_on_line(network, planes, v) : network.position(v));
+        graph.positions.push_back(inner ? place_on_line(network, surface, planes, v) : network.position(v));
         if (!inner) ends += chosen.degree(v);
         if (chosen.degree(v) > 2) ++graph.corners;
     }

@@ -222,8 +222,9 @@ bool encloses_more(const OpenStart& start, const Enclosure& shell) {
     return start.loops == 0 && !start.layers.are_two() && !shell.encloses_space;
 }
 
-/// Of those of an open start mesh; the fit, if there is one, reduces it.
-int vertices_needed(const OpenStart& start, const Settings& settings) {
+/// Of those of a start mesh, an OpenStart or a StartMesh; the fit, if there is one, reduces it.
+template <class Start>
+int vertices_needed(const Start& start, const Settings& settings) {
     return settings.redistributes_vertices() ? start.fewest_vertices
                                              : static_cast<int>(start.positions.size());
 }
@@ -268,10 +269,10 @@ void begin_open(LearningTask& task, OpenStart start, const Settings& settings) {
     task.landing_signals = kLandingSignalsOfOpen;
 }
 
-std::string too_large(const StartMesh& shell, int final_vertices) {
+std::string too_large(const StartMesh& shell, int needed, int final_vertices) {
     return "The shell of the cloud, with " + std::to_string(shell.components) + " components and genus " +
-           std::to_string(shell.genus) + ", needs " + std::to_string(shell.positions.size()) +
-           " vertices, more than the " + std::to_string(final_vertices) +
+           std::to_string(shell.genus) + ", needs " + std::to_string(needed) + " vertices, more than the " +
+           std::to_string(final_vertices) +
            " asked for: learning started from a tetrahedron instead. Raise target_vertices to keep the "
            "shape.";
 }
@@ -282,9 +283,9 @@ void begin_closed(LearningTask& task, StartMesh shell, const Settings& settings)
     remove_groups_without_component(task, shell.outliers, shell.positions);
     for (float& length : shell.thickenings)
         length *= static_cast<float>(diagonal / task.target().frame().diagonal);
-    const auto vertices = static_cast<int>(shell.positions.size());
-    if ((settings.redistributes_vertices() ? shell.fewest_vertices : vertices) > settings.target_vertices) {
-        task.warnings.push_back(too_large(shell, settings.target_vertices));
+    const int needed = vertices_needed(shell, settings);
+    if (needed > settings.target_vertices) {
+        task.warnings.push_back(too_large(shell, needed, settings.target_vertices));
         task.network = tetrahedron();
         return;
     }

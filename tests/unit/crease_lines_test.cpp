@@ -16,8 +16,7 @@
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
 #include "vcg_core/learning/two_planes.h"
-#include "vcg_core/mesh/surface.h"
-#include "vcg_core/mesh/triangle.h"
+#include "vcg_core/mesh/face_tree.h"
 
 namespace neuralmesh {
 namespace {
@@ -95,15 +94,12 @@ TEST(CreaseLines, StayNearTheMesh) {
     // Rough sides: two planes near a vertex may meet far from both.
     const Network cube = referee::network_of(fine_cube(), 0.08);
     const Surface surface(cube);
+    const FaceTree tree(surface);
     const CreaseGraph graph = crease_lines(cube, everywhere(cube, 2));
     ASSERT_GT(graph.vertices.size(), 50U);
     for (std::size_t i = 0; i < graph.vertices.size(); ++i) {
-        float least = 4;
-        for (int f = 0; f < surface.face_count(); ++f)
-            least = std::min(least, foot_on_triangle(to_eigen(graph.positions[i]), surface.corner(f, 0),
-                                                     surface.corner(f, 1), surface.corner(f, 2))
-                                        .squared_distance);
-        EXPECT_LE(std::sqrt(least), 0.21F * mean_edge_at(cube, graph.vertices[i]));
+        const float squared = tree.nearest(to_eigen(graph.positions[i])).foot.squared_distance;
+        EXPECT_LE(std::sqrt(squared), 0.21F * mean_edge_at(cube, graph.vertices[i]));
     }
 }
 

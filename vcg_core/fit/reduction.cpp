@@ -66,6 +66,7 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
 PointsByFace Fitter::update_for_removal(Surface& surface, PointsByFace points) {
     if (!expects_strays_) {
         points.update_feet(surface, team_);  // the next search follows once the vertices are removed
+        if (!surface.has_boundary()) return points;
         const Network before = network_;
         const CrossingGuard guard = guard_;
         if (mend_boundary(surface, points) == 0) return points;
