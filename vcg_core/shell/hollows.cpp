@@ -47,7 +47,13 @@ private:
         bool through_wall;
     };
     std::optional<View> first_void(const Point3f& from, const Point3f& direction, float wall) const;
-    Kind told_kind(int space, std::size_t places) const;
+    /// Of a space: its places of contact, those with spaces of known kind, and of these those that say that
+    /// it is void.
+    struct Told {
+        int all = 0, known = 0, says_void = 0;
+        double known_share() const { return all > 0 ? static_cast<double>(known) / all : 0; }
+    };
+    std::vector<Told> what_contacts_tell() const;
     Kind kind(int space) const { return kinds_[static_cast<std::size_t>(space)]; }
 
     const Lattice& lattice_;
@@ -108,32 +114,39 @@ void Spaces::look_from(const LayerPlace& place) {
     ++contacts_.back().places[walled];
 }
 
-/// What the contacts of \p space with spaces of known kind say, if most of its contacts are with such.
-Kind Spaces::told_kind(int space, std::size_t places) const {
-    int all = 0, known = 0, says_void = 0;
+std::vector<Spaces::Told> Spaces::what_contacts_tell() const {
+    std::vector<Told> told(kinds_.size());
+    const auto count = [&](int space, int other, const Contact& contact) {
+        Told& here = told[static_cast<std::size_t>(space)];
+        here.all += contact.places[0] + contact.places[1];
+        if (kind(other) == Kind::unknown) return;
+        here.known += contact.places[0] + contact.places[1];
+        here.says_void += contact.places[kind(other) == Kind::material ? 0 : 1];
+    };
     for (const Contact& contact : contacts_) {
-        if (contact.a != space && contact.b != space) continue;
-        const Kind other = kind(contact.a == space ? contact.b : contact.a);
-        const int here = contact.places[0] + contact.places[1];
-        all += here;
-        if (other == Kind::unknown) continue;
-        known += here;
-        says_void += contact.places[other == Kind::material ? 0 : 1];
+        count(contact.a, contact.b, contact);
+        count(contact.b, contact.a, contact);
     }
-    if (2 * known <= all) return Kind::unknown;
-    const bool sure = static_cast<double>(says_void) >= kSure * static_cast<double>(known) &&
-                      static_cast<double>(known) >= kLeastPlaces * static_cast<double>(places);
-    return sure ? Kind::void_space : Kind::material;
+    return told;
 }
 
+/// From the outside inward: next is always the space with the largest share of contacts with decided ones. A
+/// wall around a hollow has as many with the outside as with the hollow.
 void Spaces::decide(std::size_t places) {
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (std::size_t i = 1; i < kinds_.size(); ++i) {
-            if (kinds_[i] != Kind::unknown) continue;
-            kinds_[i] = told_kind(static_cast<int>(i), places);
-            changed = changed || kinds_[i] != Kind::unknown;
-        }
+    for (;;) {
+        const std::vector<Told> told = what_contacts_tell();
+        std::size_t next = 0;
+        double share = 0;
+        for (std::size_t i = 1; i < kinds_.size(); ++i)
+            if (kinds_[i] == Kind::unknown && told[i].known_share() > share) {
+                next = i;
+                share = told[i].known_share();
+            }
+        if (next == 0) return;
+        const Told& here = told[next];
+        const bool is_void =
+            here.says_void >= kSure * here.known && here.known >= kLeastPlaces * static_cast<double>(places);
+        kinds_[next] = is_void ? Kind::void_space : Kind::material;
     }
 }
 
