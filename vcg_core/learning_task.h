@@ -13,6 +13,7 @@
 #include "vcg_core/mesh/indexed_mesh.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/settings.h"
+#include "vcg_core/shell/shell.h"
 #include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
@@ -29,8 +30,8 @@ struct LearningTask {
         cleaned;       ///< without repeated points and outliers, or weighted; empty: as given
     int outliers = 0;  ///< number of points removed as such
     Network network;
-    std::vector<float> thickenings;  ///< by vertex of the network, as in StartMesh; empty: none
-    int landing_signals = 0;         ///< per vertex, before growth, to bring a shell down to the points
+    WallSides walls;          ///< as in StartMesh
+    int landing_signals = 0;  ///< per vertex, before growth, to bring a shell down to the points
     /// False for a sheet that is closed: its start mesh has two layers with nothing between them.
     bool encloses_space = true;
     /// Noise of the points in mean edges of the mesh asked for (cloud_noise.h). Infinite for layers with

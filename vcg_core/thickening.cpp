@@ -3,7 +3,6 @@
 
 #include "vcg_core/thickening.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -12,32 +11,33 @@
 
 namespace neuralmesh {
 
-Thickening::Thickening(const LearningTask& task) : start_(task.network) {
-    const std::vector<float>& lengths = task.thickenings;
-    if (std::none_of(lengths.begin(), lengths.end(), [](float length) { return length > 0; })) return;
-    tree_.emplace(start_);
-    moves_.assign(start_.positions.size(), Vector3::Zero());
+Thickening::Thickening(const LearningTask& task) {
+    const WallSides& walls = task.walls;
+    if (walls.faces.empty()) return;
+    shell_.emplace(Network(walls.positions, walls.faces));
+    tree_.emplace(*shell_);
+    moves_.assign(shell_->positions.size(), Vector3::Zero());
     for (VertexId v = 0; v < moves_.size(); ++v) {
-        for (const int f : start_.faces_around(v)) moves_[v] += area_vector(start_, f);
-        moves_[v] = lengths[static_cast<std::size_t>(v)] * moves_[v].normalized();
+        for (const int f : shell_->faces_around(v)) moves_[v] += area_vector(*shell_, f);
+        moves_[v] = walls.thickenings[static_cast<std::size_t>(v)] * moves_[v].normalized();
     }
 }
 
 Vector3 Thickening::move_at(const Vector3& p) const {
     const Hit hit = tree_->nearest(p);
-    const Triangle& face = start_.faces[hit.face];
+    const Triangle& face = shell_->faces[hit.face];
     const auto& w = hit.foot.weights;
     return w[0] * moves_[face[0]] + w[1] * moves_[face[1]] + w[2] * moves_[face[2]];
 }
 
 std::optional<TargetSpace> Thickening::thicker(const LearningTask& task, ThreadTeam& team) const {
-    if (moves_.empty()) return std::nullopt;
+    if (!shell_) return std::nullopt;
     return task.target().moved([this](const vcg::Point3f& p) { return p + to_vcg(move_at(to_eigen(p))); },
                                team);
 }
 
 void Thickening::take_back(Network& network, ThreadTeam& team) const {
-    if (moves_.empty()) return;
+    if (!shell_) return;
     PerVertex<Vector3> moves(network.slot_count(), Vector3::Zero());
     constexpr int kChunk = 256;
     parallel_for(network.slot_count(), kChunk, team, [&](VertexId v) {

@@ -13,12 +13,12 @@
 
 namespace neuralmesh {
 
-/// Moves along the normals of the start mesh, by the lengths of LearningTask::thickenings between its
-/// vertices. A point of one side of a wall is nearer to that side of the start mesh, which lies outside of
-/// the points, than to the other side; so the nearest face of the start mesh tells where outside is.
+/// Moves along the normals of LearningTask::walls, by its thickenings between its vertices. A point of one
+/// side of a wall is nearer to that side of the shell, which lies outside of the points, than to the other
+/// side; so the nearest face of the shell tells where outside is.
 class Thickening {
 public:
-    /// Keeps a copy of the start mesh. O(vertices log vertices)
+    /// O(vertices log vertices)
     explicit Thickening(const LearningTask& task);
 
     /// The points of \p task, those of thin walls moved outwards; nothing if there are no such walls. For
@@ -30,11 +30,11 @@ public:
     void take_back(Network& network, ThreadTeam& team) const;
 
 private:
-    /// At a point near the start mesh or thicker().
+    /// At a point near the shell or thicker().
     Vector3 move_at(const Vector3& p) const;
 
-    Surface start_;
-    PerVertex<Vector3> moves_;  ///< of the vertices of the start mesh; empty: there are none
+    std::optional<Surface> shell_;  ///< nothing if there are no thin walls
+    PerVertex<Vector3> moves_;      ///< of its vertices
     std::optional<FaceTree> tree_;
 };
 

@@ -96,8 +96,12 @@ ClosedMesh closed_mesh(const Region& region, const TopologyVote& vote) {
             return closed;
     }
     if (!close_with_stride(region, vote, levels.front(), vote.grown, closed))
-        closed.network = surface_of(region, signed_distances(region, closed.solid, closed.level), 1);
+        closed.network = mesh_on_all_nodes(region, closed);
     return closed;
+}
+
+Network mesh_on_all_nodes(const Region& region, const ClosedMesh& closed) {
+    return surface_of(region, signed_distances(region, closed.solid, closed.level), 1);
 }
 
 }  // namespace neuralmesh

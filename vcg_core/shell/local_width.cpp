@@ -82,16 +82,18 @@ PerVertex<float> local_widths(const Network& shell, const Lattice& lattice, cons
     return widths;
 }
 
-PerVertex<float> thickenings(const Network& start, const Lattice& lattice, const NodeSet& solid, float radius,
+PerVertex<float> thickenings(const Network& shell, const Lattice& lattice, const NodeSet& solid, float radius,
                              float thick) {
-    PerVertex<float> lengths(start.slot_count(), 0);
-    const PerVertex<Point3f> normals = smooth_normals(start);
+    PerVertex<float> lengths(shell.slot_count(), 0);
+    const PerVertex<Point3f> normals = smooth_normals(shell);
     const float farthest = std::max(2 * thick, 4 * radius);
-    for (const VertexId v : start.vertices()) {
-        const Widths at = widths_at(lattice, solid, radius, start.position(v), normals[v], farthest);
-        if (at.wall < kLeastSteps * lattice.step) continue;  // both sides may be one, as of a fin
-        // Moved by a quarter of the room on either side, the wall is still no wider than the gap.
-        const float room = std::max(0.0F, std::min(at.gap, thick) - at.wall);
+    for (const VertexId v : shell.vertices()) {
+        const Widths at = widths_at(lattice, solid, radius, shell.position(v), normals[v], farthest);
+        // Moved by a quarter of the room on either side, the wall is still no wider than the gap. Thinner
+        // walls, where both sides may be one, are taken for the thinnest that the lattice tells: a blade
+        // whose edges are not moved has twice the error there (wall_table.py).
+        const float wall = std::max(at.wall, kLeastSteps * lattice.step);
+        const float room = std::max(0.0F, std::min(at.gap, thick) - wall);
         lengths[v] = std::min(kMostRadii * radius, room / 4);
     }
     return lengths;

@@ -18,11 +18,10 @@ namespace neuralmesh {
 PerVertex<float> local_widths(const Network& shell, const Lattice& lattice, const NodeSet& solid,
                               float radius, float farthest);
 
-/// How far the points below each vertex of \p start may be moved outwards, so that walls thinner than \p
-/// thick become thicker, and no wider than the gaps before them: at most half of \p radius. 0 at other walls,
-/// and at those too thin for the lattice.
-/// \p start is a coarser mesh of the shell that local_widths() takes. O(vertices x thick / step).
-PerVertex<float> thickenings(const Network& start, const Lattice& lattice, const NodeSet& solid, float radius,
+/// How far the points below each vertex of \p shell may be moved outwards, so that walls thinner than \p
+/// thick become thicker, and no wider than the gaps before them: at most half of \p radius. 0 at other walls.
+/// \p shell may be coarser than the one that local_widths() takes. O(vertices x thick / step).
+PerVertex<float> thickenings(const Network& shell, const Lattice& lattice, const NodeSet& solid, float radius,
                              float thick);
 
 }  // namespace neuralmesh

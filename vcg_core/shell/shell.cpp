@@ -48,6 +48,13 @@ constexpr float kHalfLevel = 0.5F;
 constexpr double kEdgeOverWidth = 0.75;
 /// Walls thinner than this, in edges of an even mesh of as many vertices as asked for, are learned thicker.
 constexpr double kThickEdges = 1.5;
+/// The mesh that tells sides has this many times the vertices of the start mesh. The start mesh itself cuts
+/// corners off: at the edges of nested boxes half an edge apart it gives .4 % of the points to the wrong box,
+/// and the two meshes fold into each other there.
+constexpr int kSideVertices = 4;
+/// A mesh on every third or second node is too coarse for that if more of its vertices are wanted at the
+/// start than this share.
+constexpr double kMostOfCoarse = 1.0 / kSideVertices;
 /// Points are the two sides of walls where so many of them have a layer of others opposite: with walls of 4
 /// to 7 spacings .37 at least, on single scans, rooms and facades .21 at most (wall_table.py).
 constexpr double kWalled = 0.35;
@@ -83,34 +90,65 @@ double vertices_of(const Network& network, const PerVertex<float>& lengths) {
     return count;
 }
 
+/// The lengths that the edges should have in a mesh with edges of \p even_edge that is finer where the
+/// surface is close to itself, and the number of its vertices.
+struct WantedEdges {
+    PerVertex<float> lengths;
+    double vertices;
+};
+
+WantedEdges wanted_edges(const ClosedMesh& closed, const Lattice& lattice, float radius, double even_edge) {
+    PerVertex<float> lengths = local_widths(closed.network, lattice, closed.solid, radius,
+                                            static_cast<float>(even_edge / kEdgeOverWidth));
+    for (const VertexId v : closed.network.vertices()) lengths[v] *= static_cast<float>(kEdgeOverWidth);
+    const double vertices = vertices_of(closed.network, lengths);
+    return {std::move(lengths), vertices};
+}
+
+void copy_mesh(Network& network, IndexedMesh<float>& mesh) {
+    network.compact();
+    for (const VertexId v : network.vertices()) mesh.positions.push_back(network.position(v));
+    mesh.faces = network.faces();
+}
+
+WallSides wall_sides(Network shell, const PerVertex<float>& thickenings) {
+    WallSides result;
+    for (const VertexId v : shell.vertices()) result.thickenings.push_back(thickenings[v]);
+    const auto is_zero = [](float length) { return !(length > 0); };
+    if (std::all_of(result.thickenings.begin(), result.thickenings.end(), is_zero)) return {};
+    copy_mesh(shell, result);
+    return result;
+}
+
 /// Reduces \p closed to \p vertices vertices, or to more, up to \p most, where the surface is close to
-/// itself. \return StartMesh::thickenings for a mesh of \p final_vertices vertices
-std::vector<float> reduce(ClosedMesh& closed, const Lattice& lattice, int vertices, double most,
-                          int final_vertices) {
+/// itself. \return StartMesh::walls for a mesh of \p final_vertices vertices
+WallSides reduce(ClosedMesh& closed, const Region& region, int vertices, double most, int final_vertices) {
     Network& network = closed.network;
+    const Lattice& lattice = region.lattice;
     double area = 0;
     for (const VertexId v : network.vertices()) area += area_around(network, v);
     const double even_edge = std::sqrt(area / (kAreaPerVertex * vertices));
     const float radius = lattice.step * std::sqrt(static_cast<float>(closed.level) + kHalfLevel);
-    PerVertex<float> lengths =
-        local_widths(network, lattice, closed.solid, radius, static_cast<float>(even_edge / kEdgeOverWidth));
-    for (const VertexId v : network.vertices()) lengths[v] *= static_cast<float>(kEdgeOverWidth);
-    const double wanted = std::min(vertices_of(network, lengths), most);
-    std::vector<float> moves;
+    WantedEdges edges = wanted_edges(closed, lattice, radius, even_edge);
+    if (std::min(edges.vertices, most) > kMostOfCoarse * network.vertex_count()) {
+        network = mesh_on_all_nodes(region, closed);
+        edges = wanted_edges(closed, lattice, radius, even_edge);
+    }
+    const int wanted = static_cast<int>(std::min(edges.vertices, most));
     if (!(wanted > kWorthwhile * vertices)) {
         simplify(network, vertices);
-        return moves;
+        return {};
     }
-    simplify(network, static_cast<int>(wanted), lengths);
+    simplify(network, kSideVertices * wanted, edges.lengths);
     const double thick = kThickEdges * std::sqrt(area / (kAreaPerVertex * final_vertices));
-    const PerVertex<float> by_vertex =
-        thickenings(network, lattice, closed.solid, radius, static_cast<float>(thick));
-    for (const VertexId v : network.vertices()) moves.push_back(by_vertex[v]);
-    return moves;
+    WallSides walls =
+        wall_sides(network, thickenings(network, lattice, closed.solid, radius, static_cast<float>(thick)));
+    simplify(network, wanted, edges.lengths);
+    return walls;
 }
 
 /// Reduces the mesh of \p closed and puts it into \p result, with its topology. \p points: their number.
-void set_mesh(ClosedMesh& closed, const Lattice& lattice, std::size_t points, const ShellOptions& options,
+void set_mesh(ClosedMesh& closed, const Region& region, std::size_t points, const ShellOptions& options,
               StartMesh& result) {
     Network& network = closed.network;
     result.components = network.component_count();
@@ -122,13 +160,11 @@ void set_mesh(ClosedMesh& closed, const Lattice& lattice, std::size_t points, co
     const double most = std::min(told, static_cast<double>(options.most_vertices));
     // A sheet is nowhere far from itself.
     if (result.encloses_space && most > kWorthwhile * vertices) {
-        result.thickenings = reduce(closed, lattice, vertices, most, options.target_vertices);
+        result.walls = reduce(closed, region, vertices, most, options.target_vertices);
     } else {
         simplify(network, vertices);
     }
-    network.compact();
-    for (const VertexId v : network.vertices()) result.positions.push_back(network.position(v));
-    result.faces = network.faces();
+    copy_mesh(network, result);
 }
 
 /// Sets the figures that the lattice and the vote give.
@@ -224,7 +260,7 @@ StartMesh Shell::mesh(Progress& progress) const {
             "No part of the cloud holds enough points for a start mesh around it. Choose the tetrahedron as start mesh, or remove scattered points first.");
     StartMesh result;
     static_cast<Enclosure&>(result) = examined_->enclosure;
-    set_mesh(closed, region.lattice, points.size(), examined_->options, result);
+    set_mesh(closed, region, points.size(), examined_->options, result);
     set_figures(survey, closed.level, result);
     set_outliers(examined_->target, points, region, closed, examined_->options.learn_outliers, result);
     warn_of_uncertain_topology(survey, result);

@@ -77,14 +77,19 @@ struct Enclosure {
     double widest_opening = 0;   ///< radius of the widest sealed opening; 0: none
 };
 
+/// A finer mesh of the shell, which tells the two sides of thin walls apart; without faces if there are none.
+struct WallSides : IndexedMesh<float> {
+    /// How far the points below each vertex may be moved outwards while they are learned, so that the two
+    /// sides are further from each other (local_width.h).
+    std::vector<float> thickenings;
+};
+
 /// A closed, oriented, simplicial 2-manifold with valences from 3 to 12, in the core's frame.
 struct StartMesh : IndexedMesh<float>, Enclosure {
     int components = 0;
     int genus = 0;            ///< of all components together
     int fewest_vertices = 0;  ///< that its components and handles need
-    /// How far the points below each vertex may be moved outwards while they are learned, so that the two
-    /// sides of thin walls are further from each other (local_width.h); empty: nowhere.
-    std::vector<float> thickenings;
+    WallSides walls;
     double confidence = 0;         ///< share of the votes for components and genus, in [0, 1]
     double radius = 0;             ///< of the ball; the mesh lies about this far outside the points
     double resolution = 0;         ///< distance of the lattice nodes

@@ -127,6 +127,12 @@ TEST(Thickenings, AreZeroAtThickWalls) {
     for (const float length : plate.facing) EXPECT_EQ(length, 0);
 }
 
+TEST(Thickenings, TakeWallsTooThinForTheLatticeForTheThinnestThatItTells) {
+    const PlateSides plate = thickenings_of_plates(0.1F, 0.4F, 0.06F, 0.1F);
+    for (const float length : plate.outer) EXPECT_FLOAT_EQ(length, (0.1F - 1.5F * kStep) / 4);
+    for (const float length : plate.facing) EXPECT_FLOAT_EQ(length, (0.1F - 1.5F * kStep) / 4);
+}
+
 TEST(Thickenings, AreZeroBeforeGapsNarrowerThanTheWall) {
     const PlateSides plate = thickenings_of_plates(0.3F, 0.1F, 0.04F, 0.5F);
     for (const float length : plate.outer) EXPECT_GT(length, 0);
