@@ -52,13 +52,14 @@ constexpr double kThickEdges = 1.5;
 /// corners off: at the edges of nested boxes half an edge apart it gives .4 % of the points to the wrong box,
 /// and the two meshes fold into each other there.
 constexpr int kSideVertices = 4;
-/// A mesh of the shell of no more than this many times those vertices tells sides as it is: evening it on the
-/// way to the start mesh draws sharp edges back. A blade two edges thick at its middle would have four to
-/// nine times the error in two of four clouds.
-constexpr int kWorthEvening = 2;
-/// A mesh on every third or second node is too coarse for that if more of its vertices are wanted at the
-/// start than this share. Where the points tell fewer than are wanted, balls may just get into a wall, which
-/// only the finer mesh shows: of a casting with walls of 3.4 spacings 16 % of the faces were turned then.
+/// A shell of no more than this many times as many vertices tells sides as it is. If it were reduced twice,
+/// sharp edges would draw back: a blade two edges thick at its middle has four to nine times the error then,
+/// in two of four clouds.
+constexpr int kWorthReducing = 2;
+/// A shell made on every third or second node is too coarse to tell sides if walls want more than this share
+/// of its vertices at the start. It is kept where the points tell fewer start vertices than that: there balls
+/// may just get into a wall, and a mesh on all nodes has a dent, with 16 % of the faces turned (casting,
+/// walls of 3.4 spacings).
 constexpr double kMostOfCoarse = 1.0 / kSideVertices;
 /// Points are the two sides of walls where so many of them have a layer of others opposite: with walls of 4
 /// to 7 spacings .37 at least, on single scans, rooms and facades .21 at most (wall_table.py).
@@ -145,7 +146,7 @@ WallSides reduce(ClosedMesh& closed, const Region& region, int vertices, double 
         return {};
     }
     const int of_sides = kSideVertices * wanted;
-    if (network.vertex_count() > kWorthEvening * of_sides) simplify(network, of_sides, edges.lengths);
+    if (network.vertex_count() > kWorthReducing * of_sides) simplify(network, of_sides, edges.lengths);
     const double thick = kThickEdges * std::sqrt(area / (kAreaPerVertex * final_vertices));
     WallSides walls =
         wall_sides(network, thickenings(network, lattice, closed.solid, radius, static_cast<float>(thick)));

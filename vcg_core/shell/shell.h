@@ -15,7 +15,8 @@
 //    handles from gaps between points and from parts that nearly touch (bridgeless_growth.h,
 //    lattice_survey.h).
 // 5. Marching tetrahedra turn the chosen solid into a mesh (closed_mesh.h). Half-edge collapses, which keep
-//    the topology, reduce it (simplify.h), less where walls and gaps are narrow (local_width.h).
+//    the topology, reduce it (simplify.h), less where walls and gaps are narrow (local_width.h). There a mesh
+//    of more vertices tells the two sides of a wall apart (WallSides).
 //
 // Outliers make no component. An isolated group of points makes one if it holds at least 1 % of the points
 // (component_share) and at least kSpeckPoints: of 200,000 points, a group of 1,999 is outliers. Single points
