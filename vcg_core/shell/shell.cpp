@@ -117,12 +117,13 @@ void copy_mesh(Network& network, IndexedMesh<float>& mesh) {
     mesh.faces = network.faces();
 }
 
-WallSides wall_sides(Network shell, const PerVertex<float>& thickenings) {
+WallSides wall_sides(const Network& shell, const PerVertex<float>& thickenings) {
+    if (std::none_of(thickenings.begin(), thickenings.end(), [](float length) { return length > 0; }))
+        return {};
     WallSides result;
     for (const VertexId v : shell.vertices()) result.thickenings.push_back(thickenings[v]);
-    const auto is_zero = [](float length) { return !(length > 0); };
-    if (std::all_of(result.thickenings.begin(), result.thickenings.end(), is_zero)) return {};
-    copy_mesh(shell, result);
+    Network compacted = shell;
+    copy_mesh(compacted, result);
     return result;
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "tests/unit/support/crumpled.h"
@@ -20,15 +21,32 @@ namespace {
 
 constexpr double kWall = 0.03;
 
-/// The pairs of faces of \p mesh that go through each other.
-std::vector<SelfCrossing> cuts_of(const NeuralMesh& mesh) {
+Network network_of(const NeuralMesh& mesh) {
     shapes::Shape shape;
     for (const auto& p : mesh.positions) shape.positions.push_back(vcg::Point3d::Construct(p));
     shape.faces = mesh.faces;
-    const Surface surface(referee::network_of(shape));
+    return referee::network_of(shape);
+}
+
+/// The pairs of faces of \p mesh that go through each other. On exact planes some seem to, by the rounding of
+/// their corners.
+std::vector<SelfCrossing> cuts_of(const NeuralMesh& mesh) {
+    const Surface surface(network_of(mesh));
     std::vector<SelfCrossing> found = crossings(surface, 1);
     drop_apparent(surface, found);
     return found;
+}
+
+/// A random point of the surface of the box around the origin with the given \p edges, or nothing: of a side
+/// of the area \p largest always a point, of smaller ones as much more seldom.
+std::optional<vcg::Point3d> point_of_box(const vcg::Point3d& edges, double largest, Random& random) {
+    vcg::Point3d p = shapes::in_cube(random);
+    const int k = static_cast<int>(random.below(3));
+    const double area = edges[(k + 1) % 3] * edges[(k + 2) % 3];
+    if (static_cast<double>(random.unit()) > area / largest) return {};
+    p[k] = p[k] < 0 ? -1 : 1;
+    for (int i = 0; i < 3; ++i) p[i] *= edges[i] / 2;
+    return p;
 }
 
 /// A box with four walls and a floor, open at the top.
@@ -39,45 +57,32 @@ shapes::Cloud open_box(int count) {
     while (static_cast<int>(cloud.size()) < count) {
         // The surface of the outside, or that of the inside, which is open at the top.
         const bool outer = random.below(2) == 0;
-        const vcg::Point3d& edges = outer ? outside : inside;
-        vcg::Point3d p = shapes::in_cube(random);
-        const int k = static_cast<int>(random.below(3));
-        const double area = edges[(k + 1) % 3] * edges[(k + 2) % 3];
-        if (static_cast<double>(random.unit()) > area / 0.8) continue;
-        p[k] = p[k] < 0 ? -1 : 1;
-        for (int i = 0; i < 3; ++i) p[i] *= edges[i] / 2;
-        if (!outer) p[2] += kWall;
-        const bool at_top = p[2] > 0.6 / 2 - 1e-9;
-        const bool over_opening = std::abs(p[0]) < 0.5 - kWall && std::abs(p[1]) < 0.4 - kWall;
-        if (at_top && (over_opening || !outer || k != 2)) continue;
-        cloud.push_back(p);
+        std::optional<vcg::Point3d> p = point_of_box(outer ? outside : inside, 0.8, random);
+        if (!p) continue;
+        if (!outer) (*p)[2] += kWall;
+        const bool at_top = (*p)[2] > 0.6 / 2 - 1e-9;
+        const bool over_opening = std::abs((*p)[0]) < 0.5 - kWall && std::abs((*p)[1]) < 0.4 - kWall;
+        if (at_top && (over_opening || !outer)) continue;
+        cloud.push_back(*p);
     }
     return cloud;
 }
 
-/// How far \p p is from the surface of the box around the origin with edges of twice \p half.
-double distance_from_box(const vcg::Point3d& p, const vcg::Point3d& half) {
+/// \p count points of the surface of the box around the origin with the given \p edges.
+void add_box(const vcg::Point3d& edges, std::size_t count, Random& random, shapes::Cloud& cloud) {
+    for (const std::size_t end = cloud.size() + count; cloud.size() < end;)
+        if (const auto p = point_of_box(edges, edges[0] * edges[1], random)) cloud.push_back(*p);
+}
+
+/// How far \p p is from the surface of the box around the origin with the given \p edges.
+double distance_from_box(const vcg::Point3d& p, const vcg::Point3d& edges) {
     vcg::Point3d outside;
     double depth = -HUGE_VAL;
     for (int k = 0; k < 3; ++k) {
-        outside[k] = std::max(0.0, std::abs(p[k]) - half[k]);
-        depth = std::max(depth, std::abs(p[k]) - half[k]);
+        outside[k] = std::max(0.0, std::abs(p[k]) - edges[k] / 2);
+        depth = std::max(depth, std::abs(p[k]) - edges[k] / 2);
     }
     return depth > 0 ? outside.Norm() : -depth;
-}
-
-/// \p count points of the surface of that box.
-void add_box(const vcg::Point3d& half, std::size_t count, Random& random, shapes::Cloud& cloud) {
-    const double largest = half[0] * half[1];
-    for (const std::size_t end = cloud.size() + count; cloud.size() < end;) {
-        vcg::Point3d p = shapes::in_cube(random);
-        const int k = static_cast<int>(random.below(3));
-        const double area = half[(k + 1) % 3] * half[(k + 2) % 3];
-        if (static_cast<double>(random.unit()) > area / largest) continue;
-        p[k] = p[k] < 0 ? -1 : 1;
-        for (int i = 0; i < 3; ++i) p[i] *= half[i];
-        cloud.push_back(p);
-    }
 }
 
 // Of cloud 4 the inner box was filled, because the wall has as many places of contact with it as with the
@@ -85,7 +90,7 @@ void add_box(const vcg::Point3d& half, std::size_t count, Random& random, shapes
 // the outer one, and vertices went over to the other box while they landed: .00095.
 TEST(ThinWalls, OfNestedBoxesKeepTheirSides) {
     constexpr std::size_t kPoints = 40000;  // four spacings through the wall
-    const vcg::Point3d outer(0.5, 0.4, 0.3), inner(0.46, 0.36, 0.26);
+    const vcg::Point3d outer(1, 0.8, 0.6), inner(0.92, 0.72, 0.52);
     for (const std::uint64_t seed : {4U, 9U}) {
         shapes::Cloud cloud;
         Random random(seed);
@@ -120,7 +125,7 @@ TEST(ThinWalls, OfAnOpenBoxDoNotCross) {
     EXPECT_EQ(mesh.report.components, 1);
     EXPECT_EQ(mesh.report.genus, 0);
     EXPECT_EQ(mesh.report.boundary_loops, 0);
-    EXPECT_TRUE(cuts_of(mesh).empty());
+    EXPECT_TRUE(cut_faces(network_of(mesh)).empty());
     EXPECT_LT(mesh.report.rms_error, 100 * kWall / 10);
 }
 
