@@ -9,10 +9,12 @@
 prints tables (markdown) and writes OUT/scan_table.json, to which a later call adds. Outliers are compared with the same
 cloud without them, everything else with the peers: plain (normals, Screened Poisson of depth 8, Quadric Edge Collapse),
 tuned (the best of nine pairs of depth and samples per node, from normals that the truth turned the right way), and
-tuned-selected (the same after MeshLab's outlier selection). Lengths are % of the diagonal of the true surface.
+tuned-selected (the same after MeshLab's outlier selection). Lengths are % of the diagonal of the true surface. Of scans
+by views, forward distances are those of the parts that a view sees.
 """
 
 import argparse
+import copy
 import json
 import os
 import sys
@@ -60,26 +62,34 @@ def parse(arguments):
 
 
 def clouds(name, truth, options):
-    """Yields (case, points, true outliers or none)."""
+    """Yields (case, points, true outliers or none, the truth to measure against)."""
     vertices, faces = truth.vertices, truth.faces
     if "outliers" in options.groups:
         points = models.make_cloud(vertices, faces, options.samples)
-        yield "clean", points, 0
+        yield "clean", points, 0, truth
         for kind, share in OUTLIERS:
             with_them, flags = scans.with_outliers(points, kind, share)
-            yield f"{kind} {100 * share:g} %", with_them, int(flags.sum())
+            yield f"{kind} {100 * share:g} %", with_them, int(flags.sum()), truth
     if "levels" in options.groups:
         for level, defects in scans.LEVELS.items():
             result = scans.scan(vertices, faces, defects)
-            yield f"level {level}", result.points, int(result.outlier.sum())
+            yield f"level {level}", result.points, int(result.outlier.sum()), seen_part(truth, result)
     if "density" in options.groups:
         for ratio in DENSITIES:
-            yield f"density {ratio}:1", scans.thinned(vertices, faces, ratio), 0
+            yield f"density {ratio}:1", scans.thinned(vertices, faces, ratio), 0, truth
     if "points" in options.groups:
         for noise in options.noise:
             for ratio in options.per_vertex:
                 cloud = models.make_cloud(vertices, faces, int(ratio * options.vertices), noise)
-                yield f"{ratio:g} points per vertex" + (f", noise {noise:g} %" if noise else ""), cloud, 0
+                yield f"{ratio:g} points per vertex" + (f", noise {noise:g} %" if noise else ""), cloud, 0, truth
+
+
+def seen_part(truth, scan):
+    """The truth with samples where a view sees it: elsewhere no method can know the surface."""
+    part = copy.copy(truth)
+    chosen = np.random.default_rng(20030101).choice(len(scan.seen), truth.samples, replace=False)
+    part.points, part.normals = scan.seen[chosen], scan.seen_normals[chosen]
+    return part
 
 
 def turned_normals(points, truth):
@@ -154,8 +164,8 @@ def measured(method, points, truth, options, folder):
 def all_rows(options, rows, keep):
     known = {(row["model"], row["case"], row["method"]) for row in rows}
     for name in options.models:
-        truth = evaluate.Truth(*models.load_model(name, options.data))
-        for case, points, outliers in clouds(name, truth, options):
+        whole = evaluate.Truth(*models.load_model(name, options.data))
+        for case, points, outliers, truth in clouds(name, whole, options):
             for method in ("neural", *options.peers):
                 if (name, case, method) in known:
                     continue

@@ -38,6 +38,7 @@ class Scan:
     points: np.ndarray
     outlier: np.ndarray  # per point
     seen: np.ndarray  # samples of the true surface that at least one view can see
+    seen_normals: np.ndarray
 
 
 def unit(vectors):
@@ -97,7 +98,7 @@ def scan(vertices, faces, level, views=10, pixels=300, seed=1, dense=DENSE):
         parts.append(turned + rng.normal(size=3) * level.shift * diagonal / 3 ** .5)
     points = np.concatenate(parts)
     moved, outlier = with_moved(points, level.outliers, rng, diagonal)
-    return Scan(moved, outlier, samples[seen])
+    return Scan(moved, outlier, samples[seen], normals[seen])
 
 
 def chosen_of(points, share, rng):
