@@ -56,8 +56,6 @@ constexpr float kLayerStiffness = 3;
 constexpr int kStiffRounds = 3;
 constexpr float kStiffWeight = 50;
 constexpr float kWeightAfterStiff = 1;
-/// Fewer layered places than this share of the vertices are chance, or bends.
-constexpr float kLayeredShare = 0.01F;
 /// Noise variances that an edge split has to gain. kMinSplitVariances holds where the noise is well below
 /// kSmallNoise of the edge: there the surface crumples little, and right splits win more than wrong ones
 /// lose. kMaxSplitVariances holds for noisier edges: the best of ten thousand splits that follow only noise
@@ -142,50 +140,29 @@ double Fitter::error_at(const HeldOut& held_out, const Surface& surface) const {
 }
 
 void Fitter::examine_layers(const Surface& surface, const PointsByFace& points) {
-    layered_ = false;
     layering_ = 0;
     bending_error_ = 0;
     stiff_rounds_ = 0;
     if (static_cast<float>(points.all().size()) < kFewPoints * static_cast<float>(network_.vertex_count()))
         return;
-    const PerVertex<float>& variances = widest_variances(surface, points);
+    PerVertex<float> variances = local_variances(network_, surface, points);
     layering_ = layering(network_, surface, variances);
-    const PerVertex<float> local = local_layering(network_, surface, variances);
-    const float places = std::accumulate(local.begin(), local.end(), 0.0F);
-    // Fewer vertices spread the points more widely, at bends as well: what the first surface, which has the
-    // most, does not show is no layer. On scans of buildings, which are open, niches look like layers.
-    layered_places_ = layered_places_ && !surface.has_boundary() &&
-                      places > kLayeredShare * static_cast<float>(network_.vertex_count());
-    layered_ = layering_ > 0 || layered_places_;
-    if (!layered_) return;
+    if (!(layering_ > 0)) return;
     constexpr double kEdgesPerVertex = 3;
     double sum = 0;
-    for (const float s : stiffness_by(variances, surface, points)) sum += static_cast<double>(s);
+    for (const float s : stiffness_by(std::move(variances), surface, points)) sum += static_cast<double>(s);
     bending_error_ = kEdgesPerVertex * sum / network_.vertex_count();
     stiff_rounds_ = kStiffRounds;
 }
 
-/// Where the surface begins to follow the layers, it hides them.
-const PerVertex<float>& Fitter::widest_variances(const Surface& surface, const PointsByFace& points) {
-    const PerVertex<float> now = local_variances(network_, surface, points);
-    variances_.resize(now.size(), 0);
-    for (VertexId v = 0; v < now.size(); ++v) variances_[v] = std::max(variances_[v], now[v]);
-    return variances_;
-}
-
 /// By Bayes' rule, as the least weight, but with the variance around each vertex.
-PerVertex<float> Fitter::stiffness_by(const PerVertex<float>& variances, const Surface& surface,
+PerVertex<float> Fitter::stiffness_by(PerVertex<float> variances, const Surface& surface,
                                       const PointsByFace& points) const {
     const float gap = kLikelyGap * mean_edge_length(surface);
     const float points_per_vertex =
         static_cast<float>(points.all().size()) / static_cast<float>(network_.vertex_count());
-    const float per_variance = kLayerStiffness / (gap * gap * points_per_vertex);
-    const bool stiff_by_places = stiff_rounds_ > 0 && !(layering_ > 0);
-    PerVertex<float> stiffness = local_layering(network_, surface, variances);
-    for (VertexId v = 0; v < stiffness.size(); ++v)
-        stiffness[v] = std::max(layering_, stiffness[v]) * per_variance * variances[v] +
-                       (stiff_by_places ? stiffness[v] * kStiffWeight : 0);
-    return stiffness;
+    for (float& s : variances) s *= layering_ * kLayerStiffness / (gap * gap * points_per_vertex);
+    return variances;
 }
 
 PointsByFace Fitter::assign_faces(const Surface& surface) {
@@ -227,7 +204,7 @@ std::vector<float> Fitter::choose_weights(const Surface& surface, const PointsBy
     const float gap =
         (points_per_vertex < kFewPoints ? kLikelyGapOfFew : kLikelyGap) * mean_edge_length(surface);
     std::vector<float> weights = bending_.next_weights(noise_variance_ / (gap * gap * points_per_vertex));
-    if (stiff_rounds_ > 0 && layering_ > 0) weights = {kStiffWeight};
+    if (stiff_rounds_ > 0) weights = {kStiffWeight};
     return weights;
 }
 
@@ -236,7 +213,7 @@ double Fitter::solve(const PointsByFace& points, Surface& surface) {
     const Surface start = surface;
     const MoveLimits limits(network_, start);
     PerVertex<float> stiffness;
-    if (layered_) stiffness = stiffness_by(widest_variances(surface, points), surface, points);
+    if (layering_ > 0) stiffness = stiffness_by(local_variances(network_, surface, points), surface, points);
     const PointToPlaneSystem system(network_, surface, points, team_, stiffness);
     std::vector<PerVertex<Vector3>> solutions(weights.size());
     for_chunks(weights.size(), 1, team_, [&](std::size_t i, std::size_t, std::size_t) {
@@ -304,11 +281,8 @@ int Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& po
     });
     if (done.collapses.empty()) return 0;
     redirect_to_survivors(done.collapses);
-    variances_.resize(network_.slot_count(), 0);
-    for (const VertexMoves::Insertion& insertion : done.insertions) {
+    for (const VertexMoves::Insertion& insertion : done.insertions)
         sources_[insertion.added] = sources_[insertion.beside];
-        variances_[insertion.added] = variances_[insertion.beside];
-    }
     return static_cast<int>(done.collapses.size());
 }
 
