@@ -93,8 +93,10 @@ private:
     PointsByFace assign(const Surface& surface, const std::vector<Hit>& hits);
     void weaken_outliers(const Surface& surface, PointsByFace& points) const;
     void silence_strays(const Surface& surface, PointsByFace& points);
+    double with_bending(double error, const Surface& surface) const;
     void examine_layers(const Surface& surface, const PointsByFace& points);
-    PerVertex<float> stiffness_by(PerVertex<float> variances, const Surface& surface,
+    PerVertex<float> examine_variances(const Surface& surface, const PointsByFace& points);
+    PerVertex<float> stiffness_by(const PerVertex<float>& variances, const Surface& surface,
                                   const PointsByFace& points) const;
     std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
     LeastSplitGain least_split_gain(const Surface& surface) const;
@@ -117,11 +119,14 @@ private:
     TrackedPoints fitted_;
     TrackedPoints set_aside_;  ///< fitted points that the reduction does not use
     HeldOut held_out_;
-    float outlier_distance_ = 0;  ///< from the first assignment; fixed, so that errors stay comparable
-    float noise_variance_ = 0;    ///< from the last assignment
-    float layering_ = 0;          ///< see layering(); from the last exact search
-    double bending_error_ = 0;    ///< of layers: weight of the mean squared gap in squared errors
-    int stiff_rounds_ = 0;        ///< still to come: their bending weight lets the surface follow no layer
+    float outlier_distance_ = 0;         ///< from the first assignment; fixed, so that errors stay comparable
+    float noise_variance_ = 0;           ///< from the last assignment
+    PerVertex<float> widest_variances_;  ///< of the points across the surface
+    bool layered_places_ = true;         ///< until a search shows none
+    bool layered_ = false;               ///< somewhere; from the last exact search, as the next
+    float layering_ = 0;                 ///< over most of the surface, see layering()
+    double bending_error_ = 0;           ///< of layers: weight of the mean squared gap in squared errors
+    int stiff_rounds_ = 0;  ///< still to come: their bending weight lets the surface follow no layer
     bool expects_strays_ = false;
     bool solved_ = false;  ///< vertices have moved
     BendingSearch bending_;

@@ -34,6 +34,36 @@ Spread spread_of(const Surface& surface, const PointsByFace& points, int face, c
     return {std::max(0.0F, squares - sum * sum / n), n - 1};
 }
 
+/// Between these spreads layers begin to matter, in mean edges. Below, learning hardly follows them.
+constexpr float kNear = 0.15F, kFar = 0.25F;
+
+/// 0 up to \p low, 1 from \p high on.
+float ramp(float x, float low, float high) {
+    return std::min(std::max((x - low) / (high - low), 0.0F), 1.0F);
+}
+
+/// The spreads around all vertices, in mean edges, but for the extreme tenth and hundredth.
+struct Spreads {
+    float narrow, median, wide;
+};
+
+Spreads spreads_of(const Network& network, const Surface& surface, const PerVertex<float>& variances) {
+    constexpr std::size_t kTenth = 10, kHundredth = 100;
+    std::vector<float> spreads;
+    for (const VertexId v : network.vertices()) spreads.push_back(std::sqrt(variances[v]));
+    std::sort(spreads.begin(), spreads.end());
+    const std::size_t n = spreads.size();
+    const float edge = mean_edge_length(surface);
+    return {spreads[n / kTenth] / edge, spreads[n / 2] / edge, spreads[n - 1 - n / kHundredth] / edge};
+}
+
+/// Whether the points fill a space rather than lie along a surface. Virtual scans of level 3 have median
+/// spreads of .27 to .36 with 2,000 to 12,000 vertices.
+float filling(const Spreads& spreads) {
+    constexpr float kWidest = 0.4F, kFilling = 0.45F;
+    return ramp(spreads.median, kWidest, kFilling);
+}
+
 }  // namespace
 
 PerVertex<float> local_variances(const Network& network, const Surface& surface, const PointsByFace& points) {
@@ -57,27 +87,32 @@ PerVertex<float> local_variances(const Network& network, const Surface& surface,
 }
 
 float layering(const Network& network, const Surface& surface, const PerVertex<float>& variances) {
-    // Shares of the mean edge. Below, learning hardly follows the layers.
-    constexpr float kNarrow = 0.15F, kWide = 0.25F;
-    // Virtual scans of level 3 have .27 to .36 with 2,000 to 12,000 vertices. Wider, points fill a space.
-    constexpr float kWidest = 0.4F, kFilling = 0.45F;
-    // Ratio of the widest to the narrowest spread, but for the extreme hundredth and tenth of the vertices.
-    // Independent noise of .3 and .6 % of the diagonal: 1.19 to 1.30; virtual scans of level 3: 1.55 to 1.66.
+    // Ratio of the widest to the narrowest spread. Independent noise of .3 and .6 % of the diagonal: 1.19 to
+    // 1.30; virtual scans of level 3: 1.55 to 1.66.
     constexpr float kEven = 1.35F, kUneven = 1.5F;
-    constexpr std::size_t kTenth = 10, kHundredth = 100;
-    std::vector<float> spreads;
-    for (const VertexId v : network.vertices()) spreads.push_back(std::sqrt(variances[v]));
-    std::sort(spreads.begin(), spreads.end());
-    const std::size_t n = spreads.size();
-    const float narrow = spreads[n / kTenth];
-    const float wide = spreads[n - 1 - n / kHundredth];
-    if (!(narrow > 0)) return 0;
-    const auto ramp = [](float x, float low, float high) {
-        return std::min(std::max((x - low) / (high - low), 0.0F), 1.0F);
-    };
-    const float median = spreads[n / 2] / mean_edge_length(surface);
-    return ramp(median, kNarrow, kWide) * (1 - ramp(median, kWidest, kFilling)) *
-           ramp(wide / narrow, kEven, kUneven);
+    const Spreads spreads = spreads_of(network, surface, variances);
+    if (!(spreads.narrow > 0)) return 0;
+    return ramp(spreads.median, kNear, kFar) * (1 - filling(spreads)) *
+           ramp(spreads.wide / spreads.narrow, kEven, kUneven);
+}
+
+PerVertex<float> local_layering(const Network& network, const Surface& surface,
+                                const PerVertex<float>& variances) {
+    // Single vertices differ by chance, and by the bends of the surface. Chosen on virtual scans of level 2
+    // with 2,000 vertices, by tests/experiments/accuracy/scan_table.py.
+    constexpr float kEven = 1.35F, kUneven = 1.8F;
+    // Of the narrowest tenth, in mean edges: .13 to .18 on those scans, .24 to .27 where points fill a space.
+    constexpr float kRest = 0.2F;
+    PerVertex<float> result(variances.size(), 0);
+    const Spreads spreads = spreads_of(network, surface, variances);
+    if (!(spreads.narrow > 0)) return result;
+    const float on_a_part = 1 - ramp(spreads.narrow, kNear, kRest);
+    const float edge = mean_edge_length(surface);
+    for (const VertexId v : network.vertices()) {
+        const float spread = std::sqrt(variances[v]) / edge;
+        result[v] = on_a_part * ramp(spread, kNear, kFar) * ramp(spread / spreads.narrow, kEven, kUneven);
+    }
+    return result;
 }
 
 double mean_squared_gap(const Surface& surface) {

@@ -18,9 +18,14 @@ namespace neuralmesh {
 /// smoothed normals: those of a mesh that follows the layers stand askew. O(points + vertices).
 PerVertex<float> local_variances(const Network& network, const Surface& surface, const PointsByFace& points);
 
-/// How surely the points lie in layers, in [0, 1], by the \p variances of local_variances(): 0 if they are
-/// close to the surface, spread evenly, or fill a space. O(vertices).
+/// How surely the points lie in layers over most of the surface, in [0, 1], by the \p variances of
+/// local_variances(): 0 if they are close to the surface, spread evenly, or fill a space. O(vertices).
 float layering(const Network& network, const Surface& surface, const PerVertex<float>& variances);
+
+/// The same for the places around each vertex: a few views may overlap where most of the surface is seen by
+/// one. 0 where the points are spread widely everywhere: in layers, or because they fill a space.
+PerVertex<float> local_layering(const Network& network, const Surface& surface,
+                                const PerVertex<float>& variances);
 
 /// The mean squared gap of the edges (see PointToPlaneSystem), estimated from how the faces around each
 /// vertex turn. O(faces).
