@@ -64,7 +64,8 @@ public:
 
     /// Solves the least squares for several bending weights and moves the vertices to the solution with the
     /// least error at the held-out points. Moves \p surface, that of the network, with them. \return the
-    /// error
+    /// error, by which rounds compare; it includes the bending if only a part of the surface has layers.
+    /// HUGE_VAL in the stiff rounds with which the fit of layers begins: none of them is the best
     double solve(const PointsByFace& points, Surface& surface);
     /// Collapses vertices that matter little and inserts as many where the error is large. \return their
     /// number
@@ -93,6 +94,7 @@ private:
     PointsByFace assign(const Surface& surface, const std::vector<Hit>& hits);
     void weaken_outliers(const Surface& surface, PointsByFace& points) const;
     void silence_strays(const Surface& surface, PointsByFace& points);
+    /// \p error, if there are layers with how much \p surface bends.
     double with_bending(double error, const Surface& surface) const;
     void examine_layers(const Surface& surface, const PointsByFace& points);
     PerVertex<float> examine_variances(const Surface& surface, const PointsByFace& points);
@@ -121,7 +123,7 @@ private:
     HeldOut held_out_;
     float outlier_distance_ = 0;         ///< from the first assignment; fixed, so that errors stay comparable
     float noise_variance_ = 0;           ///< from the last assignment
-    PerVertex<float> widest_variances_;  ///< of the points across the surface
+    PerVertex<float> widest_variances_;  ///< of the points across the surface, so far
     bool layered_places_ = true;         ///< until a search shows none
     bool layered_ = false;               ///< somewhere; from the last exact search, as the next
     float layering_ = 0;                 ///< over most of the surface, see layering()
