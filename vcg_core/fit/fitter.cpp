@@ -265,7 +265,8 @@ double Fitter::solve(const PointsByFace& points, Surface& surface) {
         best_error = held_out_.rms_error(surface, outlier_distance_, team_);
     }
     place_vertices(surface);
-    if (stiff_rounds_-- > 0) return HUGE_VAL;
+    // Stiff places leave the rest of the surface free: the last of their rounds may be the best.
+    if (stiff_rounds_-- > (layering_ > 0 ? 0 : 1)) return HUGE_VAL;
     // Where layers are everywhere this chose worse rounds: eight, scanned at level 3, by 3 % with 5,000
     // vertices.
     return layering_ > 0 ? best_error : with_bending(best_error, surface);

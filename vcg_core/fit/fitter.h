@@ -65,7 +65,8 @@ public:
     /// Solves the least squares for several bending weights and moves the vertices to the solution with the
     /// least error at the held-out points. Moves \p surface, that of the network, with them. \return the
     /// error, by which rounds compare; it includes the bending if only a part of the surface has layers.
-    /// HUGE_VAL in the stiff rounds with which the fit of layers begins: none of them is the best
+    /// HUGE_VAL in stiff rounds, with which the fit of layers begins: none of them is the best, but if only a
+    /// part has layers, the last of them competes
     double solve(const PointsByFace& points, Surface& surface);
     /// Collapses vertices that matter little and inserts as many where the error is large. \return their
     /// number

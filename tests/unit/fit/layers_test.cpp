@@ -167,7 +167,7 @@ TEST(Layers, AreCrossedSmoothly) {
 TEST(Layers, OfAPartAreCrossedSmoothly) {
     for (const double shift : {0.4, 0.8}) {
         const Cloud cloud = two_views_on_top(shift * kEdge, 0.1 * kEdge);
-        EXPECT_LT(fitted_to(cloud, 0.1 * kEdge).after, 7) << shift;
+        EXPECT_LT(fitted_to(cloud, 0.1 * kEdge).after, 6) << shift;
         const Roughness found = fitted_to(cloud, 0.4 * kEdge);
         EXPECT_LT(found.after, 0.9 * found.before) << shift << ": " << found.before;
     }
