@@ -40,8 +40,8 @@ constexpr int kFirstRounds = 5;
 /// Rounds after the insertion of vertices that the points do not carry: by then the mesh is near the points.
 constexpr int kRefinedRounds = 4;
 
-/// 20 rounds for small meshes, where a round is cheap and every vertex counts.
-int automatic_rounds(int vertices) { return std::min(20, std::max(8, 40000 / std::max(vertices, 1))); }
+/// 20 rounds up to 6,000 vertices, where a round is cheap and every vertex counts; most fits end sooner.
+int automatic_rounds(int vertices) { return std::min(20, std::max(8, 120000 / std::max(vertices, 1))); }
 
 /// For every inserted vertex the vertex of \p before at whose place it lies: the nearest one that a walk
 /// finds from the vertex beside which it was inserted. So a counter stays where it was learned.
