@@ -14,8 +14,9 @@ namespace neuralmesh {
 
 /// What the fit may change. The defaults were chosen by tests/experiments/accuracy.
 struct FitOptions {
-    /// Most rounds of least squares, each with new nearest faces. 0: 20 up to 6,000 vertices, falling to 8
-    /// from 15,000 on.
+    /// Most rounds of least squares, each with new nearest faces. 0: 20 up to 2,000 vertices, falling to 8
+    /// from 5,000 on; 20 up to 3,000, falling to 8 from 7,500 on, where many precise points keep rounds
+    /// useful.
     int rounds = 0;
     bool flip_edges = true;
     /// Move vertices from where they matter little to where the error is large (Hoppe et al. 1993). Turn it

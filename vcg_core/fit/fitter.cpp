@@ -275,12 +275,9 @@ double Fitter::move_to_best_solution(const PointsByFace& points, const MoveLimit
     return best_error;
 }
 
-/// Whether harmful moves can be told, and are to be shortened: neither during the reduction nor in the first
-/// rounds, when the surface is still on its way.
-bool Fitter::forbids_harm(const Surface& surface, const PointsByFace& points) const {
+bool Fitter::can_tell_harm(const Surface& surface, const PointsByFace& points) const {
     const float enough = kPointsToTell * static_cast<float>(network_.vertex_count());
-    return final_solutions_ >= kFirstWithoutHarm && static_cast<float>(points.all().size()) > enough &&
-           noise_in_edges(surface) < kNoiseToTell;
+    return static_cast<float>(points.all().size()) > enough && noise_in_edges(surface) < kNoiseToTell;
 }
 
 double Fitter::solve(const PointsByFace& points, Surface& surface) {
@@ -288,7 +285,8 @@ double Fitter::solve(const PointsByFace& points, Surface& surface) {
     const MoveLimits limits(network_, start);
     double error = move_to_best_solution(points, limits, surface);
     solved_ = true;
-    if (forbids_harm(start, points)) {
+    // Neither during the reduction nor in the first rounds, when the surface is still on its way.
+    if (final_solutions_ >= kFirstWithoutHarm && can_tell_harm(start, points)) {
         shorten_harmful_moves(network_, start, surface, points, team_);
         surface.positions = limits.bounded(displacements(start, surface));
         error = held_out_.rms_error(surface, outlier_distance_, team_);

@@ -63,6 +63,9 @@ public:
     /// The same at other held-out points, with their own directions.
     double error_at(const HeldOut& held_out, const Surface& surface) const;
 
+    /// Whether \p points tell which moves of \p surface are harmful, see shorten_harmful_moves(): many points
+    /// per vertex, and noise that is small beside the edges.
+    bool can_tell_harm(const Surface& surface, const PointsByFace& points) const;
     /// Solves the least squares for several bending weights and moves the vertices to the solution with the
     /// least error at the held-out points. Moves \p surface, that of the network, with them. \return the
     /// error, by which rounds compare; it includes the bending if only a part of the surface has layers.
@@ -103,7 +106,6 @@ private:
     PerVertex<float> stiffness_by(const PerVertex<float>& variances, const Surface& surface,
                                   const PointsByFace& points) const;
     std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
-    bool forbids_harm(const Surface& surface, const PointsByFace& points) const;
     double move_to_best_solution(const PointsByFace& points, const MoveLimits& limits, Surface& surface);
     LeastSplitGain least_split_gain(const Surface& surface) const;
     /// The standard deviation of the noise in mean edge lengths of \p surface.

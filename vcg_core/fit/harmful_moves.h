@@ -11,13 +11,16 @@
 
 namespace neuralmesh {
 
-/// The least squares keep each point with its face and measure to the planes of faces. Where the surface
-/// bends, at creases above all, their solution can therefore be farther from the points than the surface
-/// before was. This halves, and in the end undoes, the moves of the vertices around which it is: where the
-/// squared distances of the points on the faces around the vertex have risen by more than by chance.
+/// Halves, and in the end undoes, the moves of the vertices around which the surface has come away from its
+/// points: where the squared distances of the points on the faces around the vertex, up to 12 of each, have
+/// risen by more than by chance. The least squares keep each point with its face and measure to the planes of
+/// faces, so where the surface bends, at creases above all, their solution can be farther from the points
+/// than the surface before.
+///
 /// \param before the surface of \p network before the moves, to which \p points are assigned with their feet
 /// \param moved the same faces after the moves; changed in place
-/// O(points + vertices).
+///
+/// O(vertices).
 void shorten_harmful_moves(const Network& network, const Surface& before, Surface& moved,
                            const PointsByFace& points, ThreadTeam& team);
 
