@@ -2,7 +2,6 @@
 // Copyright the Neural Mesh authors
 
 #include "vcg_core/fit/fitter.h"
-#include "vcg_core/fit/harmful_moves.h"
 
 #include <algorithm>
 #include <cmath>
