@@ -41,15 +41,7 @@ constexpr int kFirstRounds = 5;
 constexpr int kRefinedRounds = 4;
 
 /// 20 rounds for small meshes, where a round is cheap and every vertex counts.
-int automatic_rounds(int vertices, int cheap_vertices) {
-    constexpr int kFewest = 8, kMost = 20;
-    return std::min(kMost, std::max(kFewest, kMost * cheap_vertices / std::max(vertices, 1)));
-}
-
-/// Vertices up to which there are 20 rounds; more where points tell harmful moves, so that late rounds gain.
-/// On scans with layers, later rounds with 5,000 vertices cost 5 % in the error, and 15 % once.
-constexpr int kCheapVertices = 2000;
-constexpr int kCheapVerticesWithoutHarm = 3000;
+int automatic_rounds(int vertices) { return std::min(20, std::max(8, 40000 / std::max(vertices, 1))); }
 
 /// For every inserted vertex the vertex of \p before at whose place it lies: the nearest one that a walk
 /// finds from the vertex beside which it was inserted. So a counter stays where it was learned.
@@ -84,8 +76,7 @@ public:
           fitter_(fitter),
           options_(options),
           report_(report),
-          rounds_(options.rounds > 0 ? options.rounds
-                                     : automatic_rounds(network.vertex_count(), kCheapVertices)),
+          rounds_(options.rounds > 0 ? options.rounds : automatic_rounds(network.vertex_count())),
           at_start_(fitter.held_out()),
           best_(network) {}
 
@@ -123,8 +114,6 @@ private:
     bool first_round() {
         Surface surface(network_);
         PointsByFace points = fitter_.locate_points(surface);
-        if (options_.rounds == 0 && fitter_.can_tell_harm(surface, points))
-            rounds_ = automatic_rounds(network_.vertex_count(), kCheapVerticesWithoutHarm);
         fitter_.set_directions(surface);
         at_start_ = fitter_.held_out();
         report_.rms_unfitted = report_.rms_fitted = fitter_.held_out_error(surface);
@@ -172,7 +161,7 @@ private:
     Fitter& fitter_;
     const FitOptions& options_;
     FitReport& report_;
-    int rounds_;
+    const int rounds_;
     HeldOut at_start_;  ///< with the directions of the mesh before the rounds
     Network best_;
     double best_error_ = 0;

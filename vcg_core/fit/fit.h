@@ -15,8 +15,7 @@ namespace neuralmesh {
 /// What the fit may change. The defaults were chosen by tests/experiments/accuracy.
 struct FitOptions {
     /// Most rounds of least squares, each with new nearest faces. 0: 20 up to 2,000 vertices, falling to 8
-    /// from 5,000 on; 20 up to 3,000, falling to 8 from 7,500 on, where many precise points keep rounds
-    /// useful.
+    /// from 5,000 on.
     int rounds = 0;
     bool flip_edges = true;
     /// Move vertices from where they matter little to where the error is large (Hoppe et al. 1993). Turn it
@@ -63,14 +62,14 @@ struct FitReport {
 /// Between rounds, edges are flipped and vertices redistributed where that lowers the distances. A boundary
 /// moves to where the points end, from both sides, and notches that hold points are filled.
 ///
-/// - In later rounds, moves that the points show to be harmful are shortened (harmful_moves.h).
 /// - Between rounds, vertices move to creases of the points (crease_moves.h), where flips then put edges.
 /// - What stays: components, handles, boundary loops, and the number of vertices unless options.reduce_to is
 ///   less. No face turns over, folds onto a neighbour or becomes a sliver.
 /// - Self-crossings are smoothed out first where possible; the fit adds none. If there is a boundary, faces
 ///   that still cut others are removed, the topology with them where it must be; see sound_start.h.
 /// - Outliers: the influence of a far point falls with its squared distance; with options.expect_strays,
-///   points that are far for their surroundings have none.
+/// points
+///   that are far for their surroundings have none.
 /// - The result of the rounds is kept only if its error at the held-out points is smaller, allowing for the
 ///   noise that learning has followed (see rms_unfitted). Else the mesh stays as it was before them.
 /// - The reduction falls short of options.reduce_to if it was stopped, if no more vertices can go without

@@ -13,7 +13,6 @@
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/crease_moves.h"
 #include "vcg_core/fit/edge_flips.h"
-#include "vcg_core/fit/harmful_moves.h"
 #include "vcg_core/fit/layers.h"
 #include "vcg_core/fit/least_squares.h"
 #include "vcg_core/fit/move_limits.h"
@@ -57,24 +56,8 @@ constexpr float kLayerStiffness = 3;
 constexpr int kStiffRounds = 3;
 constexpr float kStiffWeight = 50;
 constexpr float kWeightAfterStiff = 1;
-/// Below this noise in edges fewer held-out points do. Clean clouds come to .005 to .02 (curved faces spread
-/// their points, too), clouds with noise of .3 % of the diagonal to .12 to .17 with 2,000 vertices.
-constexpr float kCalmNoise = 0.05F;
-/// Noise in edges, and points per vertex, to which harmful moves can be told. At noise of .05, and at four
-/// points, shortening them raises the error by 1 to 10 %.
-constexpr float kNoiseToTell = 0.035F;
-constexpr float kPointsToTell = 15;
-/// The first solution with the final number of vertices whose moves are examined. Where the first one's are,
-/// vertices beside the creases of cubes stay there more often.
-constexpr int kFirstWithoutHarm = 3;
 /// Fewer layered places than this share of the vertices are chance, or bends.
 constexpr float kLayeredShare = 0.01F;
-
-PerVertex<Vector3> displacements(const Surface& from, const Surface& to) {
-    PerVertex<Vector3> result = to.positions;
-    for (VertexId v = 0; v < result.size(); ++v) result[v] -= from.positions[v];
-    return result;
-}
 /// Noise variances that an edge split has to gain. kMinSplitVariances holds where the noise is well below
 /// kSmallNoise of the edge: there the surface crumples little, and right splits win more than wrong ones
 /// lose. kMaxSplitVariances holds for noisier edges: the best of ten thousand splits that follow only noise
@@ -136,7 +119,7 @@ PointsByFace Fitter::locate_points(const Surface& surface) {
     const std::vector<Hit> hits = nearest_by_tree(surface, fitted_, team_);
     if (!(outlier_distance_ > 0)) outlier_distance_ = outlier_distance(surface, hits);
     PointsByFace points = assign(surface, hits);
-    if (noise_in_edges(surface) < kCalmNoise)
+    if (is_calm(surface))
         held_out_.keep_at_most(surface.has_boundary()
                                    ? kCalmHeldOutPerVertex * static_cast<std::size_t>(final_vertices_)
                                    : kCalmHeldOut);
@@ -145,8 +128,11 @@ PointsByFace Fitter::locate_points(const Surface& surface) {
     return points;
 }
 
-float Fitter::noise_in_edges(const Surface& surface) const {
-    return std::sqrt(noise_variance_) / mean_edge_length(surface);
+bool Fitter::is_calm(const Surface& surface) const {
+    // In edges. Clean clouds come to .005 to .02 (curved faces spread their points, too), clouds with noise
+    // of .3 % of the diagonal to .12 to .17 with 2,000 vertices.
+    constexpr float kCalmNoise = 0.05F;
+    return std::sqrt(noise_variance_) < kCalmNoise * mean_edge_length(surface);
 }
 
 double Fitter::error_at(const HeldOut& held_out, const Surface& surface) const {
@@ -249,10 +235,10 @@ std::vector<float> Fitter::choose_weights(const Surface& surface, const PointsBy
     return weights;
 }
 
-/// Moves \p surface to the solution for the best of several bending weights. \return its error at the
-/// held-out points
-double Fitter::move_to_best_solution(const PointsByFace& points, const MoveLimits& limits, Surface& surface) {
+double Fitter::solve(const PointsByFace& points, Surface& surface) {
     const std::vector<float> weights = choose_weights(surface, points);
+    const Surface start = surface;
+    const MoveLimits limits(network_, start);
     PerVertex<float> stiffness;
     if (layered_) stiffness = stiffness_by(examine_variances(surface, points), surface, points);
     const PointToPlaneSystem system(network_, surface, points, team_, stiffness);
@@ -269,38 +255,21 @@ double Fitter::move_to_best_solution(const PointsByFace& points, const MoveLimit
         best = i;
         best_error = error;
     }
-    bending_.choose(stiff_rounds_ > 0 ? kWeightAfterStiff : weights[best]);
-    surface.positions = std::move(solutions[best]);
-    return best_error;
-}
-
-bool Fitter::can_tell_harm(const Surface& surface, const PointsByFace& points) const {
-    const float enough = kPointsToTell * static_cast<float>(network_.vertex_count());
-    return static_cast<float>(points.all().size()) > enough && noise_in_edges(surface) < kNoiseToTell;
-}
-
-double Fitter::solve(const PointsByFace& points, Surface& surface) {
-    const Surface start = surface;
-    const MoveLimits limits(network_, start);
-    double error = move_to_best_solution(points, limits, surface);
     solved_ = true;
-    // Neither during the reduction nor in the first rounds, when the surface is still on its way.
-    if (final_solutions_ >= kFirstWithoutHarm && can_tell_harm(start, points)) {
-        shorten_harmful_moves(network_, start, surface, points, team_);
-        surface.positions = limits.bounded(displacements(start, surface));
-        error = held_out_.rms_error(surface, outlier_distance_, team_);
-    }
+    bending_.choose(stiff_rounds_ > 0 ? kWeightAfterStiff : weights[best]);
+    surface.positions = solutions[best];
     if (!guard_.objections(self_crossings(surface, team_)).empty()) {
-        surface.positions = limits.without_crossings(displacements(start, surface), guard_, team_);
-        error = held_out_.rms_error(surface, outlier_distance_, team_);
+        PerVertex<Vector3> displacements = solutions[best];
+        for (VertexId v = 0; v < displacements.size(); ++v) displacements[v] -= start.positions[v];
+        surface.positions = limits.without_crossings(displacements, guard_, team_);
+        best_error = held_out_.rms_error(surface, outlier_distance_, team_);
     }
     place_vertices(surface);
-    if (network_.vertex_count() <= final_vertices_) ++final_solutions_;
     // Stiff places leave the rest of the surface free: the last of their rounds may be the best.
     if (stiff_rounds_-- > (layering_ > 0 ? 0 : 1)) return HUGE_VAL;
     // Where layers are everywhere this chose worse rounds: eight, scanned at level 3, by 3 % with 5,000
     // vertices.
-    return layering_ > 0 ? error : with_bending(error, surface);
+    return layering_ > 0 ? best_error : with_bending(best_error, surface);
 }
 
 /// At the positions of \p surface.

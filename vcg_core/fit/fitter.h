@@ -11,7 +11,6 @@
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/fit/crossing_guard.h"
 #include "vcg_core/fit/held_out.h"
-#include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/point_choice.h"
 #include "vcg_core/fit/points_by_face.h"
 #include "vcg_core/fit/redistribute.h"
@@ -63,9 +62,6 @@ public:
     /// The same at other held-out points, with their own directions.
     double error_at(const HeldOut& held_out, const Surface& surface) const;
 
-    /// Whether \p points tell which moves of \p surface are harmful, see shorten_harmful_moves(): many points
-    /// per vertex, and noise that is small beside the edges.
-    bool can_tell_harm(const Surface& surface, const PointsByFace& points) const;
     /// Solves the least squares for several bending weights and moves the vertices to the solution with the
     /// least error at the held-out points. Moves \p surface, that of the network, with them. \return the
     /// error, by which rounds compare; it includes the bending if only a part of the surface has layers.
@@ -106,10 +102,9 @@ private:
     PerVertex<float> stiffness_by(const PerVertex<float>& variances, const Surface& surface,
                                   const PointsByFace& points) const;
     std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
-    double move_to_best_solution(const PointsByFace& points, const MoveLimits& limits, Surface& surface);
     LeastSplitGain least_split_gain(const Surface& surface) const;
-    /// The standard deviation of the noise in mean edge lengths of \p surface.
-    float noise_in_edges(const Surface& surface) const;
+    /// Whether the noise is small beside the edges of \p surface.
+    bool is_calm(const Surface& surface) const;
     /// Carries out \p change(barred) on the network, whose surface is \p surface. If the guard objects to the
     /// result, restores the network and tries again with the vertices of the new self-crossings barred; if
     /// all tries fail, with all barred. \return the result of the last call
@@ -136,8 +131,7 @@ private:
     double bending_error_ = 0;           ///< of layers: weight of the mean squared gap in squared errors
     int stiff_rounds_ = 0;  ///< still to come: their bending weight lets the surface follow no layer
     bool expects_strays_ = false;
-    int final_solutions_ = 0;  ///< with the final number of vertices
-    bool solved_ = false;      ///< vertices have moved
+    bool solved_ = false;  ///< vertices have moved
     BendingSearch bending_;
     PerVertex<VertexId> origins_;
     PerVertex<VertexId> sources_;
