@@ -82,16 +82,25 @@ def install(plugin, folder):
 
 
 def memory_of_group(group):
-    """The resident bytes of all processes of a process group; pages they share count once for each."""
+    """Bytes in memory of all processes of a process group together.
+
+    A page that several of them share counts once: each has its part of it (Pss). Sums of resident sets count it in
+    each, so that a process that has just forked seems twice its size.
+    """
     total = 0
     for entry in Path("/proc").iterdir():
         if entry.name.isdigit():
             try:
                 if int((entry / "stat").read_text().rpartition(")")[2].split()[2]) == group:
-                    total += int((entry / "statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+                    total += proportional_set_size((entry / "smaps_rollup").read_text())
             except OSError:  # it has ended
                 pass
     return total
+
+
+def proportional_set_size(rollup):
+    """The bytes of the line "Pss:  123 kB" of a process's smaps_rollup; 0 where it has no such line any more."""
+    return next((int(line.split()[1]) * 1024 for line in rollup.splitlines() if line.startswith("Pss:")), 0)
 
 
 def run_watched(command, environment):

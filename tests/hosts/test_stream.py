@@ -41,6 +41,12 @@ def error_of(done, status):
     return done.stderr.splitlines()[-1]
 
 
+def test_memory_that_processes_share_counts_once():
+    forks = "data = b'x' * 100_000_000; import os, time; [os.fork() for _ in range(2)]; time.sleep(1)"
+    memory = bench.run_watched([sys.executable, "-c", forks], None)[2]
+    assert 100_000_000 < memory < 150_000_000  # of four processes
+
+
 def test_memory_stays_within_the_option_and_distances_are_those_of_the_whole_cloud(pymeshlab, meshes, site, tmp_path):
     cloud, mesh = tmp_path / "cloud.ply", tmp_path / "mesh.ply"
     bench.write_cloud(cloud, 1_000_000)
