@@ -40,6 +40,16 @@ constexpr int kFirstRounds = 5;
 /// Rounds after the insertion of vertices that the points do not carry: by then the mesh is near the points.
 constexpr int kRefinedRounds = 4;
 
+/// With precise points (Fitter::has_precise_points()) there are so many rounds at least, up to so many
+/// vertices, and from the fifth on the points hold the surface. By then it is near them, and solutions that
+/// let it slide may take it away again: block, clean, 5,000 vertices, by up to 20 % of the error in a round.
+/// A boundary has to slide to where the points end, and of two sheets closed around one, a point holds
+/// either.
+constexpr int kRoundsWithHold = 10;
+constexpr int kMostVerticesToHold = 10000;
+constexpr int kFirstHold = 4;
+constexpr float kHold = 0.3F;
+
 /// 20 rounds for small meshes, where a round is cheap and every vertex counts.
 int automatic_rounds(int vertices) { return std::min(20, std::max(8, 40000 / std::max(vertices, 1))); }
 
@@ -114,6 +124,9 @@ private:
     bool first_round() {
         Surface surface(network_);
         PointsByFace points = fitter_.locate_points(surface);
+        holds_ = options_.redistribute && !surface.has_boundary() &&
+                 network_.vertex_count() <= kMostVerticesToHold && fitter_.has_precise_points(surface);
+        if (holds_ && options_.rounds == 0) rounds_ = std::max(rounds_, kRoundsWithHold);
         fitter_.set_directions(surface);
         at_start_ = fitter_.held_out();
         report_.rms_unfitted = report_.rms_fitted = fitter_.held_out_error(surface);
@@ -140,7 +153,8 @@ private:
     }
 
     bool solve(int round, Surface& surface, PointsByFace& points) {
-        const double error = fitter_.solve(points, surface);
+        const bool hold = holds_ && round >= kFirstHold;
+        const double error = fitter_.solve(points, surface, hold ? kHold : PointToPlaneSystem::kSliding);
         if (round == 0 || error < best_error_) {
             best_ = network_;
             best_error_ = error;
@@ -161,8 +175,9 @@ private:
     Fitter& fitter_;
     const FitOptions& options_;
     FitReport& report_;
-    const int rounds_;
-    HeldOut at_start_;  ///< with the directions of the mesh before the rounds
+    int rounds_;
+    bool holds_ = false;  ///< in later rounds the points hold the surface
+    HeldOut at_start_;    ///< with the directions of the mesh before the rounds
     Network best_;
     double best_error_ = 0;
     double last_error_ = 0;

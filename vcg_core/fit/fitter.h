@@ -11,6 +11,7 @@
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/fit/crossing_guard.h"
 #include "vcg_core/fit/held_out.h"
+#include "vcg_core/fit/least_squares.h"
 #include "vcg_core/fit/point_choice.h"
 #include "vcg_core/fit/points_by_face.h"
 #include "vcg_core/fit/redistribute.h"
@@ -62,12 +63,16 @@ public:
     /// The same at other held-out points, with their own directions.
     double error_at(const HeldOut& held_out, const Surface& surface) const;
 
+    /// Whether there are many points for each vertex of \p surface, and their noise is small beside its
+    /// edges.
+    bool has_precise_points(const Surface& surface) const;
     /// Solves the least squares for several bending weights and moves the vertices to the solution with the
     /// least error at the held-out points. Moves \p surface, that of the network, with them. \return the
     /// error, by which rounds compare; it includes the bending if only a part of the surface has layers.
     /// HUGE_VAL in stiff rounds, with which the fit of layers begins: none of them is the best, but if only a
     /// part has layers, the last of them competes
-    double solve(const PointsByFace& points, Surface& surface);
+    /// \param hold see PointToPlaneSystem
+    double solve(const PointsByFace& points, Surface& surface, float hold = PointToPlaneSystem::kSliding);
     /// Collapses vertices that matter little and inserts as many where the error is large. \return their
     /// number
     int redistribute_vertices(const Surface& surface, const PointsByFace& points);
@@ -103,8 +108,8 @@ private:
                                   const PointsByFace& points) const;
     std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
     LeastSplitGain least_split_gain(const Surface& surface) const;
-    /// Whether the noise is small beside the edges of \p surface.
-    bool is_calm(const Surface& surface) const;
+    /// The standard deviation of the noise in mean edge lengths of \p surface.
+    float noise_in_edges(const Surface& surface) const;
     /// Carries out \p change(barred) on the network, whose surface is \p surface. If the guard objects to the
     /// result, restores the network and tries again with the vertices of the new self-crossings barred; if
     /// all tries fail, with all barred. \return the result of the last call

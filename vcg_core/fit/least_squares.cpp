@@ -14,8 +14,6 @@ namespace neuralmesh {
 
 namespace {
 
-/// Weight of the tangential part of a point's residual: makes the blocks regular and slows sliding.
-constexpr float kTangential = 0.03F;
 /// Pull of a vertex towards the middle of its ring within the tangent plane, in points per vertex.
 constexpr float kCentring = 2e-3F;
 /// Pull of a vertex to its present position, in points per vertex.
@@ -43,7 +41,7 @@ double dot(const PerVertex<Vector3>& a, const PerVertex<Vector3>& b) {
 }  // namespace
 
 PointToPlaneSystem::FaceSums PointToPlaneSystem::sum_over(const Surface& surface, const PointsByFace& points,
-                                                          int face) {
+                                                          float hold, int face) {
     FaceSums sums;
     sums.force.fill(Vector3::Zero());
     const Vector3& a = surface.corner(face, 0);
@@ -60,8 +58,8 @@ PointToPlaneSystem::FaceSums PointToPlaneSystem::sum_over(const Surface& surface
         const float length = e.norm();
         const Vector3 n = inside || length < 1e-9F ? normal : Vector3(e / length);
         Symmetric3 direction;
-        direction.add(Symmetric3::outer(n), 1 - kTangential);
-        direction.add_identity(kTangential);
+        direction.add(Symmetric3::outer(n), 1 - hold);
+        direction.add_identity(hold);
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t next = k == 2 ? 0 : k + 1;
             sums.pair[k].add(direction, assignment.influence * w[k] * w[k]);
@@ -74,7 +72,7 @@ PointToPlaneSystem::FaceSums PointToPlaneSystem::sum_over(const Surface& surface
 
 PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& surface,
                                        const PointsByFace& points, ThreadTeam& team,
-                                       const PerVertex<float>& stiffness)
+                                       const PerVertex<float>& stiffness, float hold)
     : network_(network),
       points_per_vertex_(static_cast<float>(points.all().size()) /
                          static_cast<float>(network.vertex_count())),
@@ -85,7 +83,7 @@ PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& su
     block_.resize(row_.back());
     const PerVertex<float> missing = missing_points_at_vertices(network, surface, points);
     PerFace<FaceSums> sums(surface.face_count());
-    parallel_for(sums.size(), kChunk, team, [&](int f) { sums[f] = sum_over(surface, points, f); });
+    parallel_for(sums.size(), kChunk, team, [&](int f) { sums[f] = sum_over(surface, points, hold, f); });
     parallel_for(network.slot_count(), kChunk, team, [&](VertexId v) {
         if (!network.alive(v)) return;
         gather(sums, surface, v);

@@ -20,7 +20,7 @@ namespace neuralmesh {
 /// The normal equations of one round, (A + lambda B) u = f + lambda g, for the displacements u of the
 /// vertices. They minimise
 ///
-///   sum over points    w ((n.e)^2 + kTangential |e_t|^2)   e = p - sum_k b_k (x_k + u_k), e_t = e - (n.e) n
+///   sum over points    w ((n.e)^2 + h |e_t|^2)    e = p - sum_k b_k (x_k + u_k), e_t = e - (n.e) n
 /// + sum over edges     (lambda + s_e) c_e |gap_e(x + u)|^2 bending; s_e: stiffness, the mean at the corners
 /// + sum over vertices  centring within the tangent plane, and damping, both weak
 /// + sum over vertices  a pull to the middle of the ring, for those that lack points
@@ -29,17 +29,22 @@ namespace neuralmesh {
 ///
 /// where a point p has influence w and foot sum_k b_k x_k, and n is the normal of its face, or the direction
 /// of e if the foot is on the face's border. n.e is, to first order, the distance of the point from the moved
-/// surface, whatever slides along it; this lets vertices move onto creases.
-/// gap_e is the vector between the points where the two diagonals of the edge's quad cross when the quad is
-/// unfolded into the plane: 0 exactly where the surface is flat, whatever the shape of the triangles. c_e
-/// falls where the gap is large among the gaps of the mesh, so that creases are not rounded; c_v does the
+/// surface, whatever slides along it; this lets vertices move onto creases. The hold h in [0, 1] slows
+/// sliding. With h = 1 the distance at the present foot is minimised, so that the surface cannot get farther
+/// from the points (Hoppe et al. 1993); with less it can, where it bends and points lie beyond the faces they
+/// keep. gap_e is the vector between the points where the two diagonals of the edge's quad cross when the
+/// quad is unfolded into the plane: 0 exactly where the surface is flat, whatever the shape of the triangles.
+/// c_e falls where the gap is large among the gaps of the mesh, so that creases are not rounded; c_v does the
 /// same at corners of the boundary. Points beyond a boundary edge count by their distance from the plane of
 /// its face only: the mean of their distances from the edge would leave it short of their end.
 class PointToPlaneSystem {
 public:
+    /// The hold that makes the blocks regular, but hardly slows sliding.
+    static constexpr float kSliding = 0.03F;
+
     /// Keeps a reference to \p network. \p stiffness: of the vertices; empty: none. O(points + vertices).
     PointToPlaneSystem(const Network& network, const Surface& surface, const PointsByFace& points,
-                       ThreadTeam& team, const PerVertex<float>& stiffness = {});
+                       ThreadTeam& team, const PerVertex<float>& stiffness = {}, float hold = kSliding);
 
     /// When solve() ends: at the residual \p tolerance relative to that of u = 0, in the norm of the
     /// preconditioner, or after \p iterations. The defaults suit rounds that are repeated with new faces.
@@ -73,7 +78,7 @@ private:
         std::array<Vector3, 3> force;
     };
 
-    static FaceSums sum_over(const Surface& surface, const PointsByFace& points, int face);
+    static FaceSums sum_over(const Surface& surface, const PointsByFace& points, float hold, int face);
     void gather(const PerFace<FaceSums>& sums, const Surface& surface, VertexId v);
     void regularise(const Surface& surface, float missing_points, VertexId v);
     static bool make_bending_term(const Surface& surface, const std::array<VertexId, 4>& corner,

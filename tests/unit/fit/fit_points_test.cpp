@@ -11,6 +11,7 @@
 
 #include "tests/unit/fit/fit_scene.h"
 #include "tests/unit/support/soundness.h"
+#include "tests/unit/support/targets.h"
 #include "vcg_core/fit/fitter.h"
 #include "vcg_core/fit/noise.h"
 #include "vcg_core/fit/support.h"
@@ -40,6 +41,22 @@ TEST(ChoosePoints, HoldsOutAtMostTenThousand) {
     const TargetSpace target = soundness::target_of(shapes::sphere_cloud(100000));
     Random random(1);
     EXPECT_EQ(choose_points(target, 90000, random).held_out.points.size(), 10000U);
+}
+
+TEST(PrecisePoints, AreManyForEachVertexAndWithoutNoise) {
+    ThreadTeam team(1);
+    const auto precise = [&](int count, double noise) {
+        const TargetSpace target = soundness::target_of(shapes::sphere_cloud(count, noise));
+        Network network = targets::network_in_frame(target, shapes::icosphere(3));
+        Random random(1);
+        Fitter fitter(network, choose_points(target, 100000, random), team);
+        const Surface surface(network);
+        fitter.locate_points(surface);
+        return fitter.has_precise_points(surface);
+    };
+    EXPECT_TRUE(precise(10000, 0));
+    EXPECT_FALSE(precise(5000, 0)) << "seven for each of 642 vertices";
+    EXPECT_FALSE(precise(10000, 0.02)) << "up to an eighth of an edge off";
 }
 
 TEST(HeldOut, KeepsPointsFromTheirWholeOrder) {

@@ -107,31 +107,29 @@ TEST(FewerPointsThanVertices, AreSolvedForAsByDirectSolvers) {
         }
 }
 
-// The energy of the points, without bending: sum of w ((n.e)^2 + kTangential |e_t|^2), as the header defines.
+// The energy of the points, without bending: sum of w ((n.e)^2 + h |e_t|^2), as the header defines.
 TEST_F(LeastSquares, MeasuresThePointsAsDefined) {
-    constexpr double kTangential = 0.03;
-    const PointsByFace none(surface, {}, {});
     PointsByFace heavier = points;
     for (PointsByFace::Assignment& a : heavier.all()) a.influence = 3;
-    const PointToPlaneSystem heavy(network, surface, heavier, team);
     Random random(8);
     PerVertex<Vector3> u(network.slot_count(), Vector3::Zero());
     for (Vector3& v : u) v = 0.1F * to_eigen(vcg::Point3f::Construct(shapes::in_cube(random)));
-    double expected = 0;
+    double along_normals = 0, within_planes = 0;
     for (int f = 0; f < surface.face_count(); ++f)
         for (const PointsByFace::Assignment& a : points.of(f)) {
             const Eigen::Vector3d normal = unit_normal(surface, f).cast<double>();
-            const auto energy = [&](double share) {
+            for (const double share : {0.0, 1.0}) {
                 Eigen::Vector3d e = a.point.cast<double>();
                 for (std::size_t k = 0; k < 3; ++k) {
                     const VertexId v = surface.faces[f][k];
                     e -= static_cast<double>(a.foot.weights[k]) *
                          (surface.positions[v].cast<double>() + share * u[v].cast<double>());
                 }
+                const double sign = share > 0 ? 1 : -1;
                 const double along = normal.dot(e);
-                return along * along + kTangential * (e - along * normal).squaredNorm();
-            };
-            expected += energy(1) - energy(0);
+                along_normals += sign * along * along;
+                within_planes += sign * (e - along * normal).squaredNorm();
+            }
         }
     // Tripling the influence of all points adds twice their energy, and no bending.
     const auto energy = [&](const PointToPlaneSystem& s) {
@@ -139,7 +137,12 @@ TEST_F(LeastSquares, MeasuresThePointsAsDefined) {
         s.multiply(0, u, image);
         return flat(u).dot(flat(image)) - 2 * flat(u).dot(flat(s.right_side(0)));
     };
-    EXPECT_NEAR((energy(heavy) - energy(system)) / 2, expected, 1e-3 * std::abs(expected));
+    for (const float hold : {PointToPlaneSystem::kSliding, 0.3F, 1.0F}) {
+        const PointToPlaneSystem light(network, surface, points, team, {}, hold);
+        const PointToPlaneSystem heavy(network, surface, heavier, team, {}, hold);
+        const double expected = along_normals + static_cast<double>(hold) * within_planes;
+        EXPECT_NEAR((energy(heavy) - energy(light)) / 2, expected, 1e-3 * std::abs(expected));
+    }
 }
 
 // Even stiffness adds to the bending weight.
