@@ -97,7 +97,7 @@ void check_for_surface(const TangentPlanes& planes) {
             "The points lie on curves, not on a surface: there is nothing to span an open surface over.");
     if (static_cast<double>(volume) > share)
         throw InputError(
-            "The points are scattered in space and lie on no surface: an open surface cannot be found. "
+            "The points are scattered in space, or too noisy beside their spacing: an open surface cannot be found. "
             "Choose surface 1 (closed), or remove the scattered points first.");
 }
 

@@ -219,11 +219,11 @@ void warn_of_uncertain_topology(const LatticeSurvey& survey, StartMesh& result) 
 void warn_of_open_surface(StartMesh& result) {
     if (!result.encloses_space)
         result.warnings.push_back(
-            "The points enclose no space wider than the gaps between them, as in a single scan, a sheet or a thin wall. The surface was closed around both of their sides. Choose surface 0 (automatic) or 2 (open) for one layer that ends where the points end.");
+            "The points enclose no space wider than the gaps between them, as in a single scan, a sheet or a thin wall. The surface was closed around both of their sides. Choose surface 2 (open) for one layer that ends where the points end.");
     if (result.widest_opening > kWideOpening * result.resolution)
         result.warnings.push_back(
             "The cloud is open: holes up to " + percent(2 * result.widest_opening) +
-            " of the bounding-box diagonal wide were closed. Choose surface 0 (automatic) or 2 (open) to keep them.");
+            " of the bounding-box diagonal wide were closed. Choose surface 2 (open) to keep those that are much wider than the gaps between the points.");
 }
 
 }  // namespace

@@ -135,6 +135,14 @@ TEST(ShellFinished, AGroupOfOnePercentIsAComponent) {
     expect_closed(finished(cloud, 500), 500, 2, 0);
 }
 
+TEST(ShellFinished, ANarrowHoleOfANoisySphereIsClosedWithAWarning) {
+    std::vector<vcg::Point3d> cloud = shapes::sphere_cloud(50000, 0.04);
+    shell_shapes::cut_off(cloud, [](const vcg::Point3d& p) { return p[2] > 0.96; });
+    const NeuralMesh mesh = finished(cloud, 500, kAutomatic);
+    expect_closed(mesh, 500, 1, 0);
+    EXPECT_TRUE(has_warning(mesh, "were closed. Choose surface 2 (open) to keep"));
+}
+
 TEST(ShellFinished, HalfASphereIsClosedOnRequestWithAWarning) {
     Random random(14);
     std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
