@@ -40,11 +40,11 @@ constexpr int kFirstRounds = 5;
 /// Rounds after the insertion of vertices that the points do not carry: by then the mesh is near the points.
 constexpr int kRefinedRounds = 4;
 
-/// With precise points (Fitter::has_precise_points()) there are so many rounds at least, up to so many
-/// vertices, and from the fifth on the points hold the surface. By then it is near them, and solutions that
-/// let it slide may take it away again: block, clean, 5,000 vertices, by up to 20 % of the error in a round.
-/// A boundary has to slide to where the points end, and of two sheets closed around one, a point holds
-/// either.
+/// With precise points (Fitter::has_precise_points()), and up to so many vertices, there are ten rounds at
+/// least, and from the fifth on the points hold the surface. By then it is near them, and solutions that let
+/// it slide may take it away again: block, clean, 5,000 vertices, by up to 20 % of the error in a round.
+/// Open surfaces are left free, because their boundary has to slide to where the points end. So are sheets
+/// that are closed around both sides, where each point would hold the layer that it is nearer to by chance.
 constexpr int kRoundsWithHold = 10;
 constexpr int kMostVerticesToHold = 10000;
 constexpr int kFirstHold = 4;
@@ -124,6 +124,7 @@ private:
     bool first_round() {
         Surface surface(network_);
         PointsByFace points = fitter_.locate_points(surface);
+        // Sheets that are closed around both sides are not redistributed.
         holds_ = options_.redistribute && !surface.has_boundary() &&
                  network_.vertex_count() <= kMostVerticesToHold && fitter_.has_precise_points(surface);
         if (holds_ && options_.rounds == 0) rounds_ = std::max(rounds_, kRoundsWithHold);

@@ -139,9 +139,9 @@ float Fitter::noise_in_edges(const Surface& surface) const {
 }
 
 bool Fitter::has_precise_points(const Surface& surface) const {
-    const float enough = kPrecisePoints * static_cast<float>(network_.vertex_count());
-    return !layered_ &&
-           noise_in_edges(surface)<kPreciseNoise&& static_cast<float>(fitted_.points.size())> enough;
+    const auto points = static_cast<float>(fitted_.points.size());
+    const bool many = points > kPrecisePoints * static_cast<float>(network_.vertex_count());
+    return many && !layered_ && noise_in_edges(surface) < kPreciseNoise;
 }
 
 double Fitter::error_at(const HeldOut& held_out, const Surface& surface) const {
