@@ -24,6 +24,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import psutil
 
 ROOT = Path(__file__).resolve().parents[2]
 NOISE = .001  # of the radius: .03 % of the diagonal
@@ -84,23 +85,17 @@ def install(plugin, folder):
 def memory_of_group(group):
     """Bytes in memory of all processes of a process group together.
 
-    A page that several of them share counts once: each has its part of it (Pss). Sums of resident sets count it in
+    A page that several of them share counts once: each has its part of it (pss). Sums of resident sets count it in
     each, so that a process that has just forked seems twice its size.
     """
     total = 0
-    for entry in Path("/proc").iterdir():
-        if entry.name.isdigit():
-            try:
-                if int((entry / "stat").read_text().rpartition(")")[2].split()[2]) == group:
-                    total += proportional_set_size((entry / "smaps_rollup").read_text())
-            except OSError:  # it has ended
-                pass
+    for process in psutil.process_iter():
+        try:
+            if os.getpgid(process.pid) == group:
+                total += process.memory_full_info().pss
+        except (psutil.NoSuchProcess, ProcessLookupError):  # it has ended
+            pass
     return total
-
-
-def proportional_set_size(rollup):
-    """The bytes of the line "Pss:  123 kB" of a process's smaps_rollup; 0 where it has no such line any more."""
-    return next((int(line.split()[1]) * 1024 for line in rollup.splitlines() if line.startswith("Pss:")), 0)
 
 
 def run_watched(command, environment):

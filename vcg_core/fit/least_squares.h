@@ -42,7 +42,8 @@ public:
     /// The hold that makes the blocks regular, but hardly slows sliding.
     static constexpr float kSliding = 0.03F;
 
-    /// Keeps a reference to \p network. \p stiffness: of the vertices; empty: none. O(points + vertices).
+    /// Keeps a reference to \p network. \p stiffness: of the vertices; empty: none. \p hold: h, in
+    /// [0, 1]. O(points + vertices).
     PointToPlaneSystem(const Network& network, const Surface& surface, const PointsByFace& points,
                        ThreadTeam& team, const PerVertex<float>& stiffness = {}, float hold = kSliding);
 

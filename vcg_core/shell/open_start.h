@@ -81,7 +81,7 @@ struct OpenStart {
 /// everywhere; random is drawn from only if the target has faces. \p progress gets fractions from 0 to 1; a
 /// wish to stop is not answered (0.2 s for 100,000 points).
 /// Memory: 16 bytes for each of up to 1,000,000 lattice nodes.
-/// \throws InputError if the points lie on no surface: on curves, or scattered in space, or too few
+/// \throws InputError if the points show no surface: they lie on curves, are scattered, too noisy, or too few
 OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options, Random& random,
                      Progress& progress);
 
