@@ -33,14 +33,22 @@ constexpr int kRingPoints = 256;
 constexpr int kRefinements = 4;
 constexpr float kHopeless = 4;  ///< times the largest squared error, after which no refinement helps
 constexpr int kVerticesAtATime = 64;
+constexpr int kFacesAtATime = 512;
 
 /// The two planes around one vertex after another.
 class PlanesOfPoints {
 public:
-    /// Keeps references. \p areas: the area vectors of the faces.
-    PlanesOfPoints(const Network& network, const Surface& surface, const PerFace<Vector3>& areas,
+    /// A face, with twice its area.
+    struct Side {
+        Vector3 normal;
+        float area;
+        int face;
+    };
+
+    /// Keeps references. \p sides: all faces.
+    PlanesOfPoints(const Network& network, const Surface& surface, const PerFace<Side>& all_sides,
                    const PointsByFace& points)
-        : network_(network), surface_(surface), areas_(areas), points_(points) {}
+        : network_(network), surface_(surface), all_sides_(all_sides), points_(points) {}
 
     /// The way from \p v to the line of its two planes; 0 if there are none, or if the line is far.
     Vector3 way_to_crease(VertexId v, float noise_variance) {
@@ -66,13 +74,6 @@ private:
     struct Plane {
         Vector3 normal, point;
     };
-    /// A face of the two-ring.
-    struct Side {
-        Vector3 normal;
-        float area;
-        int face;
-    };
-
     float mean_edge(VertexId v) const {
         float sum = 0;
         for (const VertexId u : network_.ring(v))
@@ -101,10 +102,8 @@ private:
     /// Two large faces that differ much. False if all are alike.
     bool choose_seeds() {
         sides_.clear();
-        for (const int f : faces_) {
-            const float area = areas_[f].norm();
-            if (area > 0) sides_.push_back({areas_[f] / area, area, f});
-        }
+        for (const int f : faces_)
+            if (all_sides_[f].area > 0) sides_.push_back(all_sides_[f]);
         if (all_alike()) return false;
         float best = 0;
         for (std::size_t i = 1; i < sides_.size(); ++i)
@@ -246,10 +245,10 @@ private:
 
     const Network& network_;
     const Surface& surface_;
-    const PerFace<Vector3>& areas_;
+    const PerFace<Side>& all_sides_;
     const PointsByFace& points_;
     std::vector<int> faces_;
-    std::vector<Side> sides_;
+    std::vector<Side> sides_;  ///< of the two-ring
     std::vector<Sample> samples_;
     double reach_ = 0;
     std::array<Plane, 2> planes_;
@@ -268,11 +267,14 @@ bool is_near_boundary(const Network& network, VertexId v) {
 PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surface,
                                     const PointsByFace& points, float noise_variance, ThreadTeam& team) {
     PerVertex<Vector3> moves(network.slot_count(), Vector3::Zero());
-    PerFace<Vector3> areas(surface.face_count());
-    for (int f = 0; f < surface.face_count(); ++f) areas[f] = area_vector(surface, f);
+    PerFace<PlanesOfPoints::Side> sides(surface.face_count());
+    parallel_for(sides.size(), kFacesAtATime, team, [&](int f) {
+        const Vector3 area = area_vector(surface, f);
+        sides[f] = {area / area.norm(), area.norm(), f};
+    });
     const auto slots = static_cast<std::size_t>(network.slot_count());
     for_chunks(slots, kVerticesAtATime, team, [&](std::size_t, std::size_t begin, std::size_t end) {
-        PlanesOfPoints planes(network, surface, areas, points);
+        PlanesOfPoints planes(network, surface, sides, points);
         for (auto v = static_cast<VertexId>(begin); v < static_cast<VertexId>(end); ++v)
             if (network.alive(v) && !is_near_boundary(network, v))
                 moves[v] = planes.way_to_crease(v, noise_variance);

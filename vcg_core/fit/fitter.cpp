@@ -216,8 +216,8 @@ void Fitter::weaken_outliers(const Surface& surface, PointsByFace& points) const
 }
 
 PointsByFace Fitter::assign(const Surface& surface, const std::vector<Hit>& hits) {
-    PointsByFace points = group_by_face(surface, fitted_, hits);
-    noise_variance_ = neuralmesh::noise_variance(surface, points);
+    PointsByFace points = group_by_face(surface, fitted_, hits, team_);
+    noise_variance_ = neuralmesh::noise_variance(surface, points, team_);
     weaken_outliers(surface, points);
     if (expects_strays_) silence_strays(surface, points);
     return points;
@@ -247,7 +247,7 @@ std::vector<float> Fitter::choose_weights(const Surface& surface, const PointsBy
 double Fitter::solve(const PointsByFace& points, Surface& surface, float hold) {
     const std::vector<float> weights = choose_weights(surface, points);
     const Surface start = surface;
-    const MoveLimits limits(network_, start);
+    const MoveLimits limits(network_, start, team_);
     PerVertex<float> stiffness;
     if (layered_) stiffness = stiffness_by(examine_variances(surface, points), surface, points);
     const PointToPlaneSystem system(network_, surface, points, team_, stiffness, hold);
@@ -290,7 +290,7 @@ void Fitter::move_to_creases(Surface& surface, const PointsByFace& points) {
     const PerVertex<Vector3> moves = moves_to_creases(network_, surface, points, noise_variance_, team_);
     if (std::all_of(moves.begin(), moves.end(), [](const Vector3& way) { return way.isZero(0); })) return;
     const Surface start = surface;
-    const MoveLimits limits(network_, start);
+    const MoveLimits limits(network_, start, team_);
     surface.positions = limits.without_crossings(moves, guard_, team_);
     place_vertices(surface);
 }

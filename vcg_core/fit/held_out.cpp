@@ -58,7 +58,7 @@ void HeldOut::keep_at_most(std::size_t count) {
 }
 
 void HeldOut::locate(const Surface& surface, ThreadTeam& team) {
-    group_by_face(surface, tracked_, nearest_by_tree(surface, tracked_, team));
+    group_by_face(surface, tracked_, nearest_by_tree(surface, tracked_, team), team);
 }
 
 void HeldOut::relocate(const Surface& surface, ThreadTeam& team) {

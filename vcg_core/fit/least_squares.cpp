@@ -89,7 +89,7 @@ PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& su
         gather(sums, surface, v);
         regularise(surface, missing[v], v);
     });
-    add_bending(surface, stiffness);
+    add_bending(surface, stiffness, team);
     for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) add_target(target);
     add_boundary_bending(surface);
     find_coupled();
@@ -161,12 +161,13 @@ bool PointToPlaneSystem::make_bending_term(const Surface& surface, const std::ar
     return true;
 }
 
-void PointToPlaneSystem::add_bending(const Surface& surface, const PerVertex<float>& stiffness) {
+void PointToPlaneSystem::add_bending(const Surface& surface, const PerVertex<float>& stiffness,
+                                     ThreadTeam& team) {
     bending_force_.assign(surface.positions.size(), Vector3::Zero());
     bending_diagonal_.assign(surface.positions.size(), 0);
     stiff_diagonal_.assign(surface.positions.size(), 0);
-    std::vector<float> gaps;
-    for (VertexId a : network_.vertices()) {
+    const auto find = [&](VertexId a, std::vector<BendingTerm>& found) {
+        if (!network_.alive(a)) return;
         const Ring& ring = network_.ring(a);
         for (int i = 0; i < ring.valence; ++i) {
             const bool on_boundary = ring.open != 0 && (i == 0 || i + 1 == ring.valence);
@@ -174,11 +175,14 @@ void PointToPlaneSystem::add_bending(const Surface& surface, const PerVertex<flo
             if (ring[i] < a || on_boundary ||
                 !make_bending_term(surface, {a, ring[i], ring.next(i), ring.previous(i)}, term))
                 continue;
-            bending_terms_.push_back(term);
-            gaps.push_back(term.gap.norm());
+            found.push_back(term);
         }
-    }
-    if (gaps.empty()) return;
+    };
+    bending_terms_ = parallel_collect<BendingTerm>(network_.slot_count(), kChunk, team, find);
+    if (bending_terms_.empty()) return;
+    std::vector<float> gaps;
+    gaps.reserve(bending_terms_.size());
+    for (const BendingTerm& term : bending_terms_) gaps.push_back(term.gap.norm());
     const float crease = std::max(kCrease * median(gaps), 1e-9F);
     for (std::size_t i = 0; i < gaps.size(); ++i) {
         BendingTerm& term = bending_terms_[i];

@@ -84,7 +84,7 @@ private:
     void regularise(const Surface& surface, float missing_points, VertexId v);
     static bool make_bending_term(const Surface& surface, const std::array<VertexId, 4>& corner,
                                   BendingTerm& term);
-    void add_bending(const Surface& surface, const PerVertex<float>& stiffness);
+    void add_bending(const Surface& surface, const PerVertex<float>& stiffness, ThreadTeam& team);
     void stiffen(BendingTerm& term, const PerVertex<float>& stiffness);
     void add_target(const BoundaryTarget& target);
     void find_coupled();

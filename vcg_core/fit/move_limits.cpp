@@ -3,6 +3,7 @@
 
 #include "vcg_core/fit/move_limits.h"
 
+#include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/face_rules.h"
 
 namespace neuralmesh {
@@ -10,7 +11,8 @@ namespace neuralmesh {
 namespace {
 
 constexpr float kMaxMove = 0.25F;  ///< in mean lengths of the vertex's edges
-constexpr int kHalvings = 5;       ///< of a displacement before it is set to 0
+constexpr int kChunk = 512;
+constexpr int kHalvings = 5;  ///< of a displacement before it is set to 0
 
 PerFace<Vector3> normals_of(const Surface& surface, const PerVertex<Vector3>& positions) {
     PerFace<Vector3> result(surface.face_count(), Vector3::Zero());
@@ -23,42 +25,39 @@ float quality_of(const Surface& surface, int f, const PerVertex<Vector3>& positi
     return triangle_quality(positions[face[0]], positions[face[1]], positions[face[2]]);
 }
 
-/// The face across the edge from corner \p k of \p face to the next, if its number is higher and it has
-/// another third corner; -1 if not.
-int higher_face_across(const Surface& surface, int face, std::size_t k) {
-    const Triangle& own = surface.faces[face];
-    const VertexId a = own[k], b = own[(k + 1) % 3], c = own[(k + 2) % 3];
-    for (const int other : surface.faces_around(b)) {
-        if (other <= face) continue;
-        const Triangle& t = surface.faces[other];
-        for (std::size_t i = 0; i < 3; ++i)
-            if (t[i] == b && t[(i + 1) % 3] == a) return t[(i + 2) % 3] == c ? -1 : other;
-    }
-    return -1;
-}
-
 }  // namespace
 
-MoveLimits::MoveLimits(const Network& network, const Surface& surface)
+MoveLimits::MoveLimits(const Network& network, const Surface& surface, ThreadTeam& team)
     : surface_(surface),
-      normals_(normals_of(surface, surface.positions)),
-      qualities_(normals_.size(), 0),
-      folded_(normals_.size(), 0),
+      normals_(surface.face_count(), Vector3::Zero()),
+      qualities_(surface.face_count(), 0),
+      folded_(surface.face_count(), 0),
       max_move_(network.slot_count(), 0) {
-    for (int f = 0; f < normals_.size(); ++f) {
-        const Triangle& face = surface_.faces[f];
+    parallel_for(surface.face_count(), kChunk, team, [&](int f) {
+        normals_[f] = unit_normal(surface_, f);
         qualities_[f] = quality_of(surface_, f, surface_.positions);
-        for (std::size_t k = 0; k < 3; ++k)
-            if (kMoveRules.is_folded(normals_[f].dot(normal_beyond(surface_, face[k], face[(k + 1) % 3]))))
-                folded_[f] = 1;
-        for (std::size_t k = 0; k < 3; ++k)
-            if (const int other = higher_face_across(surface_, f, k); other >= 0)
-                neighbours_.push_back({f, other, normals_[f].dot(normals_[other])});
-    }
-    for (VertexId v : network.vertices()) {
+    });
+    neighbours_ = parallel_collect<Neighbours>(
+        surface.face_count(), kChunk, team,
+        [this](int f, std::vector<Neighbours>& found) { look_across_edges(f, found); });
+    parallel_for(network.slot_count(), kChunk, team, [&](VertexId v) {
+        if (!network.alive(v)) return;
         float length = 0;
         for (VertexId u : network.ring(v)) length += (surface_.positions[u] - surface_.positions[v]).norm();
         max_move_[v] = kMaxMove * length / static_cast<float>(network.ring(v).valence);
+    });
+}
+
+/// Tells whether \p face is folded onto a neighbour, and appends its neighbours of higher numbers.
+void MoveLimits::look_across_edges(int face, std::vector<Neighbours>& found) {
+    const Triangle& own = surface_.faces[face];
+    for (std::size_t k = 0; k < 3; ++k) {
+        const FaceCorner across = corner_of_edge(surface_, own[(k + 1) % 3], own[k]);
+        if (across.face < 0) continue;
+        const float cosine = normals_[face].dot(normals_[across.face]);
+        if (kMoveRules.is_folded(cosine)) folded_[face] = 1;
+        const bool same_corners = surface_.faces[across.face][(across.corner + 2) % 3] == own[(k + 2) % 3];
+        if (across.face > face && !same_corners) found.push_back({face, across.face, cosine});
     }
 }
 

@@ -17,7 +17,7 @@ namespace neuralmesh {
 class MoveLimits {
 public:
     /// Keeps a reference to \p surface, that of \p network; it must not change meanwhile. O(vertices).
-    MoveLimits(const Network& network, const Surface& surface);
+    MoveLimits(const Network& network, const Surface& surface, ThreadTeam& team);
 
     /// The positions after the \p displacements, shortened where they break a limit. O(vertices) per halving.
     PerVertex<Vector3> bounded(const PerVertex<Vector3>& displacements) const;
@@ -33,6 +33,8 @@ private:
         int face, other;
         float cosine;
     };
+
+    void look_across_edges(int face, std::vector<Neighbours>& found);
 
     const Surface& surface_;
     PerFace<Vector3> normals_;

@@ -8,15 +8,16 @@
 #include <vector>
 
 #include "vcg_core/base/median.h"
+#include "vcg_core/base/parallel_for.h"
 
 namespace neuralmesh {
 
-float noise_variance(const Surface& surface, const PointsByFace& points) {
+float noise_variance(const Surface& surface, const PointsByFace& points, ThreadTeam& team) {
     constexpr int kMinPoints = 4;
-    std::vector<float> variances;
-    for (int f = 0; f < surface.face_count(); ++f) {
+    constexpr int kFacesAtATime = 512;
+    const auto find = [&](int f, std::vector<float>& variances) {
         const Span<const PointsByFace::Assignment> of_face = points.of(f);
-        if (of_face.size() < kMinPoints) continue;
+        if (of_face.size() < kMinPoints) return;
         const Vector3 normal = unit_normal(surface, f);
         float sum = 0;
         float squares = 0;
@@ -27,7 +28,8 @@ float noise_variance(const Surface& surface, const PointsByFace& points) {
         }
         const auto n = static_cast<float>(of_face.size());
         variances.push_back(std::max(0.0F, squares - sum * sum / n) / (n - 1));
-    }
+    };
+    std::vector<float> variances = parallel_collect<float>(surface.face_count(), kFacesAtATime, team, find);
     return variances.empty() ? 0.0F : median(std::move(variances));
 }
 

@@ -11,6 +11,6 @@ namespace neuralmesh {
 /// Variance of the points' noise, in squared units of length: the median over the faces of the variance of
 /// their points' heights above the face. Misfit of the mesh is common to the points of a face and drops out.
 /// 0 if no face has 4 points. O(points + faces).
-float noise_variance(const Surface& surface, const PointsByFace& points);
+float noise_variance(const Surface& surface, const PointsByFace& points, ThreadTeam& team);
 
 }  // namespace neuralmesh

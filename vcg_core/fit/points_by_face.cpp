@@ -17,7 +17,7 @@ constexpr std::size_t kChunk = 512;
 }  // namespace
 
 std::vector<Hit> nearest_by_tree(const Surface& surface, const TrackedPoints& tracked, ThreadTeam& team) {
-    const FaceTree tree(surface);
+    const FaceTree tree(surface, team);
     std::vector<Hit> hits(tracked.points.size());
     for_chunks(hits.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) hits[i] = tree.nearest(tracked.points[i]);
@@ -65,17 +65,19 @@ void PointsByFace::update_feet(const Surface& surface, ThreadTeam& team) {
     });
 }
 
-PointsByFace group_by_face(const Surface& surface, TrackedPoints& tracked, const std::vector<Hit>& hits) {
+PointsByFace group_by_face(const Surface& surface, TrackedPoints& tracked, const std::vector<Hit>& hits,
+                           ThreadTeam& team) {
     PointsByFace result(surface, tracked, hits);
     tracked.last_hit.resize(hits.size());
-    std::size_t i = 0;
-    for (int face = 0; face < surface.face_count(); ++face)
+    parallel_for(surface.face_count(), kChunk, team, [&](int face) {
+        auto i = static_cast<std::size_t>(result.of(face).begin() - result.all().data());
         for (const PointsByFace::Assignment& a : result.of(face)) {
             tracked.points[i] = a.point;
             if (!tracked.weights.empty()) tracked.weights[i] = a.influence;
             tracked.last_hit[i] = walk_start_of(surface, {face, a.foot});
             ++i;
         }
+    });
     return result;
 }
 

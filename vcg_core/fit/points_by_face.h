@@ -64,6 +64,7 @@ private:
 
 /// Assigns the \p tracked points to the faces hit. Reorders them by face, so that points near in space come
 /// near in memory, and records the hits.
-PointsByFace group_by_face(const Surface& surface, TrackedPoints& tracked, const std::vector<Hit>& hits);
+PointsByFace group_by_face(const Surface& surface, TrackedPoints& tracked, const std::vector<Hit>& hits,
+                           ThreadTeam& team);
 
 }  // namespace neuralmesh

@@ -35,7 +35,7 @@ void move_soundly(Network& network, PerVertex<Vector3> moves, ThreadTeam& team) 
     float left = total_length(moves);
     for (int step = 0; step < kMostSteps && left > 0; ++step) {
         const Surface start = surface;
-        surface.positions = MoveLimits(network, start).without_crossings(moves, guard, team);
+        surface.positions = MoveLimits(network, start, team).without_crossings(moves, guard, team);
         for (const VertexId v : network.vertices()) moves[v] -= surface.positions[v] - start.positions[v];
         const float before = std::exchange(left, total_length(moves));
         if (before - left < kLeastShare * before) break;

@@ -118,16 +118,17 @@ std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surfac
                                    const LeastSplitGain& least_gain, ThreadTeam& team) {
     PerFace<FaceHatSums> sums(surface.face_count());
     parallel_for(sums.size(), kChunk, team, [&](int f) { sums[f] = hat_sums(surface, points, f); });
-    std::vector<EdgeSplit> splits;
-    for (VertexId a : network.vertices()) {
+    const auto find = [&](VertexId a, std::vector<EdgeSplit>& found) {
+        if (!network.alive(a)) return;
         const Ring& ring = network.ring(a);
         for (int i = 0; i < ring.valence; ++i) {
             const bool on_boundary = ring.open != 0 && (i == 0 || i + 1 == ring.valence);
             if (ring[i] < a || on_boundary) continue;
             const EdgeSplit split = split_of(surface, points, sums, least_gain, a, ring[i]);
-            if (split.gain >= 0) splits.push_back(split);
+            if (split.gain >= 0) found.push_back(split);
         }
-    }
+    };
+    std::vector<EdgeSplit> splits = parallel_collect<EdgeSplit>(network.slot_count(), kChunk, team, find);
     for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) {
         EdgeSplit split = split_of(surface, points, sums, {}, target.a, target.b);
         add_boundary_gain(split, target);

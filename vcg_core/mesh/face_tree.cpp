@@ -7,9 +7,15 @@
 #include <numeric>
 #include <utility>
 
+#include "vcg_core/base/parallel_for.h"
+
 namespace neuralmesh {
 
 namespace {
+
+constexpr int kChunk = 512;
+/// Subtrees of at most so many faces are built by one thread.
+constexpr int kFacesAtATime = 2048;
 
 std::vector<int> all_faces(const Surface& surface) {
     std::vector<int> faces(surface.faces.vector().size());
@@ -21,13 +27,32 @@ std::vector<int> all_faces(const Surface& surface) {
 
 FaceTree::FaceTree(const Surface& surface) : FaceTree(surface, all_faces(surface)) {}
 
-FaceTree::FaceTree(const Surface& surface, std::vector<int> faces)
-    : order_(std::move(faces)), corners_(order_.size()), boxes_(order_.size()) {
-    PerFace<Vector3> centres(surface.face_count(), Vector3::Zero());
-    for (int f : order_) centres[f] = surface.corner(f, 0) + surface.corner(f, 1) + surface.corner(f, 2);
-    nodes_.reserve(order_.size());
-    if (!order_.empty()) build(centres, 0, order_.size());
-    set_boxes(surface);
+FaceTree::FaceTree(const Surface& surface, ThreadTeam& team) : FaceTree(surface, all_faces(surface), team) {}
+
+FaceTree::FaceTree(const Surface& surface, std::vector<int> faces) : order_(std::move(faces)) {
+    ThreadTeam alone(1);
+    build(surface, alone);
+}
+
+FaceTree::FaceTree(const Surface& surface, std::vector<int> faces, ThreadTeam& team)
+    : order_(std::move(faces)) {
+    build(surface, team);
+}
+
+void FaceTree::build(const Surface& surface, ThreadTeam& team) {
+    if (order_.empty()) return;
+    Indexed<Entry> entries(order_.size());
+    parallel_for(entries.size(), kChunk, team, [&](int i) {
+        const int f = order_[i];
+        entries[i] = {surface.corner(f, 0) + surface.corner(f, 1) + surface.corner(f, 2), f};
+    });
+    nodes_.resize(node_count(order_.size()));
+    std::vector<Subtree> subtrees;
+    divide_to_subtrees(entries, {0, 0, order_.size()}, subtrees);
+    parallel_for(static_cast<int>(subtrees.size()), 1, team,
+                 [&](int i) { divide_to_leaves(entries, subtrees[static_cast<std::size_t>(i)]); });
+    for (int i = 0; i < order_.size(); ++i) order_[i] = entries[i].face;
+    set_boxes(surface, team);
 }
 
 FaceTree::Box FaceTree::box_of(const Surface& surface, int face) {
@@ -37,33 +62,59 @@ FaceTree::Box FaceTree::box_of(const Surface& surface, int face) {
     return box;
 }
 
-int FaceTree::build(const PerFace<Vector3>& centres, int begin, int end) {
-    const int node = nodes_.size();
-    nodes_.push_back({Box(), begin, end, -1});
-    if (end - begin <= kLeafFaces) return node;
+/// Of a tree of so many faces. On a level of \p parts nodes their faces differ by 1 at most.
+int FaceTree::node_count(int faces) {
+    int parts = 1;
+    while (faces / parts > kLeafFaces) parts *= 2;
+    const int divided = faces / parts == kLeafFaces ? faces % parts : 0;
+    return 2 * (parts + divided) - 1;
+}
+
+/// Makes the node, and divides its faces at the median. \return false if it is a leaf
+bool FaceTree::divide(Indexed<Entry>& entries, const Subtree& tree, std::array<Subtree, 2>& halves) {
+    const auto [node, begin, end] = tree;
+    nodes_[node] = {Box(), begin, end, -1};
+    if (end - begin <= kLeafFaces) return false;
     Box box;
-    for (int i = begin; i < end; ++i) box.extend(centres[order_[i]]);
+    for (int i = begin; i < end; ++i) box.extend(entries[i].centre);
     Eigen::Index axis = 0;
     box.sizes().maxCoeff(&axis);
     const int middle = begin + (end - begin) / 2;
-    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                     [&](int f, int g) {
-                         const float x = centres[f][axis];
-                         const float y = centres[g][axis];
-                         return x < y || (x == y && f < g);
+    std::nth_element(entries.begin() + begin, entries.begin() + middle, entries.begin() + end,
+                     [axis](const Entry& a, const Entry& b) {
+                         const float x = a.centre[axis];
+                         const float y = b.centre[axis];
+                         return x < y || (x == y && a.face < b.face);
                      });
-    build(centres, begin, middle);
-    const int right = build(centres, middle, end);
-    nodes_[node].right = right;
-    return node;
+    nodes_[node].right = node + 1 + node_count(middle - begin);
+    halves = {{{node + 1, begin, middle}, {nodes_[node].right, middle, end}}};
+    return true;
 }
 
-void FaceTree::set_boxes(const Surface& surface) {
-    for (int i = 0; i < order_.size(); ++i) {
+void FaceTree::divide_to_subtrees(Indexed<Entry>& entries, const Subtree& tree,
+                                  std::vector<Subtree>& subtrees) {
+    std::array<Subtree, 2> halves;
+    if (tree.end - tree.begin <= kFacesAtATime) {
+        subtrees.push_back(tree);
+    } else if (divide(entries, tree, halves)) {
+        for (const Subtree& half : halves) divide_to_subtrees(entries, half, subtrees);
+    }
+}
+
+void FaceTree::divide_to_leaves(Indexed<Entry>& entries, const Subtree& tree) {
+    std::array<Subtree, 2> halves;
+    if (!divide(entries, tree, halves)) return;
+    for (const Subtree& half : halves) divide_to_leaves(entries, half);
+}
+
+void FaceTree::set_boxes(const Surface& surface, ThreadTeam& team) {
+    corners_ = Indexed<Corners>(order_.size());
+    boxes_ = Indexed<Box>(order_.size());
+    parallel_for(order_.size(), kChunk, team, [&](int i) {
         const Vector3& a = surface.corner(order_[i], 0);
         corners_[i] = {a, surface.corner(order_[i], 1) - a, surface.corner(order_[i], 2) - a};
         boxes_[i] = box_of(surface, order_[i]);
-    }
+    });
     // Children come after their parents.
     for (int n = nodes_.size() - 1; n >= 0; --n) {
         Node& node = nodes_[n];
@@ -76,20 +127,20 @@ void FaceTree::set_boxes(const Surface& surface) {
 }
 
 Hit FaceTree::nearest(const Vector3& p) const {
-    struct Entry {
+    struct Waiting {
         float squared_distance;
         int node;
     };
-    const auto entry_of = [&](int n) { return Entry{nodes_[n].box.squaredExteriorDistance(p), n}; };
+    const auto entry_of = [&](int n) { return Waiting{nodes_[n].box.squaredExteriorDistance(p), n}; };
     Hit best{-1, {std::numeric_limits<float>::max(), {1, 0, 0}}};
-    std::array<Entry, kStack> stack;
+    std::array<Waiting, kStack> stack;
     std::size_t height = 0;
     if (!nodes_.empty()) stack[height++] = entry_of(0);
     while (height > 0) {
-        Entry nearer = stack[--height];
+        Waiting nearer = stack[--height];
         // Down to a leaf by the nearer child; the other waits.
         while (nearer.squared_distance <= best.foot.squared_distance && !nodes_[nearer.node].is_leaf()) {
-            Entry further = entry_of(nodes_[nearer.node].right);
+            Waiting further = entry_of(nodes_[nearer.node].right);
             nearer = entry_of(nearer.node + 1);
             if (further.squared_distance < nearer.squared_distance) std::swap(nearer, further);
             if (further.squared_distance <= best.foot.squared_distance) stack[height++] = further;

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "vcg_core/base/thread_team.h"
 #include "vcg_core/mesh/surface.h"
 
 namespace neuralmesh {
@@ -21,8 +22,11 @@ class FaceTree {
 public:
     /// O(faces log faces).
     explicit FaceTree(const Surface& surface);
+    FaceTree(const Surface& surface, ThreadTeam& team);
     /// Over the given \p faces of the surface only.
     FaceTree(const Surface& surface, std::vector<int> faces);
+    /// The same, built on the threads of \p team. The tree does not depend on their number.
+    FaceTree(const Surface& surface, std::vector<int> faces, ThreadTeam& team);
 
     /// The nearest face of \p p, the one of smallest index among equals; face -1 if the tree is empty. Exact
     /// up to float rounding. O(log faces) expected near the surface.
@@ -58,10 +62,23 @@ private:
     struct Corners {
         Vector3 a, ab, ac;
     };
+    /// A face while the tree is built, with three times its centre.
+    struct Entry {
+        Vector3 centre;
+        int face;
+    };
+    /// A node whose children are not made yet.
+    struct Subtree {
+        int node, begin, end;
+    };
 
     static Box box_of(const Surface& surface, int face);
-    int build(const PerFace<Vector3>& centres, int begin, int end);
-    void set_boxes(const Surface& surface);
+    void build(const Surface& surface, ThreadTeam& team);
+    static int node_count(int faces);
+    bool divide(Indexed<Entry>& entries, const Subtree& tree, std::array<Subtree, 2>& halves);
+    void divide_to_subtrees(Indexed<Entry>& entries, const Subtree& tree, std::vector<Subtree>& subtrees);
+    void divide_to_leaves(Indexed<Entry>& entries, const Subtree& tree);
+    void set_boxes(const Surface& surface, ThreadTeam& team);
     template <class Visit>
     void for_overlapping(const Box& box, int first, const Visit& visit) const;
 

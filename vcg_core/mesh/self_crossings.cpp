@@ -134,7 +134,7 @@ std::vector<SelfCrossing> self_crossings(const Surface& surface, ThreadTeam& tea
     for (int f = 0; f < surface.face_count(); ++f)
         if (has_area(surface, f)) faces.push_back(f);
     const int count = static_cast<int>(faces.size());
-    const FaceTree tree(surface, std::move(faces));
+    const FaceTree tree(surface, std::move(faces), team);
     std::atomic<std::int64_t> tested{0};
     std::vector<SelfCrossing> all =
         parallel_collect<SelfCrossing>(count, kChunk, team, [&](int i, std::vector<SelfCrossing>& found) {
@@ -152,14 +152,14 @@ std::vector<SelfCrossing> self_crossings(const Surface& surface, ThreadTeam& tea
 
 std::vector<SelfCrossing> update_self_crossings(const Surface& surface, const Surface& before,
                                                 const std::vector<SelfCrossing>& known, ThreadTeam& team) {
-    std::vector<int> changed;
     PerFace<char> is_changed(surface.face_count(), 0);
-    for (int f = 0; f < surface.face_count(); ++f) {
-        if (have_same_face(surface, before, surface.faces[f])) continue;
+    const auto examine = [&](int f, std::vector<int>& changed) {
+        if (have_same_face(surface, before, surface.faces[f])) return;
         is_changed[f] = 1;
         if (has_area(surface, f)) changed.push_back(f);
-    }
-    const FaceTree tree(surface, std::move(changed));
+    };
+    std::vector<int> changed = parallel_collect<int>(surface.face_count(), kChunk, team, examine);
+    const FaceTree tree(surface, std::move(changed), team);
     const auto find = [&](int f, std::vector<SelfCrossing>& found) {
         if (!has_area(surface, f)) return;
         tree.for_overlapping(surface, f, [&](int g) {

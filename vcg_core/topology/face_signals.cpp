@@ -16,7 +16,7 @@ constexpr int kChunk = 1024;  ///< signals per task of a thread
 
 void assign(const Surface& surface, const std::vector<Vector3>& signals, ThreadTeam& team,
             FaceSignals& support) {
-    const FaceTree tree(surface);
+    const FaceTree tree(surface, team);
     std::vector<Hit> hits(signals.size());
     parallel_for(static_cast<int>(signals.size()), kChunk, team, [&](int i) {
         const auto k = static_cast<std::size_t>(i);

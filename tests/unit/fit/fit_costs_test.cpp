@@ -261,8 +261,8 @@ FitScene weighted_torus_scene(float upper, float lower) {
     FitScene scene = torus_scene();
     for (const Vector3& p : scene.tracked.points) scene.tracked.weights.push_back(p[2] > 0 ? upper : lower);
     ThreadTeam team(1);
-    scene.points =
-        group_by_face(scene.surface, scene.tracked, nearest_by_tree(scene.surface, scene.tracked, team));
+    scene.points = group_by_face(scene.surface, scene.tracked,
+                                 nearest_by_tree(scene.surface, scene.tracked, team), team);
     return scene;
 }
 

@@ -135,7 +135,8 @@ TEST(PointsByFace, WeighPointsByTheirInfluence) {
         tracked.weights.push_back(p[2] > 0 ? 2.0F : 0.5F);
     }
     ThreadTeam team(1);
-    const PointsByFace points = group_by_face(surface, tracked, nearest_by_tree(surface, tracked, team));
+    const PointsByFace points =
+        group_by_face(surface, tracked, nearest_by_tree(surface, tracked, team), team);
     for (std::size_t i = 0; i < tracked.points.size(); ++i)
         EXPECT_EQ(tracked.weights[i], tracked.points[i][2] > 0 ? 2.0F : 0.5F) << "reordered with the points";
     for (int f = 0; f < surface.face_count(); ++f) {
@@ -178,24 +179,27 @@ TEST(PointsByFace, UpdateTheirFeet) {
 }
 
 TEST(NoiseVariance, IsThatOfANoisyPlane) {
+    ThreadTeam team(2);
     const Surface plane(referee::network_of(shapes::grid(10, 10)));
     for (double sigma : {0.001, 0.01}) {
         const PointsByFace points =
             points_on(plane, 100, [&](Random& random) { return sigma * normal_deviate(random); });
-        EXPECT_NEAR(noise_variance(plane, points) / (sigma * sigma), 1, 0.05);
+        EXPECT_NEAR(noise_variance(plane, points, team) / (sigma * sigma), 1, 0.05);
     }
 }
 
 TEST(NoiseVariance, IsNotThatOfTheMisfit) {
+    ThreadTeam team(2);
     const Surface sphere(referee::network_of(shapes::icosphere(2)));
-    EXPECT_LT(noise_variance(sphere, points_on(sphere, 20, [](Random&) { return 0.1; })), 1e-10);
+    EXPECT_LT(noise_variance(sphere, points_on(sphere, 20, [](Random&) { return 0.1; }), team), 1e-10);
 }
 
 TEST(NoiseVariance, IsZeroWithTooFewPoints) {
+    ThreadTeam team(2);
     const Surface sphere(referee::network_of(shapes::icosphere(2)));
     const auto noise = [](Random& random) { return 0.1 * normal_deviate(random); };
-    EXPECT_EQ(noise_variance(sphere, points_on(sphere, 3, noise)), 0);
-    EXPECT_GT(noise_variance(sphere, points_on(sphere, 4, noise)), 0);
+    EXPECT_EQ(noise_variance(sphere, points_on(sphere, 3, noise), team), 0);
+    EXPECT_GT(noise_variance(sphere, points_on(sphere, 4, noise), team), 0);
 }
 
 constexpr VertexId kSpike = 7;

@@ -43,7 +43,7 @@ struct FitScene {
     FitScene(Network given, const shapes::Cloud& cloud) : network(std::move(given)), surface(network) {
         ThreadTeam team(1);
         for (const vcg::Point3d& p : cloud) tracked.points.push_back(to_eigen(vcg::Point3f::Construct(p)));
-        points = group_by_face(surface, tracked, nearest_by_tree(surface, tracked, team));
+        points = group_by_face(surface, tracked, nearest_by_tree(surface, tracked, team), team);
     }
 
     Network network;

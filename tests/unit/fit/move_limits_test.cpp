@@ -108,29 +108,32 @@ PerVertex<Vector3> plainly_bounded(const Network& network, const Surface& surfac
 }
 
 TEST(MoveLimits, AreThoseOfAllPairsOfFaces) {
+    ThreadTeam team(2);
     for (const double noise : {0.0, 0.02, 0.06}) {
         const Network network = referee::network_of(shapes::icosphere(3), noise);
         const Surface surface(network);
         for (const float size : {0.05F, 0.3F, 3.0F}) {
             const PerVertex<Vector3> u = random_displacements(network.slot_count(), size, 3);
-            EXPECT_EQ(MoveLimits(network, surface).bounded(u), plainly_bounded(network, surface, u))
+            EXPECT_EQ(MoveLimits(network, surface, team).bounded(u), plainly_bounded(network, surface, u))
                 << noise << ", " << size;
         }
     }
 }
 
 TEST(MoveLimits, LeavesSmallDisplacementsAlone) {
+    ThreadTeam team(2);
     const Network network = referee::network_of(shapes::icosphere(3));
     const Surface surface(network);
     const PerVertex<Vector3> u = random_displacements(network.slot_count(), 0.01F, 1);
-    const PerVertex<Vector3> moved = MoveLimits(network, surface).bounded(u);
+    const PerVertex<Vector3> moved = MoveLimits(network, surface, team).bounded(u);
     for (VertexId v : network.vertices()) EXPECT_EQ(moved[v], surface.positions[v] + u[v]);
 }
 
 TEST(MoveLimits, BoundsLargeDisplacements) {
+    ThreadTeam team(2);
     const Network network = referee::network_of(shapes::icosphere(3), 0.01);
     const Surface surface(network);
-    const MoveLimits limits(network, surface);
+    const MoveLimits limits(network, surface, team);
     for (float size : {0.1F, 1.0F, 100.0F}) {
         Surface after = surface;
         after.positions = limits.bounded(random_displacements(network.slot_count(), size, 2));
@@ -149,11 +152,12 @@ TEST(MoveLimits, BoundsLargeDisplacements) {
 }
 
 TEST(MoveLimits, DoesNotMoveAVertexByNaN) {
+    ThreadTeam team(2);
     const Network network = referee::network_of(shapes::icosphere(2));
     const Surface surface(network);
     PerVertex<Vector3> u(network.slot_count(), Vector3(0.01F, 0, 0));
     u[3][1] = std::numeric_limits<float>::quiet_NaN();
-    const PerVertex<Vector3> moved = MoveLimits(network, surface).bounded(u);
+    const PerVertex<Vector3> moved = MoveLimits(network, surface, team).bounded(u);
     EXPECT_EQ(moved[3], surface.positions[3]);
     EXPECT_NE(moved[4], surface.positions[4]);
 }
@@ -169,7 +173,7 @@ TEST(MoveLimits, ShortensUntilTheGuardAccepts) {
     PerVertex<Vector3> u(network.slot_count(), Vector3::Zero());
     for (VertexId v : network.vertices())
         if (surface.positions[v][2] > 0) u[v] = Vector3(0, 0, -0.025F);
-    const MoveLimits limits(network, surface);
+    const MoveLimits limits(network, surface, team);
     Surface after = surface;
     after.positions = limits.bounded(u);
     EXPECT_FALSE(self_crossings(after, team).empty());

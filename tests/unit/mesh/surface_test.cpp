@@ -136,6 +136,33 @@ TEST(FaceTree, FindsTheNearestFace) {
     }
 }
 
+// Leaves have 1 to 4 faces, and divide on one or two levels.
+TEST(FaceTree, FindsTheNearestOfAnyNumberOfFaces) {
+    const Surface surface(network_of(shapes::torus_grid(20, 10), 0.05));
+    Random random(6);
+    for (int count = 1; count <= 70; ++count) {
+        std::vector<int> faces = every(5, surface);
+        faces.resize(static_cast<std::size_t>(count));
+        const FaceTree tree(surface, faces);
+        for (int i = 0; i < 20; ++i) {
+            const Vector3 p = 1.5F * in_cube(random);
+            EXPECT_EQ(tree.nearest(p).face, nearest_of(surface, faces, p).face) << count;
+        }
+    }
+}
+
+TEST(FaceTree, DoesNotDependOnTheNumberOfThreads) {
+    const Surface surface(network_of(shapes::torus_grid(90, 60), 0.01));
+    ThreadTeam one(1), three(3);
+    const FaceTree tree(surface, one), same(surface, three);
+    for (int i = 0; i < surface.face_count(); ++i) {
+        std::vector<std::pair<int, int>> pairs, same_pairs;
+        tree.for_overlapping(i, [&](int f, int g) { pairs.emplace_back(f, g); });
+        same.for_overlapping(i, [&](int f, int g) { same_pairs.emplace_back(f, g); });
+        ASSERT_EQ(pairs, same_pairs);
+    }
+}
+
 // A vertex is as near to all of its faces.
 TEST(FaceTree, FindsTheFaceOfSmallestIndexAmongEquals) {
     const Surface surface(network_of(shapes::icosphere(2)));
