@@ -52,10 +52,12 @@ constexpr double kTooThick = 0.45;
 /// points. Scanned rooms and buildings have up to 21.
 constexpr int kMostHandles = 30, kVerticesPerHandle = 20;
 
-/// The start mesh of the paper, in the middle of the cloud, which is the origin of the core's frame.
-Network tetrahedron() {
-    constexpr float kA = 0.1F;
-    return Network({{kA, kA, kA}, {-kA, -kA, kA}, {-kA, kA, -kA}, {kA, -kA, -kA}},
+/// The start mesh of the paper, in the middle of the cloud, which is the origin of the core's frame; or one
+/// that encloses the cloud. A small one that begins between handles reaches their insides first, and turns
+/// inside out there.
+Network tetrahedron(bool enclosing) {
+    const float a = enclosing ? 1 : 0.1F;
+    return Network({{a, a, a}, {-a, -a, a}, {-a, a, -a}, {a, -a, -a}},
                    {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
 }
 
@@ -274,6 +276,15 @@ void begin_open(LearningTask& task, OpenStart start, const Settings& settings) {
     task.landing_signals = kLandingSignalsOfOpen;
 }
 
+void begin_tetrahedron(LearningTask& task, const Settings& settings) {
+    task.network = tetrahedron(settings.learn_topology);
+    task.topology_rules.handles_while_coarse = true;
+    if (settings.surface == kClosedSurface) return;
+    const double asked = settings.close_holes_up_to / task.target().frame().diagonal;
+    const double chosen = settings.surface == kOpenSurface ? 0 : widest_closed(task.target());
+    task.topology_rules.opens_from = static_cast<float>(asked >= 0 ? asked : chosen);
+}
+
 std::string too_large(const StartMesh& shell, int needed, int final_vertices) {
     return "The shell of the cloud, with " + std::to_string(shell.components) + " components and genus " +
            std::to_string(shell.genus) + ", needs " + std::to_string(needed) + " vertices, more than the " +
@@ -291,7 +302,7 @@ void begin_closed(LearningTask& task, StartMesh shell, const Settings& settings)
     const int needed = vertices_needed(shell, settings);
     if (needed > settings.target_vertices) {
         task.warnings.push_back(too_large(shell, needed, settings.target_vertices));
-        task.network = tetrahedron();
+        begin_tetrahedron(task, settings);
         return;
     }
     task.network = Network(shell.positions, shell.faces);
@@ -329,11 +340,11 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
         return;
     }
     if (settings.start_mesh == kTetrahedron) {
-        if (settings.surface == kOpenSurface)
+        if (settings.surface == kOpenSurface && !settings.learn_topology)
             task.warnings.push_back(
                 "The surface is closed, because start_mesh 1 (tetrahedron) is. Choose start_mesh 0 for an "
                 "open one.");
-        task.network = tetrahedron();
+        begin_tetrahedron(task, settings);
         return;
     }
     if (settings.surface == kOpenSurface) {

@@ -15,6 +15,7 @@
 #include "vcg_core/settings.h"
 #include "vcg_core/shell/shell.h"
 #include "vcg_core/target/target_space.h"
+#include "vcg_core/topology/topology_rules.h"
 
 namespace neuralmesh {
 
@@ -37,6 +38,7 @@ struct LearningTask {
     /// Noise of the points in mean edges of the mesh asked for (cloud_noise.h). Infinite for layers with
     /// faces, where it is not known.
     double noise = std::numeric_limits<double>::infinity();
+    TopologyRules topology_rules;    ///< with settings.learn_topology
     double topology_confidence = 0;  ///< as in Report
     int parts_faced_by_normals = 0;  ///< components of the network that face the side of the points' normals
     std::vector<std::string> warnings, notes;  ///< as in Report
@@ -58,11 +60,12 @@ int surplus_vertices(const Settings& settings, int final_vertices);
 /// A shell of more than settings.target_vertices vertices is replaced by a tetrahedron, with a warning,
 /// unless the fit reduces it and its components and handles need no more; an open start mesh is not, because
 /// a tetrahedron would close it. If settings.surface is automatic and the cloud has no open surface, it is
-/// closed. A tetrahedron stays closed, with a warning if settings.surface is open. \p given must outlive the
-/// result. Fractions of \p progress run from 0 to 1. \throws what shell_of() throws; if settings.surface is
-/// open, what open_start() throws; SettingError if an open start mesh needs more than
-/// settings.target_vertices vertices; what given_start() throws, and SettingError if \p start has more
-/// vertices than that
+/// closed. A tetrahedron lies in the middle of the cloud, as in the paper; if settings.learn_topology is on,
+/// it encloses the cloud. Without that setting it stays closed, with a warning if settings.surface is open.
+/// \p given must outlive the result. Fractions of \p progress run from 0 to 1. \throws what shell_of()
+/// throws; if settings.surface is open, what open_start() throws; SettingError if an open start mesh needs
+/// more than settings.target_vertices vertices; what given_start() throws, and SettingError if \p start has
+/// more vertices than that
 LearningTask prepare(const TargetSpace& given, const Settings& settings, const IndexedMesh<double>& start,
                      Progress& progress);
 

@@ -111,10 +111,21 @@ void note_topology(const LearningTask& task, const LearnedNetwork& learned, Repo
     const auto words = [](int components, int genus) {
         return std::to_string(components) + " component(s) and genus " + std::to_string(genus);
     };
-    report.notes.push_back("Membranes were given up in " + std::to_string(learned.topology_changes) +
-                           " place(s): the start mesh had " +
-                           words(task.network.component_count(), task.network.genus()) + ", the result has " +
-                           words(report.components, report.genus) + ".");
+    report.notes.push_back(
+        "Membranes were given up in " + std::to_string(learned.topology_changes) +
+        " place(s): the start mesh had " + words(task.network.component_count(), task.network.genus()) +
+        ", the result has " + words(report.components, report.genus) +
+        (report.boundary_loops > 0 ? " with " + std::to_string(report.boundary_loops) + " boundary loop(s)."
+                                   : "."));
+}
+
+void warn_if_not_opened(const Settings& settings, Report& report) {
+    if (settings.surface != kOpenSurface || settings.start_mesh != kTetrahedron || !settings.learn_topology ||
+        report.boundary_loops > 0)
+        return;
+    report.warnings.emplace_back(
+        "The surface is closed, because learning from the tetrahedron found no place without points that "
+        "nothing faces. Choose start_mesh 0 for an open one.");
 }
 
 }  // namespace
@@ -141,6 +152,7 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     if (monotone.stopped()) mesh.report.stop_reason = StopReason::cancelled;
     warn_of_growth(learned, mesh.report);
     note_topology(task, learned, mesh.report);
+    warn_if_not_opened(settings, mesh.report);
     Random random(stream_seed(settings.random_seed, Stream::rms_error));
     mesh.report.rms_error = 100 * rms_distance(task.target(), learned.network, kDistanceSamples, random);
     mesh.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -96,7 +96,7 @@ std::vector<SettingInfo> mesh_rows() {
         row(&S::start_mesh, "start_mesh", "Start mesh", {"Shell of the cloud", "Tetrahedron", "Layer"},
             "The mesh that learning starts from. Shell of the cloud: a coarse mesh around the points that "
             "already has their components and handles. Tetrahedron: the paper's, for one component without "
-            "handles. Layer: the mesh in 'Start layer', for example an earlier result to refine, or one whose "
+            "handles unless the topology is learned. Layer: the mesh in 'Start layer', for example an earlier result to refine, or one whose "
             "webs were cut and gaps bridged by hand; the result has its components, handles and boundaries."),
         layer_row(&S::start_layer, "start_layer", "Start layer",
                   "The layer with the mesh that learning starts from if the start mesh is 'Layer'; else "
@@ -104,7 +104,8 @@ std::vector<SettingInfo> mesh_rows() {
         row(&S::learn_topology, "learn_topology", "Learn topology",
             "While it grows, a closed mesh gives up membranes: parts without points that bridge limbs, span gaps or "
             "plug holes. Their rims are closed or joined, whichever the points support, so the number of "
-            "handles and components may change. If off, they are those of the start mesh."),
+            "handles and components may change. If off, they are those of the start mesh. From a tetrahedron, "
+            "wide membranes that are left become holes, unless the surface is closed."),
         row(&S::fit_to_points, "fit_to_points", "Fit to points",
             "After learning, fit the surface to the points by least squares. If off, the mesh stays as the "
             "paper's learning leaves it."),

@@ -35,7 +35,7 @@ enum VertexColor : int {
 /// The mesh that learning starts from.
 enum StartShape : int {
     kShell = 0,        ///< a coarse mesh around the cloud that already has its components and handles
-    kTetrahedron = 1,  ///< the paper's: one component without handles
+    kTetrahedron = 1,  ///< the paper's: one component without handles, unless learn_topology is on
     kGivenMesh = 2,    ///< a mesh of the caller's, see shell/given_start.h
 };
 

@@ -5,6 +5,7 @@
 #include "vcg_core/learning/learner.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <string>
@@ -87,7 +88,8 @@ StopReason Learner::grow(Progress& progress) {
         });
         if (!forced_ && schedule_.collapse_due(signals())) half_edge_collapse();
         memory_order_.update_while_growing();
-        if (state_.options.learn_topology && stages.pass(network().vertex_count())) learn_topology();
+        if (state_.options.learn_topology && stages.pass(network().vertex_count()))
+            learn_topology(stages.over());
 
         if (!forced_ && schedule_.stalled(signals())) force_growth();
         if (schedule_.exhausted(signals())) return StopReason::cut_short;
@@ -162,16 +164,24 @@ int Learner::half_edge_collapse() {
     return removed;
 }
 
-int Learner::learn_topology() {
+int Learner::learn_topology(bool last) {
     constexpr int kMostRounds = 4;
+    const TopologyRules& rules = state_.options.topology_rules;
     ThreadTeam team(thread_count(state_.options.threads));
     int changes = 0;
+    state_.network.orient_outward();  // a tetrahedron may turn inside out as a whole while it is small
     for (int round = 0; round < kMostRounds; ++round) {
         const int before = changes;
         for (const Reconnection& change :
-             neuralmesh::topology_changes(network(), target_, topology_random_, team))
+             neuralmesh::topology_changes(network(), target_, rules, topology_random_, team))
             changes += state_.exchange_faces(change.gone, change.added) ? 1 : 0;
         if (changes == before) break;
+    }
+    if (last && std::isfinite(rules.opens_from)) {
+        for (const std::vector<Triangle>& gone :
+             membranes_to_open(network(), target_, rules, topology_random_, team))
+            changes += state_.exchange_faces(gone, {}) ? 1 : 0;
+        mends_notches_ = !state_.to_the_letter() && network().boundary_loop_count() > 0;
     }
     if (changes > 0) batch_.reassign_slabs();
     topology_changes_ += changes;

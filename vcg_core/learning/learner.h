@@ -67,7 +67,7 @@ public:
     /// Takes membranes out of the network, see topology/learned_topology.h, in rounds until none gains any
     /// more, four at most. Does nothing if the network has a boundary. \return the number of changes.
     /// O(signals x log n)
-    int learn_topology();
+    int learn_topology(bool last);
     /// Learns settling_signals(per_vertex, vertices) signals without splits and collapses, so that counters
     /// describe the final connectivity. In the end mends faces along boundaries, which keeps all vertices.
     /// \param observe false: no crease measure. It needs fixed connectivity, so pass false before growth.

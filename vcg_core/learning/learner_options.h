@@ -4,6 +4,8 @@
 // The constants of the learning, with the paper's symbols.
 #pragma once
 
+#include "vcg_core/topology/topology_rules.h"
+
 namespace neuralmesh {
 
 /// What is added to the winner's utility counter.
@@ -36,6 +38,7 @@ struct LearnerOptions {
     int settling_signals_per_vertex = 60;  ///< signals after the last split
     bool observe_creases = false;          ///< settling fills Learner::crease_measure()
     bool learn_topology = false;           ///< growth gives up membranes, see topology/learned_topology.h
+    TopologyRules topology_rules;          ///< with learn_topology
     int random_seed = 1;
     int threads = 0;  ///< 0: one per core
 };

@@ -4,7 +4,11 @@
 #include "vcg_core/topology/learned_topology.h"
 
 #include <cstddef>
+#include <optional>
 #include <set>
+#include <utility>
+
+#include "vcg_core/mesh/boundary_loops.h"
 
 namespace neuralmesh {
 namespace {
@@ -17,11 +21,12 @@ constexpr std::size_t kFewestPerVertex = 8;
 /// wherever parts are closer than its edges are long.
 constexpr std::size_t kMostPerVertex = 40;
 
-/// The points by which handles are judged: all of the cloud, or \p signals if they have weights. None if the
-/// mesh is too coarse.
-std::vector<vcg::Point3f> points_for_handles(const TargetSpace& target, const std::vector<Vector3>& signals,
-                                             std::size_t vertices) {
-    if (target.is_exact() || target.positions().size() > kMostPerVertex * vertices) return {};
+/// The points by which handles are judged: all of the cloud, or \p signals if they have weights. None if no
+/// handle may form.
+std::vector<vcg::Point3f> points_for_handles(const TargetSpace& target, const TopologyRules& rules,
+                                             const std::vector<Vector3>& signals, std::size_t vertices) {
+    if (target.is_exact()) return {};
+    if (!rules.handles_while_coarse && target.positions().size() > kMostPerVertex * vertices) return {};
     if (!target.is_weighted()) return target.positions();
     std::vector<vcg::Point3f> points;
     points.reserve(signals.size());
@@ -29,25 +34,74 @@ std::vector<vcg::Point3f> points_for_handles(const TargetSpace& target, const st
     return points;
 }
 
+/// A closed network with signals on its faces.
+struct Examined {
+    Surface surface;
+    std::vector<Vector3> signals;
+    FaceSignals support;
+    std::vector<Membrane> membranes;
+};
+
+/// Nothing if the network is open or has too few points per vertex.
+std::optional<Examined> examine(const Network& network, const TargetSpace& target, Random& random,
+                                ThreadTeam& team) {
+    Surface surface(network);
+    const auto vertices = static_cast<std::size_t>(network.vertex_count());
+    if (surface.has_boundary() ||
+        (!target.is_exact() && target.positions().size() < kFewestPerVertex * vertices))
+        return std::nullopt;
+    std::vector<Vector3> signals = fair_sample(target, kSignalsPerVertex * vertices, random);
+    FaceSignals support = face_signals(network, surface, signals, team);
+    std::vector<Membrane> membranes = find_membranes(surface, support);
+    return Examined{std::move(surface), std::move(signals), std::move(support), std::move(membranes)};
+}
+
+float width_of(const Rim& rim, const Surface& surface) {
+    std::vector<vcg::Point3f> points;
+    points.reserve(rim.size());
+    for (const VertexId v : rim) points.push_back(to_vcg(surface.positions[v]));
+    return smallest_sphere_diameter(points);
+}
+
 }  // namespace
 
-std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target, Random& random,
-                                           ThreadTeam& team) {
-    const Surface surface(network);
-    if (surface.has_boundary()) return {};
-    const auto vertices = static_cast<std::size_t>(network.vertex_count());
-    if (!target.is_exact() && target.positions().size() < kFewestPerVertex * vertices) return {};
-    const std::vector<Vector3> signals = fair_sample(target, kSignalsPerVertex * vertices, random);
-    const FaceSignals support = face_signals(network, surface, signals, team);
-    const std::vector<Membrane> membranes = find_membranes(surface, support);
+std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target,
+                                           const TopologyRules& rules, Random& random, ThreadTeam& team) {
+    const std::optional<Examined> now = examine(network, target, random, team);
+    if (!now) return {};
+    const std::vector<vcg::Point3f> points =
+        points_for_handles(target, rules, now->signals, static_cast<std::size_t>(network.vertex_count()));
     std::vector<Reconnection> chosen;
     std::set<int> used;
-    const std::vector<vcg::Point3f> points = points_for_handles(target, signals, vertices);
-    for (Reconnection& change : find_reconnections(network, surface, support, membranes, points)) {
+    for (Reconnection& change :
+         find_reconnections(network, now->surface, now->support, now->membranes, points)) {
         const auto taken = [&](int membrane) { return used.count(membrane) != 0; };
         if (std::any_of(change.membranes.begin(), change.membranes.end(), taken)) continue;
         used.insert(change.membranes.begin(), change.membranes.end());
         chosen.push_back(std::move(change));
+    }
+    return chosen;
+}
+
+std::vector<std::vector<Triangle>> membranes_to_open(const Network& network, const TargetSpace& target,
+                                                     const TopologyRules& rules, Random& random,
+                                                     ThreadTeam& team) {
+    std::vector<std::vector<Triangle>> chosen;
+    const std::optional<Examined> now = examine(network, target, random, team);
+    if (!now) return chosen;
+    const float edge = mean_edge_length(now->surface);
+    for (const Membrane& membrane : now->membranes) {
+        if (!membrane.certain || membrane.rims.size() != 1 ||
+            width_of(membrane.rims.front(), now->surface) < rules.opens_from)
+            continue;
+        // Two that face each other span a gap or plug a hole that was not understood.
+        const auto faces_it = [&](const Membrane& other) {
+            return &other != &membrane && other.certain &&
+                   face_each_other(now->surface, membrane, other, edge);
+        };
+        if (std::any_of(now->membranes.begin(), now->membranes.end(), faces_it)) continue;
+        chosen.emplace_back();
+        for (const int f : membrane.faces) chosen.back().push_back(now->surface.faces[f]);
     }
     return chosen;
 }

@@ -12,6 +12,7 @@
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/target/target_space.h"
 #include "vcg_core/topology/reconnection.h"
+#include "vcg_core/topology/topology_rules.h"
 
 namespace neuralmesh {
 
@@ -30,6 +31,8 @@ public:
         advance();
         return true;
     }
+    /// Whether the last one is passed.
+    bool over() const { return over_; }
 
 private:
     static constexpr int kFirst = 600;
@@ -43,7 +46,13 @@ private:
 /// Exchanges of faces by which \p network loses membranes of few points, closed networks only: see
 /// reconnection.h. No membrane is in two of them. The signals are a fair sample of \p target, 30 per vertex.
 /// The result does not depend on the number of threads. Cost: about that of learning the signals.
-std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target, Random& random,
-                                           ThreadTeam& team);
+std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target,
+                                           const TopologyRules& rules, Random& random, ThreadTeam& team);
+
+/// The faces of each certain membrane with one rim that is wide enough to become a hole, and faces no other;
+/// none unless \p network is closed. Signals and cost as above.
+std::vector<std::vector<Triangle>> membranes_to_open(const Network& network, const TargetSpace& target,
+                                                     const TopologyRules& rules, Random& random,
+                                                     ThreadTeam& team);
 
 }  // namespace neuralmesh

@@ -173,6 +173,18 @@ int face_beyond(const Surface& surface, int face, std::size_t edge) {
     return corner_of_edge(surface, f[(edge + 1) % 3], f[edge]).face;
 }
 
+bool face_each_other(const Surface& surface, const Membrane& a, const Membrane& b, float edge) {
+    if (a.area.dot(b.area) >= 0) return false;
+    float least = kReach * edge;
+    least *= least;
+    for (const Rim& p : a.rims)
+        for (const VertexId v : p)
+            for (const Rim& q : b.rims)
+                for (const VertexId w : q)
+                    if ((surface.positions[v] - surface.positions[w]).squaredNorm() <= least) return true;
+    return false;
+}
+
 bool complete(const Surface& surface, const FaceSignals& signals, Membrane& membrane) {
     Members members(surface, membrane.faces);
     for (int repair = 0; add_islands(surface, members) || add_pinched(surface, signals, members);)

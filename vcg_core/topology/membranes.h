@@ -31,6 +31,12 @@ int face_beyond(const Surface& surface, int face, std::size_t edge);
 /// O(faces log faces)
 std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& signals);
 
+/// Two membranes face each other if they are no further apart than this many mean edges.
+constexpr float kReach = 4;
+/// Whether the sides of \p a and \p b face away from each other, and their rims are within kReach times \p
+/// edge. O(product of the lengths of the rims)
+bool face_each_other(const Surface& surface, const Membrane& a, const Membrane& b, float edge);
+
 /// Completes \p membrane.faces as find_membranes() does, and finds the rims. \return false if that does not
 /// end.
 bool complete(const Surface& surface, const FaceSignals& signals, Membrane& membrane);

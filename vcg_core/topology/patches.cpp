@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 
 namespace neuralmesh {
 namespace {
@@ -125,6 +126,21 @@ Zip Zipper::best() {
     return result;
 }
 
+/// The places of \p rim that may get an edge from \p v: all of a short rim, of a long one the nearest, in the
+/// order of the rim.
+std::vector<std::size_t> turns_to_try(VertexId v, const Rim& rim, const Lengths& lengths) {
+    constexpr std::size_t kAllOf = 24, kNearest = 12;
+    std::vector<std::size_t> turns(rim.size());
+    std::iota(turns.begin(), turns.end(), std::size_t{0});
+    if (rim.size() <= kAllOf) return turns;
+    std::stable_sort(turns.begin(), turns.end(), [&](std::size_t i, std::size_t j) {
+        return lengths.between(v, rim[i]) < lengths.between(v, rim[j]);
+    });
+    turns.resize(kNearest);
+    std::sort(turns.begin(), turns.end());
+    return turns;
+}
+
 }  // namespace
 
 bool Edges::has(VertexId a, VertexId b) const {
@@ -168,25 +184,26 @@ std::vector<Triangle> joining_patch(const Rim& a, const Rim& b, const PerVertex<
     for (const VertexId v : a)
         if (std::find(b.begin(), b.end(), v) != b.end()) return {};
     const Lengths lengths(positions, edges);
-    Rim beside(b.rbegin(), b.rend());
+    const Rim back(b.rbegin(), b.rend());
     Zip best;
     Rim best_beside;
-    for (std::size_t turn = 0; turn < beside.size(); ++turn) {
+    for (const std::size_t turn : turns_to_try(a.front(), back, lengths)) {
+        Rim beside = back;
+        std::rotate(beside.begin(), beside.begin() + static_cast<std::ptrdiff_t>(turn), beside.end());
         Zip next = Zipper(a, beside, lengths).best();
         if (next.cost < best.cost) {
             best = std::move(next);
-            best_beside = beside;
+            best_beside = std::move(beside);
         }
-        std::rotate(beside.begin(), beside.begin() + 1, beside.end());
     }
     std::vector<Triangle> faces;
     std::size_t i = 0, j = 0;
     for (const char step : best.steps) {
-        const VertexId p = a[i % a.size()], q = best_beside[j % beside.size()];
+        const VertexId p = a[i % a.size()], q = best_beside[j % b.size()];
         if (step == 0) {
             faces.push_back({a[++i % a.size()], p, q});
         } else {
-            faces.push_back({p, q, best_beside[++j % beside.size()]});
+            faces.push_back({p, q, best_beside[++j % b.size()]});
         }
     }
     return faces;

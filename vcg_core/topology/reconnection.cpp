@@ -15,8 +15,6 @@
 namespace neuralmesh {
 namespace {
 
-/// Two membranes face each other if they are no further apart than this many mean edges.
-constexpr float kReach = 4;
 /// Membranes with more rims have too many reconnections to try.
 constexpr std::size_t kMostRims = 4;
 /// Rings by which membranes are widened.
@@ -100,7 +98,7 @@ public:
     Reconnection of_one(const Wide& membrane) const;
     /// The same of two membranes, joined.
     Reconnection of_pair(const Wide& a, const Wide& b) const;
-    bool face_each_other(const Membrane& a, const Membrane& b) const;
+    bool may_join(const Membrane& a, const Membrane& b) const;
 
 private:
     Reconnection best(const std::vector<const Membrane*>& membranes) const;
@@ -216,16 +214,8 @@ Reconnection Search::of_pair(const Wide& a, const Wide& b) const {
     return found.gain >= least ? found : Reconnection();
 }
 
-bool Search::face_each_other(const Membrane& a, const Membrane& b) const {
-    if (a.rims.size() + b.rims.size() > kMostRims || a.area.dot(b.area) >= 0) return false;
-    float least = kReach * edge_;
-    least *= least;
-    for (const Rim& p : a.rims)
-        for (const VertexId v : p)
-            for (const Rim& q : b.rims)
-                for (const VertexId w : q)
-                    if ((surface_.positions[v] - surface_.positions[w]).squaredNorm() <= least) return true;
-    return false;
+bool Search::may_join(const Membrane& a, const Membrane& b) const {
+    return a.rims.size() + b.rims.size() <= kMostRims && face_each_other(surface_, a, b, edge_);
 }
 
 }  // namespace
@@ -251,7 +241,7 @@ std::vector<Reconnection> find_reconnections(const Network& network, const Surfa
     for (int a = 0; a < count; ++a) {
         if (membrane(a).certain) keep(search.of_one(widened(a)), {a});
         for (int b = a + 1; b < count; ++b)
-            if (search.face_each_other(membrane(a), membrane(b)))
+            if (search.may_join(membrane(a), membrane(b)))
                 keep(search.of_pair(widened(a), widened(b)), {a, b});
     }
     std::stable_sort(found.begin(), found.end(),

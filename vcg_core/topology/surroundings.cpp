@@ -66,14 +66,18 @@ float Surroundings::expected(const Triangle& face) const {
 
 float Surroundings::cost(const std::vector<Triangle>& patch) const {
     Box box;
-    for (const Triangle& f : patch)
-        for (const VertexId v : f) box.extend(surface_.positions[v]);
+    std::vector<Box> boxes(patch.size());
+    for (std::size_t p = 0; p < patch.size(); ++p) {
+        for (const VertexId v : patch[p]) boxes[p].extend(surface_.positions[v]);
+        box.extend(boxes[p]);
+    }
     std::vector<float> wins(kept_.size(), 0.0F), patch_wins(patch.size(), 0.0F);
     double cost = 0;
     for (const Near& signal : signals_) {
         float least = signal.squared_distance;
         std::size_t winner = patch.size();
         for (std::size_t p = 0; p < patch.size() && box.squaredExteriorDistance(signal.point) < least; ++p) {
+            if (boxes[p].squaredExteriorDistance(signal.point) >= least) continue;
             const float squared = squared_distance(signal.point, patch[p]);
             if (squared >= least) continue;
             least = squared;

@@ -130,6 +130,24 @@ TEST(Patches, NeedNoEdgeThatExists) {
     EXPECT_EQ(closed.faces().size(), 4U);
 }
 
+// The ends of a tube: of a long rim only some turns are tried.
+TEST(Patches, JoinLongRimsByTheShortestEdges) {
+    for (const int around : {20, 60}) {
+        const Scene scene(shapes::tube(around, 3));
+        const auto rims = scene.rims();
+        const std::vector<Triangle> patch =
+            joining_patch(rims[0], rims[1], scene.surface.positions, scene.edges());
+        ASSERT_EQ(patch.size(), 2U * static_cast<std::size_t>(around));
+        float longest = 0, least = std::numeric_limits<float>::max();
+        for (const Triangle& f : patch)
+            for (std::size_t k = 0; k < 3; ++k)
+                longest = std::max(longest, squared(scene, f[k], f[(k + 1) % 3]));
+        for (const VertexId v : rims[1]) least = std::min(least, squared(scene, rims[0][0], v));
+        const float step = squared(scene, rims[0][0], rims[0][1]);
+        EXPECT_LT(longest, 1.01F * (least + step)) << around;
+    }
+}
+
 TEST(Patches, AreRefusedForLongRimsAndRimsThatTouch) {
     const Scene scene(shapes::tube(kLongestRim + 1, 3));
     const auto rims = scene.rims();

@@ -83,12 +83,12 @@ Network plugged(const TargetSpace& target) {
 }
 
 /// Applies what topology_changes() finds until it finds no more. \return the number of changes
-int learn(Network& network, const TargetSpace& target, int threads = 1) {
+int learn(Network& network, const TargetSpace& target, int threads = 1, const TopologyRules& rules = {}) {
     ThreadTeam team(threads);
     Random random(1);
     int changes = 0;
     for (int round = 0; round < 10; ++round) {
-        const auto found = topology_changes(network, target, random, team);
+        const auto found = topology_changes(network, target, rules, random, team);
         if (found.empty()) return changes;
         for (const Reconnection& change : found) {
             if (!network.can_exchange_faces(change.gone, change.added)) continue;
@@ -120,6 +120,64 @@ TEST(Reconnection, ATubeWithTwoPlugsIsJoined) {
     EXPECT_EQ(network.genus(), 1);
     EXPECT_EQ(network.component_count(), 1);
     EXPECT_EQ(network.boundary_loop_count(), 0);
+}
+
+// With 74 points per vertex.
+TEST(Reconnection, HandlesFormOnACoarseMeshIfTheyMay) {
+    const TargetSpace target = target_of(shapes::torus_cloud(40000));
+    Network network = plugged(target);
+    ASSERT_GT(40000, 40 * network.vertex_count());
+    EXPECT_EQ(learn(network, target), 0);
+    TopologyRules rules;
+    rules.handles_while_coarse = true;
+    EXPECT_GT(learn(network, target, 1, rules), 0);
+    EXPECT_EQ(network.genus(), 1);
+}
+
+/// A sphere that the points cover only below \p top; both from -1 to 1.
+struct Cut {
+    explicit Cut(double top) : target(target_of(cloud_below(top))), ball(network_of_ball()) {}
+
+    static shapes::Cloud cloud_below(double top) {
+        shapes::Cloud cloud;
+        for (const vcg::Point3d& p : shapes::sphere_cloud(20000))
+            if (p[2] < top) cloud.push_back(p);
+        return cloud;
+    }
+    Network network_of_ball() const { return network_in_frame(target, shapes::icosphere(3)); }
+
+    std::vector<std::vector<Triangle>> to_open(float opens_from) const {
+        Random random(1);
+        ThreadTeam team(1);
+        TopologyRules rules;
+        rules.opens_from = opens_from;
+        return membranes_to_open(ball, target, rules, random, team);
+    }
+
+    TargetSpace target;
+    Network ball;
+};
+
+TEST(MembranesToOpen, AreThoseThatCoverAWideOpening) {
+    const Cut cut(0.7);
+    const auto found = cut.to_open(0.3F);  // the opening has .42 diagonals
+    ASSERT_EQ(found.size(), 1U);
+    Network open = cut.ball;
+    ASSERT_TRUE(open.can_exchange_faces(found.front(), {}));
+    open.exchange_faces(found.front(), {});
+    EXPECT_EQ(open.validate(), "");
+    EXPECT_EQ(open.boundary_loop_count(), 1);
+    EXPECT_TRUE(cut.to_open(0.6F).empty());
+    EXPECT_TRUE(Cut(2).to_open(0).empty());
+}
+
+TEST(MembranesToOpen, AreNotThoseThatFaceAnother) {
+    const TargetSpace target = target_of(shapes::torus_cloud(20000));
+    Random random(1);
+    ThreadTeam team(1);
+    TopologyRules rules;
+    rules.opens_from = 0;
+    EXPECT_TRUE(membranes_to_open(plugged(target), target, rules, random, team).empty());
 }
 
 TEST(Reconnection, RightMeshesStay) {

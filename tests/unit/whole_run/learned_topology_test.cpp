@@ -4,6 +4,7 @@
 // Whole runs with learn_topology.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/unit/support/shapes.h"
@@ -61,6 +62,66 @@ TEST(LearnedTopology, PartsThatTheStartMeshJoinsComeApart) {
     soundness::expect_exact(apart, settings);
     settings.learn_topology = false;
     EXPECT_EQ(learn(cloud, settings, ball(3)).report.components, 1);
+}
+
+TEST(LearnedTopology, FindsTheHandleOfATorusFromTheTetrahedron) {
+    Settings settings = settings_of();
+    settings.start_mesh = kTetrahedron;
+    const Cloud cloud = shapes::torus_cloud(60000);
+    for (const int seed : {1, 2, 3}) {
+        settings.random_seed = seed;
+        const NeuralMesh ring = learn(cloud, settings);
+        EXPECT_EQ(ring.report.genus, 1) << seed;
+        EXPECT_EQ(ring.report.components, 1) << seed;
+        soundness::expect_exact(ring, settings);
+    }
+    settings.learn_topology = false;
+    EXPECT_EQ(learn(cloud, settings).report.genus, 0);
+}
+
+/// The part of a unit sphere below z = .6.
+Cloud bowl(int count) {
+    Cloud cloud;
+    for (const vcg::Point3d& p : shapes::sphere_cloud(count))
+        if (p[2] < 0.6) cloud.push_back(p);
+    return cloud;
+}
+
+TEST(LearnedTopology, OpensWhereTheCloudEndsFromTheTetrahedron) {
+    Settings settings = settings_of();
+    settings.start_mesh = kTetrahedron;
+    const Cloud cloud = bowl(30000);
+    for (const int seed : {1, 2, 3, 4}) {
+        settings.random_seed = seed;
+        const NeuralMesh open = learn(cloud, settings);
+        EXPECT_EQ(open.report.boundary_loops, 1) << seed;
+        soundness::expect_exact(open, settings);
+        double highest = -1, outward = 0;
+        for (const vcg::Point3d& p : open.positions) highest = std::max(highest, p[2]);
+        EXPECT_NEAR(highest, 0.6, 0.03) << seed;
+        for (const Triangle& f : open.faces) {
+            const auto at = [&](std::size_t k) { return open.positions[static_cast<std::size_t>(f[k])]; };
+            outward += ((at(1) - at(0)) ^ (at(2) - at(0))) * (at(0) + at(1) + at(2)) > 0 ? 1 : -1;
+        }
+        // Some faces along the boundary may be folded.
+        EXPECT_GT(outward, 0.99 * static_cast<double>(open.faces.size())) << seed;
+    }
+    settings.surface = kClosedSurface;
+    EXPECT_EQ(learn(cloud, settings).report.boundary_loops, 0);
+}
+
+TEST(LearnedTopology, TellsOfOpenings) {
+    Settings settings = settings_of();
+    settings.start_mesh = kTetrahedron;
+    settings.surface = kOpenSurface;
+    const NeuralMesh open = learn(bowl(30000), settings);
+    ASSERT_FALSE(open.report.notes.empty());
+    EXPECT_NE(open.report.notes.back().find("genus 0 with 1 boundary loop(s)."), std::string::npos);
+    EXPECT_TRUE(open.report.warnings.empty());
+    const NeuralMesh closed = learn(shapes::sphere_cloud(30000), settings);
+    EXPECT_EQ(closed.report.boundary_loops, 0);
+    ASSERT_EQ(closed.report.warnings.size(), 1U);
+    EXPECT_NE(closed.report.warnings.back().find("The surface is closed"), std::string::npos);
 }
 
 TEST(LearnedTopology, TheBytesDoNotDependOnTheThreads) {
