@@ -21,6 +21,10 @@ constexpr std::size_t kFewestPerVertex = 8;
 /// wherever parts are closer than its edges are long.
 constexpr std::size_t kMostPerVertex = 40;
 
+/// Of the signals that a membrane lacks, what another has to lack to be its counterpart. Along the rim of an
+/// opening there may be small ones.
+constexpr float kComparable = 0.2F;
+
 /// The points by which handles are judged: all of the cloud, or \p signals if they have weights. None if no
 /// handle may form.
 std::vector<vcg::Point3f> points_for_handles(const TargetSpace& target, const TopologyRules& rules,
@@ -96,7 +100,7 @@ std::vector<std::vector<Triangle>> membranes_to_open(const Network& network, con
             continue;
         // Two that face each other span a gap or plug a hole that was not understood.
         const auto faces_it = [&](const Membrane& other) {
-            return &other != &membrane && other.certain &&
+            return &other != &membrane && other.missing > kComparable * membrane.missing &&
                    face_each_other(now->surface, membrane, other, edge);
         };
         if (std::any_of(now->membranes.begin(), now->membranes.end(), faces_it)) continue;
