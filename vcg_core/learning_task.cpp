@@ -52,11 +52,11 @@ constexpr double kTooThick = 0.45;
 /// points. Scanned rooms and buildings have up to 21.
 constexpr int kMostHandles = 30, kVerticesPerHandle = 20;
 
-/// The start mesh of the paper, in the middle of the cloud, which is the origin of the core's frame; or one
-/// that encloses the cloud. A small one that begins between handles reaches their insides first, and turns
-/// inside out there.
-Network tetrahedron(bool enclosing) {
-    const float a = enclosing ? 1 : 0.1F;
+/// The start mesh of the paper, in the middle of the cloud, which is the origin of the core's frame; or a
+/// large one, whose corners lie outside of most clouds. A small one that begins between handles reaches their
+/// insides first, and turns inside out there.
+Network tetrahedron(bool large) {
+    const float a = large ? 0.55F : 0.1F;
     return Network({{a, a, a}, {-a, -a, a}, {-a, a, -a}, {a, -a, -a}},
                    {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
 }

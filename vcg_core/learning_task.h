@@ -61,7 +61,8 @@ int surplus_vertices(const Settings& settings, int final_vertices);
 /// unless the fit reduces it and its components and handles need no more; an open start mesh is not, because
 /// a tetrahedron would close it. If settings.surface is automatic and the cloud has no open surface, it is
 /// closed. A tetrahedron lies in the middle of the cloud, as in the paper; if settings.learn_topology is on,
-/// it encloses the cloud. Without that setting it stays closed, with a warning if settings.surface is open.
+/// it is as large as the cloud. Without that setting it stays closed, with a warning if settings.surface is
+/// open.
 /// \p given must outlive the result. Fractions of \p progress run from 0 to 1. \throws what shell_of()
 /// throws; if settings.surface is open, what open_start() throws; SettingError if an open start mesh needs
 /// more than settings.target_vertices vertices; what given_start() throws, and SettingError if \p start has

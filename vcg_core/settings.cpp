@@ -96,8 +96,9 @@ std::vector<SettingInfo> mesh_rows() {
         row(&S::start_mesh, "start_mesh", "Start mesh", {"Shell of the cloud", "Tetrahedron", "Layer"},
             "The mesh that learning starts from. Shell of the cloud: a coarse mesh around the points that "
             "already has their components and handles. Tetrahedron: the paper's, for one component without "
-            "handles unless the topology is learned. Layer: the mesh in 'Start layer', for example an earlier result to refine, or one whose "
-            "webs were cut and gaps bridged by hand; the result has its components, handles and boundaries."),
+            "handles unless the topology is learned. Layer: the mesh in 'Start layer', for example an earlier "
+            "result to refine, or one whose webs were cut and gaps bridged by hand; the result has its "
+            "components, handles and boundaries."),
         layer_row(&S::start_layer, "start_layer", "Start layer",
                   "The layer with the mesh that learning starts from if the start mesh is 'Layer'; else "
                   "without effect. It is not changed."),

@@ -65,8 +65,8 @@ public:
     /// number of inactive vertices removed. O(n).
     int half_edge_collapse();
     /// Takes membranes out of the network, see topology/learned_topology.h, in rounds until none gains any
-    /// more, four at most. Does nothing if the network has a boundary. \return the number of changes.
-    /// O(signals x log n)
+    /// more, four at most, and if this is the \p last time opens those that LearnerOptions::topology_rules
+    /// allow. Does nothing if the network has a boundary. \return the number of changes. O(signals x log n)
     int learn_topology(bool last);
     /// Learns settling_signals(per_vertex, vertices) signals without splits and collapses, so that counters
     /// describe the final connectivity. In the end mends faces along boundaries, which keeps all vertices.
