@@ -45,7 +45,7 @@ public:
         int face;
     };
 
-    /// Keeps references. \p sides: all faces.
+    /// Keeps references. \p all_sides: of all faces; those without area have no normal.
     PlanesOfPoints(const Network& network, const Surface& surface, const PerFace<Side>& all_sides,
                    const PointsByFace& points)
         : network_(network), surface_(surface), all_sides_(all_sides), points_(points) {}
@@ -74,6 +74,7 @@ private:
     struct Plane {
         Vector3 normal, point;
     };
+
     float mean_edge(VertexId v) const {
         float sum = 0;
         for (const VertexId u : network_.ring(v))
@@ -269,8 +270,9 @@ PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surfa
     PerVertex<Vector3> moves(network.slot_count(), Vector3::Zero());
     PerFace<PlanesOfPoints::Side> sides(surface.face_count());
     parallel_for(sides.size(), kFacesAtATime, team, [&](int f) {
-        const Vector3 area = area_vector(surface, f);
-        sides[f] = {area / area.norm(), area.norm(), f};
+        const Vector3 along = area_vector(surface, f);
+        const float area = along.norm();
+        sides[f] = {along / area, area, f};
     });
     const auto slots = static_cast<std::size_t>(network.slot_count());
     for_chunks(slots, kVerticesAtATime, team, [&](std::size_t, std::size_t begin, std::size_t end) {

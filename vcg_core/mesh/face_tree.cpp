@@ -131,17 +131,17 @@ Hit FaceTree::nearest(const Vector3& p) const {
         float squared_distance;
         int node;
     };
-    const auto entry_of = [&](int n) { return Waiting{nodes_[n].box.squaredExteriorDistance(p), n}; };
+    const auto waiting_at = [&](int n) { return Waiting{nodes_[n].box.squaredExteriorDistance(p), n}; };
     Hit best{-1, {std::numeric_limits<float>::max(), {1, 0, 0}}};
     std::array<Waiting, kStack> stack;
     std::size_t height = 0;
-    if (!nodes_.empty()) stack[height++] = entry_of(0);
+    if (!nodes_.empty()) stack[height++] = waiting_at(0);
     while (height > 0) {
         Waiting nearer = stack[--height];
         // Down to a leaf by the nearer child; the other waits.
         while (nearer.squared_distance <= best.foot.squared_distance && !nodes_[nearer.node].is_leaf()) {
-            Waiting further = entry_of(nodes_[nearer.node].right);
-            nearer = entry_of(nearer.node + 1);
+            Waiting further = waiting_at(nodes_[nearer.node].right);
+            nearer = waiting_at(nearer.node + 1);
             if (further.squared_distance < nearer.squared_distance) std::swap(nearer, further);
             if (further.squared_distance <= best.foot.squared_distance) stack[height++] = further;
         }

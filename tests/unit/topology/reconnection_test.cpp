@@ -10,6 +10,7 @@
 #include <cmath>
 #include <set>
 
+#include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/targets.h"
 #include "vcg_core/mesh/boundary_loops.h"
@@ -136,15 +137,10 @@ TEST(Reconnection, HandlesFormOnACoarseMeshIfTheyMay) {
 
 /// A sphere that the points cover only below \p top; both from -1 to 1.
 struct Cut {
-    explicit Cut(double top) : target(target_of(cloud_below(top))), ball(network_of_ball()) {}
-
-    static shapes::Cloud cloud_below(double top) {
-        shapes::Cloud cloud;
-        for (const vcg::Point3d& p : shapes::sphere_cloud(20000))
-            if (p[2] < top) cloud.push_back(p);
-        return cloud;
-    }
-    Network network_of_ball() const { return network_in_frame(target, shapes::icosphere(3)); }
+    explicit Cut(double top)
+        : target(target_of(open_shapes::cut(shapes::sphere_cloud(20000),
+                                            [top](const vcg::Point3d& p) { return p[2] < top; }))),
+          ball(network_in_frame(target, shapes::icosphere(3))) {}
 
     std::vector<std::vector<Triangle>> to_open(float opens_from) const {
         Random random(1);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
 #include "tests/unit/support/targets.h"
@@ -81,10 +82,7 @@ TEST(LearnedTopology, FindsTheHandleOfATorusFromTheTetrahedron) {
 
 /// The part of a unit sphere below z = .6.
 Cloud bowl(int count) {
-    Cloud cloud;
-    for (const vcg::Point3d& p : shapes::sphere_cloud(count))
-        if (p[2] < 0.6) cloud.push_back(p);
-    return cloud;
+    return open_shapes::cut(shapes::sphere_cloud(count), [](const vcg::Point3d& p) { return p[2] < 0.6; });
 }
 
 TEST(LearnedTopology, OpensWhereTheCloudEndsFromTheTetrahedron) {
