@@ -93,7 +93,7 @@ void EightSteps::Kernels::gather_along_boundary(EightSteps& p, const Network& ne
 }
 
 void EightSteps::Kernels::smooth_along_boundary(EightSteps& p, float smoothing_rate) {
-    const float rate = std::min(1.0F, kBoundarySteps * smoothing_rate);
+    const float rate = rate_along_boundary(smoothing_rate);
     for (int k = 0; k < p.along_boundary_count_; ++k) {
         const auto& [lane, half_way_of_first, half_way_of_last] = p.along_boundary_[k];
         const vcg::Point3f w = point_of(p.winner_now_, lane);

@@ -3,7 +3,6 @@
 
 #include "vcg_core/learning/basic_step.h"
 
-#include <algorithm>
 #include <vector>
 
 namespace neuralmesh {
@@ -55,9 +54,10 @@ vcg::Point3d smoothed(const Network& network, const Positions& positions, const 
 }
 
 /// Smooths the two neighbours of the winner along the boundary, both from \p step.
-void smooth_along_boundary(const Network& network, const Positions& positions, double alpha_l,
+void smooth_along_boundary(const Network& network, const Positions& positions, float smoothing_rate,
                            BasicStep& step) {
     const Ring& ring = network.ring(step.winner);
+    const auto rate = static_cast<double>(rate_along_boundary(smoothing_rate));
     const std::size_t ends[] = {0, ring.valence - std::size_t{1}};
     const vcg::Point3d of_winner =
         (step.ring_positions[ends[0]] + step.ring_positions[ends[1]]) / 2 - step.winner_position;  // L(w)
@@ -66,7 +66,7 @@ void smooth_along_boundary(const Network& network, const Positions& positions, d
         const VertexId next = i == 0 ? beside[0] : beside[beside.valence - 1];
         vcg::Point3d& v = step.ring_positions[i];
         const vcg::Point3d l = (positions[next] + step.winner_position) / 2 - v;  // L(v)
-        v += (l - of_winner) * std::min(1.0, static_cast<double>(kBoundarySteps) * alpha_l);
+        v += (l - of_winner) * rate;
     }
 }
 
@@ -97,7 +97,7 @@ BasicStep basic_step(const Network& network, const Positions& positions, VertexI
     }
 
     if (ring.open != 0 && rates.smoothing_steps > 0)
-        smooth_along_boundary(network, positions, static_cast<double>(rates.smoothing_rate), step);
+        smooth_along_boundary(network, positions, rates.smoothing_rate, step);
 
     const vcg::Point3d n_after = winner_normal(ring, step);
     step.delta = (n_after - n).SquaredNorm() / 2;  // eq 2: 1 - n.n' of unit vectors, without cancellation

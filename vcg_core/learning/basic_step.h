@@ -30,9 +30,9 @@ VertexId find_winner(const Network& network, const Positions& positions, const v
 /// Moves the winner \p w towards the signal \p s, then smooths its 1-ring C_L times, all ring vertices at
 /// once (Jacobi). Boundary vertices of the ring stand still meanwhile.
 ///
-/// A winner on a boundary then smooths its two neighbours there by kBoundarySteps alpha_L (L(v) - L(w)),
-/// where L(v) leads from a vertex to the middle between its two neighbours on the boundary. L(v) alone would
-/// shrink the boundary; on a circle, L(v) and L(w) are about the same. O(sum of the ring's valences).
+/// A winner on a boundary then smooths its two neighbours there by rate_along_boundary(alpha_L) (L(v) -
+/// L(w)), where L(v) leads from a vertex to the middle between its two neighbours on the boundary. L(v) alone
+/// would shrink the boundary; on a circle, L(v) and L(w) are about the same. O(sum of the ring's valences).
 BasicStep basic_step(const Network& network, const Positions& positions, VertexId w, const vcg::Point3d& s,
                      const StepRates& rates);
 

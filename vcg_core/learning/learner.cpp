@@ -48,6 +48,8 @@ Network checked(Network start, int grow_to) {
 Learner::Learner(const TargetSpace& target, const LearnerOptions& options, Network start)
     : target_(target),
       state_(options, checked(std::move(start), options.grow_to)),
+      rates_{static_cast<float>(options.learning_rate), static_cast<float>(options.smoothing_rate),
+             options.smoothing_steps},
       mean_delta_(options.normalization_window),
       schedule_(options, state_.network.vertex_count()),
       stream_(target, options.random_seed, BasicStepBatch::kMostSignals),
@@ -126,9 +128,7 @@ void Learner::learn_batch(int count, const AfterSignal& after_signal) {
 }
 
 const std::vector<StepResult>& Learner::basic_steps(const vcg::Point3f* signals, int count) {
-    const StepRates rates{static_cast<float>(state_.options.learning_rate),
-                          static_cast<float>(state_.options.smoothing_rate), state_.options.smoothing_steps};
-    const std::vector<StepResult>& steps = batch_.take(signals, count, rates, state_.network, state_.search);
+    const std::vector<StepResult>& steps = batch_.take(signals, count, rates_, state_.network, state_.search);
     state_.activity.record(steps, state_.signals, batch_limit_);
     return steps;
 }
@@ -147,7 +147,7 @@ void Learner::learn_counters(const StepResult& step) {
 }
 
 int Learner::batch_size() const {
-    if (state_.to_the_letter()) return 1;
+    if (state_.to_the_letter() || !rates_.may_add_up()) return 1;
     return std::clamp(network().vertex_count() / kVerticesPerSignal, 1,
                       std::min(kMostInBatch, batch_limit_.limit()));
 }

@@ -54,7 +54,8 @@ public:
     /// Basic Step and counters of one signal.
     void basic_step(const vcg::Point3f& s) { learn_counters(basic_steps(&s, 1).front()); }
     /// Number of signals in a batch of run(): vertices / kVerticesPerSignal, so that the steps of a batch
-    /// rarely overlap; smaller while they do. 1 if options.min_wins_per_split is 0.
+    /// rarely overlap; smaller while they do. 1 if options.min_wins_per_split is 0, or the rates of the steps
+    /// are too high to add them up.
     int batch_size() const;
     static constexpr int kVerticesPerSignal = 32;
     /// Vertex Split, see vertex_split.h. False if the network has options.grow_to vertices already, or if no
@@ -106,6 +107,7 @@ private:
 
     const TargetSpace& target_;
     LearningState state_;
+    const StepRates rates_;
     WindowMean mean_delta_;
     NormalTurn normal_turn_;
     CreaseMeasure crease_measure_;

@@ -10,6 +10,7 @@
 
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
+#include "tests/unit/support/targets.h"
 #include "vcg_core/learning/learner.h"
 #include "vcg_core/reconstruct.h"
 
@@ -18,12 +19,15 @@ namespace {
 
 using shapes::Cloud;
 
-/// A sphere, and ten times as many points within \p radius of one place on it.
-Cloud crowded_sphere(double radius) {
-    Cloud cloud = shapes::sphere_cloud(2000);
-    const vcg::Point3d place = cloud.front();
+/// The cloud, and 20,000 points within \p radius of \p place.
+Cloud crowded(Cloud cloud, const vcg::Point3d& place, double radius) {
     for (const vcg::Point3d& p : shapes::sphere_cloud(20000, 1, 2)) cloud.push_back(place + p * radius);
     return cloud;
+}
+
+Cloud crowded_sphere(double radius) {
+    const Cloud sphere = shapes::sphere_cloud(2000);
+    return crowded(sphere, sphere.front(), radius);
 }
 
 TEST(BatchLimit, KeepsVerticesInPlaceWhereManySignalsCrowd) {
@@ -96,6 +100,38 @@ TEST(BatchLimit, ShortensTheLearnersBatches) {
             EXPECT_EQ(learner.batch_size(), most);
         }
     }
+}
+
+/// Learns \p cloud by \p start with weak and strong smoothing.
+void expect_in_place(const Cloud& cloud, const shapes::Shape& start) {
+    const TargetSpace target = targets::target_of(cloud);
+    for (const auto& [rate, steps] :
+         {std::pair(0.05, 2), std::pair(0.05, 5), std::pair(0.05, 10), std::pair(0.05, 30), std::pair(0.6, 1),
+          std::pair(1.0, 2), std::pair(1.0, 100)}) {
+        SCOPED_TRACE(testing::Message() << steps << " smoothing steps of " << rate);
+        LearnerOptions options;
+        options.smoothing_rate = rate;
+        options.smoothing_steps = steps;
+        options.grow_to = 700;
+        Learner learner(target, options, targets::network_in_frame(target, start));
+        NoProgress progress;
+        for (int part = 0; part < 20; ++part) {
+            EXPECT_TRUE(learner.learn_at_rest(1000, progress, false));
+            for (const VertexId v : learner.network().vertices()) {
+                ASSERT_LT(learner.network().position(v).Norm(), 0.6F) << "vertex " << v << ", part " << part;
+            }
+        }
+    }
+}
+
+/// Weak smoothing is left to the limit; with strong smoothing there are no batches.
+TEST(BatchLimit, KeepsVerticesInPlaceWhateverTheRates) {
+    expect_in_place(crowded_sphere(0.03), shapes::icosphere(3));
+}
+
+/// There the two neighbours of a winner move by their common distance.
+TEST(BatchLimit, KeepsBoundariesInPlaceWhateverTheRates) {
+    expect_in_place(crowded(shapes::plane_cloud(2000), {-0.5, 0.05, 0}, 0.015), shapes::grid(25, 25));
 }
 
 }  // namespace
