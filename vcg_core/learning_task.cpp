@@ -278,7 +278,7 @@ void begin_open(LearningTask& task, OpenStart start, const Settings& settings) {
 
 void begin_tetrahedron(LearningTask& task, const Settings& settings) {
     task.network = tetrahedron(settings.learn_topology);
-    task.topology_rules.handles_while_coarse = true;
+    task.topology_rules.from_tetrahedron = true;
     if (settings.surface == kClosedSurface) return;
     const double asked = settings.close_holes_up_to / task.target().frame().diagonal;
     const double chosen = settings.surface == kOpenSurface ? 0 : widest_closed(task.target());

@@ -168,18 +168,19 @@ int Learner::learn_topology(bool last) {
     constexpr int kMostRounds = 4;
     const TopologyRules& rules = state_.options.topology_rules;
     ThreadTeam team(thread_count(state_.options.threads));
-    int changes = 0;
+    const auto evidence = [&] { return topology_evidence(network(), target_, topology_random_, team); };
     state_.network.orient_outward();  // a tetrahedron may turn inside out as a whole while it is small
-    for (int round = 0; round < kMostRounds; ++round) {
+    int changes = 0;
+    auto now = evidence();
+    for (int round = 0; now && round < kMostRounds; ++round) {
         const int before = changes;
-        for (const Reconnection& change :
-             neuralmesh::topology_changes(network(), target_, rules, topology_random_, team))
+        for (const Reconnection& change : neuralmesh::topology_changes(network(), target_, *now, rules))
             changes += state_.exchange_faces(change.gone, change.added) ? 1 : 0;
         if (changes == before) break;
+        now = evidence();
     }
-    if (last && std::isfinite(rules.opens_from)) {
-        for (const std::vector<Triangle>& gone :
-             membranes_to_open(network(), target_, rules, topology_random_, team))
+    if (now && last && std::isfinite(rules.opens_from)) {
+        for (const std::vector<Triangle>& gone : membranes_to_open(*now, rules))
             changes += state_.exchange_faces(gone, {}) ? 1 : 0;
         mends_notches_ = !state_.to_the_letter() && network().boundary_loop_count() > 0;
     }

@@ -30,34 +30,12 @@ constexpr float kComparable = 0.2F;
 std::vector<vcg::Point3f> points_for_handles(const TargetSpace& target, const TopologyRules& rules,
                                              const std::vector<Vector3>& signals, std::size_t vertices) {
     if (target.is_exact()) return {};
-    if (!rules.handles_while_coarse && target.positions().size() > kMostPerVertex * vertices) return {};
+    if (!rules.from_tetrahedron && target.positions().size() > kMostPerVertex * vertices) return {};
     if (!target.is_weighted()) return target.positions();
     std::vector<vcg::Point3f> points;
     points.reserve(signals.size());
     for (const Vector3& p : signals) points.emplace_back(p[0], p[1], p[2]);
     return points;
-}
-
-/// A closed network with signals on its faces.
-struct Examined {
-    Surface surface;
-    std::vector<Vector3> signals;
-    FaceSignals support;
-    std::vector<Membrane> membranes;
-};
-
-/// Nothing if the network is open or has too few points per vertex.
-std::optional<Examined> examine(const Network& network, const TargetSpace& target, Random& random,
-                                ThreadTeam& team) {
-    Surface surface(network);
-    const auto vertices = static_cast<std::size_t>(network.vertex_count());
-    if (surface.has_boundary() ||
-        (!target.is_exact() && target.positions().size() < kFewestPerVertex * vertices))
-        return std::nullopt;
-    std::vector<Vector3> signals = fair_sample(target, kSignalsPerVertex * vertices, random);
-    FaceSignals support = face_signals(network, surface, signals, team);
-    std::vector<Membrane> membranes = find_membranes(surface, support);
-    return Examined{std::move(surface), std::move(signals), std::move(support), std::move(membranes)};
 }
 
 float width_of(const Rim& rim, const Surface& surface) {
@@ -69,16 +47,27 @@ float width_of(const Rim& rim, const Surface& surface) {
 
 }  // namespace
 
+std::optional<TopologyEvidence> topology_evidence(const Network& network, const TargetSpace& target,
+                                                  Random& random, ThreadTeam& team) {
+    Surface surface(network);
+    const auto vertices = static_cast<std::size_t>(network.vertex_count());
+    if (surface.has_boundary() ||
+        (!target.is_exact() && target.positions().size() < kFewestPerVertex * vertices))
+        return std::nullopt;
+    std::vector<Vector3> signals = fair_sample(target, kSignalsPerVertex * vertices, random);
+    FaceSignals support = face_signals(network, surface, signals, team);
+    std::vector<Membrane> membranes = find_membranes(surface, support);
+    return TopologyEvidence{std::move(surface), std::move(signals), std::move(support), std::move(membranes)};
+}
+
 std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target,
-                                           const TopologyRules& rules, Random& random, ThreadTeam& team) {
-    const std::optional<Examined> now = examine(network, target, random, team);
-    if (!now) return {};
+                                           const TopologyEvidence& now, const TopologyRules& rules) {
     const std::vector<vcg::Point3f> points =
-        points_for_handles(target, rules, now->signals, static_cast<std::size_t>(network.vertex_count()));
+        points_for_handles(target, rules, now.signals, static_cast<std::size_t>(network.vertex_count()));
     std::vector<Reconnection> chosen;
     std::set<int> used;
     for (Reconnection& change :
-         find_reconnections(network, now->surface, now->support, now->membranes, points)) {
+         find_reconnections(network, now.surface, now.support, now.membranes, points)) {
         const auto taken = [&](int membrane) { return used.count(membrane) != 0; };
         if (std::any_of(change.membranes.begin(), change.membranes.end(), taken)) continue;
         used.insert(change.membranes.begin(), change.membranes.end());
@@ -87,25 +76,22 @@ std::vector<Reconnection> topology_changes(const Network& network, const TargetS
     return chosen;
 }
 
-std::vector<std::vector<Triangle>> membranes_to_open(const Network& network, const TargetSpace& target,
-                                                     const TopologyRules& rules, Random& random,
-                                                     ThreadTeam& team) {
+std::vector<std::vector<Triangle>> membranes_to_open(const TopologyEvidence& now,
+                                                     const TopologyRules& rules) {
     std::vector<std::vector<Triangle>> chosen;
-    const std::optional<Examined> now = examine(network, target, random, team);
-    if (!now) return chosen;
-    const float edge = mean_edge_length(now->surface);
-    for (const Membrane& membrane : now->membranes) {
+    const float edge = mean_edge_length(now.surface);
+    for (const Membrane& membrane : now.membranes) {
         if (!membrane.certain || membrane.rims.size() != 1 ||
-            width_of(membrane.rims.front(), now->surface) < rules.opens_from)
+            width_of(membrane.rims.front(), now.surface) < rules.opens_from)
             continue;
         // Two that face each other span a gap or plug a hole that was not understood.
         const auto faces_it = [&](const Membrane& other) {
             return &other != &membrane && other.missing > kComparable * membrane.missing &&
-                   face_each_other(now->surface, membrane, other, edge);
+                   face_each_other(now.surface, membrane, other, edge);
         };
-        if (std::any_of(now->membranes.begin(), now->membranes.end(), faces_it)) continue;
+        if (std::any_of(now.membranes.begin(), now.membranes.end(), faces_it)) continue;
         chosen.emplace_back();
-        for (const int f : membrane.faces) chosen.back().push_back(now->surface.faces[f]);
+        for (const int f : membrane.faces) chosen.back().push_back(now.surface.faces[f]);
     }
     return chosen;
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "vcg_core/base/random.h"
@@ -16,7 +17,7 @@
 
 namespace neuralmesh {
 
-/// The stages of growth at which the topology is examined: 600 x 2^k vertices, and the last vertex. Each is
+/// The stages of growth at which the topology is examined: 300 x 2^k vertices, and the last vertex. Each is
 /// passed once, so a run has at most log2(vertices) of them whatever the points are.
 class TopologyStages {
 public:
@@ -35,24 +36,34 @@ public:
     bool over() const { return over_; }
 
 private:
-    static constexpr int kFirst = 600;
-    void advance() { next_ = next_ < goal_ / 2 ? 2 * next_ : goal_; }
+    static constexpr int kFirst = 300;
+    void advance() { next_ = next_ < goal_ / 3 ? 2 * next_ : goal_; }
 
     int goal_;
     int next_;
     bool over_ = false;
 };
 
-/// Exchanges of faces by which \p network loses membranes of few points, closed networks only: see
-/// reconnection.h. No membrane is in two of them. The signals are a fair sample of \p target, 30 per vertex.
-/// The result does not depend on the number of threads. Cost: about that of learning the signals.
-std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target,
-                                           const TopologyRules& rules, Random& random, ThreadTeam& team);
+/// What a sample of the points says of a closed network.
+struct TopologyEvidence {
+    Surface surface;
+    std::vector<Vector3> signals;
+    FaceSignals support;
+    std::vector<Membrane> membranes;
+};
 
-/// The faces of each certain membrane with one rim that is wide enough to become a hole, and faces no other;
-/// none unless \p network is closed. Signals and cost as above.
-std::vector<std::vector<Triangle>> membranes_to_open(const Network& network, const TargetSpace& target,
-                                                     const TopologyRules& rules, Random& random,
-                                                     ThreadTeam& team);
+/// The signals are a fair sample of \p target, 30 per vertex. Nothing if the network is open or has less than
+/// eight points per vertex. Does not depend on the number of threads. Cost: about that of learning the
+/// signals.
+std::optional<TopologyEvidence> topology_evidence(const Network& network, const TargetSpace& target,
+                                                  Random& random, ThreadTeam& team);
+
+/// Exchanges of faces by which \p network loses membranes of few points: see reconnection.h. No membrane is
+/// in two of them.
+std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target,
+                                           const TopologyEvidence& now, const TopologyRules& rules);
+
+/// The faces of each certain membrane with one rim that is wide enough to become a hole, and faces no other.
+std::vector<std::vector<Triangle>> membranes_to_open(const TopologyEvidence& now, const TopologyRules& rules);
 
 }  // namespace neuralmesh

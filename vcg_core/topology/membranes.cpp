@@ -173,8 +173,7 @@ int face_beyond(const Surface& surface, int face, std::size_t edge) {
     return corner_of_edge(surface, f[(edge + 1) % 3], f[edge]).face;
 }
 
-bool face_each_other(const Surface& surface, const Membrane& a, const Membrane& b, float edge) {
-    if (a.area.dot(b.area) >= 0) return false;
+bool near_each_other(const Surface& surface, const Membrane& a, const Membrane& b, float edge) {
     float least = kReach * edge;
     least *= least;
     for (const Rim& p : a.rims)
@@ -183,6 +182,10 @@ bool face_each_other(const Surface& surface, const Membrane& a, const Membrane& 
                 for (const VertexId w : q)
                     if ((surface.positions[v] - surface.positions[w]).squaredNorm() <= least) return true;
     return false;
+}
+
+bool face_each_other(const Surface& surface, const Membrane& a, const Membrane& b, float edge) {
+    return a.area.dot(b.area) < 0 && near_each_other(surface, a, b, edge);
 }
 
 bool complete(const Surface& surface, const FaceSignals& signals, Membrane& membrane) {

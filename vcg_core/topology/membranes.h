@@ -31,10 +31,11 @@ int face_beyond(const Surface& surface, int face, std::size_t edge);
 /// O(faces log faces)
 std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& signals);
 
-/// Two membranes face each other if they are no further apart than this many mean edges.
+/// Membranes are near each other if their rims are no further apart than this many mean edges.
 constexpr float kReach = 4;
-/// Whether the sides of \p a and \p b face away from each other, and their rims are within kReach times \p
-/// edge. O(product of the lengths of the rims)
+/// Whether the rims of \p a and \p b are within kReach times \p edge. O(product of the lengths of the rims)
+bool near_each_other(const Surface& surface, const Membrane& a, const Membrane& b, float edge);
+/// Whether they also face away from each other, as the plugs at both ends of a hole do. Cost as above
 bool face_each_other(const Surface& surface, const Membrane& a, const Membrane& b, float edge);
 
 /// Completes \p membrane.faces as find_membranes() does, and finds the rims. \return false if that does not

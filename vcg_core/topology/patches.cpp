@@ -6,12 +6,17 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <set>
+#include <utility>
 
 namespace neuralmesh {
 namespace {
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
+
+int size_of(const Rim& rim) { return static_cast<int>(rim.size()); }
 
 /// A table of n x m values.
 template <class T>
@@ -38,14 +43,83 @@ private:
     const Edges& edges_;
 };
 
-/// The faces between corners i and j of the rim, from the table of best third corners.
-void collect(const Rim& rim, Table<int>& third, int i, int j, std::vector<Triangle>& faces) {
+/// The faces between corners i and j of a polygon, by their indices, from the table of best third corners.
+void collect(Table<int>& third, int i, int j, std::vector<Triangle>& faces) {
     if (j - i < 2) return;
     const int k = third(i, j);
-    const auto at = [&](int l) { return rim[static_cast<std::size_t>(l)]; };
-    faces.push_back({at(j), at(k), at(i)});
-    collect(rim, third, i, k, faces);
-    collect(rim, third, k, j, faces);
+    faces.push_back({j, k, i});
+    collect(third, i, k, faces);
+    collect(third, k, j, faces);
+}
+
+/// The triangulation of a polygon of \p n corners with the least sum of \p diagonal(i, j); none if that is
+/// kNever.
+template <class Diagonal>
+std::vector<Triangle> least_triangulation(int n, const Diagonal& diagonal) {
+    if (n < 3) return {};
+    Table<float> best(n, n, 0.0F);
+    Table<int> third(n, n, -1);
+    for (int span = 2; span < n; ++span)
+        for (int i = 0; i + span < n; ++i) {
+            const int j = i + span;
+            float least = kNever;
+            for (int k = i + 1; k < j; ++k) {
+                const float cost = best(i, k) + best(k, j);
+                if (cost >= least) continue;
+                least = cost;
+                third(i, j) = k;
+            }
+            // The last is a side of the polygon.
+            best(i, j) = least + (span + 1 == n ? 0.0F : diagonal(i, j));
+        }
+    std::vector<Triangle> faces;
+    if (best(0, n - 1) < kNever) collect(third, 0, n - 1, faces);
+    return faces;
+}
+
+std::vector<Triangle> with_vertices(std::vector<Triangle> faces, const Rim& corners) {
+    for (Triangle& face : faces)
+        for (VertexId& corner : face) corner = corners[static_cast<std::size_t>(corner)];
+    return faces;
+}
+
+/// Rims made one polygon by bridges, along which it runs there and back.
+struct Slit {
+    Rim corners;
+    std::set<std::pair<VertexId, VertexId>> bridges;
+};
+
+/// The shortest bridges between rims, each between corners that have no other.
+Slit slit_between(std::vector<Rim> rims, const Lengths& lengths) {
+    Slit slit;
+    slit.corners = std::move(rims.front());
+    rims.erase(rims.begin());
+    std::set<VertexId> used;
+    while (!rims.empty()) {
+        float least = kNever;
+        std::size_t from = 0, rim = 0, to = 0;
+        for (std::size_t i = 0; i < slit.corners.size(); ++i) {
+            if (used.count(slit.corners[i]) != 0) continue;
+            for (std::size_t r = 0; r < rims.size(); ++r)
+                for (std::size_t j = 0; j < rims[r].size(); ++j) {
+                    const float length = lengths.new_edge(slit.corners[i], rims[r][j]);
+                    if (length >= least) continue;
+                    least = length;
+                    from = i, rim = r, to = j;
+                }
+        }
+        if (least == kNever) return {};
+        const VertexId a = slit.corners[from], b = rims[rim][to];
+        used.insert({a, b});
+        slit.bridges.insert(std::minmax(a, b));
+        Rim way = std::move(rims[rim]);
+        rims.erase(rims.begin() + static_cast<std::ptrdiff_t>(rim));
+        std::rotate(way.begin(), way.begin() + static_cast<std::ptrdiff_t>(to), way.end());
+        way.insert(way.end(), {b, a});
+        slit.corners.insert(slit.corners.begin() + static_cast<std::ptrdiff_t>(from) + 1, way.begin(),
+                            way.end());
+    }
+    return slit;
 }
 
 /// A ring of faces between two rims, as steps from one edge between them to the next: 0 along a, 1 along b.
@@ -141,44 +215,43 @@ std::vector<std::size_t> turns_to_try(VertexId v, const Rim& rim, const Lengths&
     return turns;
 }
 
-}  // namespace
-
-bool Edges::has(VertexId a, VertexId b) const {
-    if (!network_.adjacent(a, b)) return false;
-    for (const int f : surface_.faces_around(a)) {
-        const Triangle& face = surface_.faces[f];
-        if (left_out_[f] == 0 && std::find(face.begin(), face.end(), b) != face.end()) return true;
-    }
-    return false;
-}
-
-std::vector<Triangle> closing_patch(const Rim& rim, const PerVertex<Vector3>& positions, const Edges& edges) {
-    const int n = static_cast<int>(rim.size());
-    if (n < 3 || n > kLongestRim) return {};
-    const Lengths lengths(positions, edges);
-    const auto at = [&](int i) { return rim[static_cast<std::size_t>(i)]; };
-    Table<float> best(n, n, 0.0F);
-    Table<int> third(n, n, -1);
-    for (int span = 2; span < n; ++span)
-        for (int i = 0; i + span < n; ++i) {
-            const int j = i + span;
-            float least = kNever;
-            for (int k = i + 1; k < j; ++k) {
-                const float cost = best(i, k) + best(k, j);
-                if (cost >= least) continue;
-                least = cost;
-                third(i, j) = k;
-            }
-            // The last edge is one of the rim.
-            best(i, j) = least + (span + 1 == n ? 0.0F : lengths.new_edge(at(i), at(j)));
+/// Diagonals of a slit polygon that have the same ends as others, by their corners.
+using Pairs = std::set<std::pair<int, int>>;
+Pairs repeated(const std::vector<Triangle>& faces, const Rim& corners) {
+    std::map<std::pair<VertexId, VertexId>, std::pair<int, int>> known;
+    Pairs found;
+    for (const Triangle& face : faces)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::pair<int, int> pair = std::minmax(face[k], face[(k + 1) % 3]);
+            const VertexId a = corners[static_cast<std::size_t>(pair.first)];
+            const VertexId b = corners[static_cast<std::size_t>(pair.second)];
+            const bool side = pair.second == pair.first + 1 || pair == std::pair(0, size_of(corners) - 1);
+            if (!side && known.emplace(std::minmax(a, b), pair).first->second != pair) found.insert(pair);
         }
-    std::vector<Triangle> faces;
-    if (best(0, n - 1) < kNever) collect(rim, third, 0, n - 1, faces);
-    return faces;
+    return found;
 }
 
-std::vector<Triangle> joining_patch(const Rim& a, const Rim& b, const PerVertex<Vector3>& positions,
-                                    const Edges& edges) {
+/// Of the diagonals that would have the same ends all but one are forbidden, until there are none.
+std::vector<Triangle> triangulate(const Slit& slit, const Lengths& lengths) {
+    constexpr int kMostTries = 8;
+    const auto at = [&](int i) { return slit.corners[static_cast<std::size_t>(i)]; };
+    Pairs forbidden;
+    for (int attempt = 0; attempt < kMostTries; ++attempt) {
+        const auto faces = least_triangulation(size_of(slit.corners), [&](int i, int j) {
+            const bool bridge = slit.bridges.count(std::minmax(at(i), at(j))) != 0;
+            const bool possible = at(i) != at(j) && !bridge && forbidden.count({i, j}) == 0;
+            return possible ? lengths.new_edge(at(i), at(j)) : kNever;
+        });
+        const Pairs twice = repeated(faces, slit.corners);
+        if (twice.empty()) return with_vertices(faces, slit.corners);
+        forbidden.insert(twice.begin(), twice.end());
+    }
+    return {};
+}
+
+/// A ring of faces from \p a to \p b.
+std::vector<Triangle> zip(const Rim& a, const Rim& b, const PerVertex<Vector3>& positions,
+                          const Edges& edges) {
     const auto longest = static_cast<std::size_t>(kLongestRim);
     if (a.size() > longest || b.size() > longest) return {};
     for (const VertexId v : a)
@@ -207,6 +280,39 @@ std::vector<Triangle> joining_patch(const Rim& a, const Rim& b, const PerVertex<
         }
     }
     return faces;
+}
+
+}  // namespace
+
+bool Edges::has(VertexId a, VertexId b) const {
+    if (!network_.adjacent(a, b)) return false;
+    for (const int f : surface_.faces_around(a)) {
+        const Triangle& face = surface_.faces[f];
+        if (left_out_[f] == 0 && std::find(face.begin(), face.end(), b) != face.end()) return true;
+    }
+    return false;
+}
+
+std::vector<Triangle> closing_patch(const Rim& rim, const PerVertex<Vector3>& positions, const Edges& edges) {
+    if (rim.size() > static_cast<std::size_t>(kLongestRim)) return {};
+    const Lengths lengths(positions, edges);
+    const auto at = [&](int i) { return rim[static_cast<std::size_t>(i)]; };
+    const auto diagonal = [&](int i, int j) { return lengths.new_edge(at(i), at(j)); };
+    return with_vertices(least_triangulation(size_of(rim), diagonal), rim);
+}
+
+std::vector<Triangle> joining_patch(const std::vector<Rim>& rims, const PerVertex<Vector3>& positions,
+                                    const Edges& edges) {
+    if (rims.size() == 2) return zip(rims[0], rims[1], positions, edges);
+    std::set<VertexId> distinct;
+    std::size_t corners = 0;
+    for (const Rim& rim : rims) {
+        distinct.insert(rim.begin(), rim.end());
+        corners += rim.size();
+    }
+    if (distinct.size() != corners || corners > 2 * static_cast<std::size_t>(kLongestRim)) return {};
+    const Lengths lengths(positions, edges);
+    return triangulate(slit_between(rims, lengths), lengths);
 }
 
 }  // namespace neuralmesh

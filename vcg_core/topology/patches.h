@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Faces that close a rim, or join two rims.
+// Faces that close a rim, or join several.
 #pragma once
 
 #include <vector>
@@ -35,10 +35,12 @@ private:
 /// choice needs an edge that exists, or the rim is longer than kLongestRim. O(n^3)
 std::vector<Triangle> closing_patch(const Rim& rim, const PerVertex<Vector3>& positions, const Edges& edges);
 
-/// A ring of faces from \p a to \p b, again with the least sum of squared edges. None as above, or if the
-/// rims share a vertex. Of rims of more than 24 vertices the first vertex of \p a gets an edge to one of the
-/// twelve nearest of \p b. O(n^3), O(n^2) for those
-std::vector<Triangle> joining_patch(const Rim& a, const Rim& b, const PerVertex<Vector3>& positions,
+/// Faces between two and more \p rims, a sphere with as many holes, again with the least sum of squared edges
+/// as far as it looks. Between two rims, faces by turns along one and the other: of rims of more than 24
+/// vertices the first vertex of one gets an edge to one of the twelve nearest of the other. Three and more
+/// become one polygon by the shortest edges between them. None as above, if rims share a vertex, or if three
+/// and more have more than twice kLongestRim vertices together. O(n^3)
+std::vector<Triangle> joining_patch(const std::vector<Rim>& rims, const PerVertex<Vector3>& positions,
                                     const Edges& edges);
 
 }  // namespace neuralmesh

@@ -10,13 +10,15 @@
 #include <utility>
 
 #include "vcg_core/topology/corridors.h"
+#include "vcg_core/topology/membrane_groups.h"
+#include "vcg_core/topology/rim_parts.h"
 #include "vcg_core/topology/surroundings.h"
 
 namespace neuralmesh {
 namespace {
 
-/// Membranes with more rims have too many reconnections to try.
-constexpr std::size_t kMostRims = 4;
+/// Membranes with more rims have too many reconnections to try: one or two membranes, and three or more.
+constexpr std::size_t kMostRims = 4, kMostOfGroup = 5;
 /// Rings by which membranes are widened.
 constexpr std::size_t kWidest = 2;
 /// A reconnection that loses more signals than this as the membranes are gains none with wider ones.
@@ -32,53 +34,6 @@ constexpr float kLeastShare = 0.4F, kLeastGain = 8;
 /// spacings from the middle of the gap with 20,000 points, the holes of feline and turbine have radii of 2.5
 /// and more.
 constexpr float kLeastRadius = 2.4F;
-
-/// Which rims are joined: pairs of their indices; the others are closed.
-using Matching = std::vector<std::pair<std::size_t, std::size_t>>;
-
-void add_matchings(std::vector<std::size_t> free, Matching& chosen, std::vector<Matching>& all) {
-    if (free.empty()) {
-        all.push_back(chosen);
-        return;
-    }
-    const std::size_t first = free.front();
-    free.erase(free.begin());
-    add_matchings(free, chosen, all);
-    for (std::size_t i = 0; i < free.size(); ++i) {
-        std::vector<std::size_t> rest = free;
-        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-        chosen.emplace_back(first, free[i]);
-        add_matchings(rest, chosen, all);
-        chosen.pop_back();
-    }
-}
-
-std::vector<Matching> matchings(std::size_t rims) {
-    std::vector<std::size_t> free(rims);
-    for (std::size_t i = 0; i < rims; ++i) free[i] = i;
-    Matching chosen;
-    std::vector<Matching> all;
-    add_matchings(free, chosen, all);
-    return all;
-}
-
-/// The faces that close the rims or join them as \p matching says; none if one of them gets none.
-std::vector<Triangle> patches(const std::vector<Rim>& rims, const Matching& matching,
-                              const PerVertex<Vector3>& positions, const Edges& edges) {
-    std::vector<Triangle> all;
-    std::vector<char> joined(rims.size(), 0);
-    const auto add = [&](const std::vector<Triangle>& faces) {
-        all.insert(all.end(), faces.begin(), faces.end());
-        return !faces.empty();
-    };
-    for (const auto& [a, b] : matching) {
-        if (!add(joining_patch(rims[a], rims[b], positions, edges))) return {};
-        joined[a] = joined[b] = 1;
-    }
-    for (std::size_t i = 0; i < rims.size(); ++i)
-        if (joined[i] == 0 && !add(closing_patch(rims[i], positions, edges))) return {};
-    return all;
-}
 
 /// A membrane, and the same one and more rings wider.
 using Wide = std::vector<Membrane>;
@@ -98,14 +53,20 @@ public:
     Reconnection of_one(const Wide& membrane) const;
     /// The same of two membranes, joined.
     Reconnection of_pair(const Wide& a, const Wide& b) const;
+    /// The same of a group: of all of it, or of those that lack the most signals, three at least. As many are
+    /// joined as \return says in Reconnection::membranes.
+    Reconnection of_group(std::vector<const Wide*> group) const;
     bool may_join(const Membrane& a, const Membrane& b) const;
+    float edge() const { return edge_; }
 
 private:
+    /// Of a whole group.
+    Reconnection of_all(const std::vector<const Wide*>& group) const;
     Reconnection best(const std::vector<const Membrane*>& membranes) const;
     bool widen(Membrane& membrane) const;
-    /// Whether the points know a handle, or one component, where the rims that \p matching pairs are joined.
+    /// Whether the points know a handle, or one component, where the rims of the same part are joined.
     bool knows_handle(const std::vector<const Membrane*>& membranes, const std::vector<Rim>& rims,
-                      const Matching& matching, const PerFace<char>& out) const;
+                      const RimParts& parts, const PerFace<char>& out) const;
 
     const Network& network_;
     const Surface& surface_;
@@ -115,59 +76,51 @@ private:
     mutable std::unique_ptr<const Corridors> corridors_;  ///< made when they are first asked for
 };
 
-/// Vertices less edges and faces of the faces inside \p rims.
-int euler_characteristic(const std::vector<Triangle>& faces, const std::vector<Rim>& rims) {
-    std::set<VertexId> vertices;
-    for (const Triangle& f : faces) vertices.insert(f.begin(), f.end());
-    std::size_t sides = 3 * faces.size();  // an edge on a rim has one, the others have two
-    for (const Rim& rim : rims) sides += rim.size();
-    return static_cast<int>(vertices.size()) - static_cast<int>(sides / 2) + static_cast<int>(faces.size());
-}
-
 bool Search::knows_handle(const std::vector<const Membrane*>& membranes, const std::vector<Rim>& rims,
-                          const Matching& matching, const PerFace<char>& out) const {
+                          const RimParts& parts, const PerFace<char>& out) const {
     if (!corridors_) corridors_ = std::make_unique<const Corridors>(surface_, support_, points_, edge_);
     float width = 0;
     for (const Membrane* membrane : membranes) width += corridors_->widest(membrane->faces);
     if (width < kLeastRadius * static_cast<float>(membranes.size())) return false;
-    return std::none_of(matching.begin(), matching.end(), [&](const auto& pair) {
-        return corridors_->lead(rims[pair.first], rims[pair.second], out);
-    });
+    for (const std::vector<std::size_t>& part : parts)
+        for (std::size_t i = 0; i < part.size(); ++i)
+            for (std::size_t k = i + 1; k < part.size(); ++k)
+                if (corridors_->lead(rims[part[i]], rims[part[k]], out)) return false;
+    return true;
 }
 
-/// Of the membranes together; of two, one that joins them. Its gain is the lowest number if there is none.
+/// Of the membranes together; one that joins them, if they are several. Its gain is the lowest number if
+/// there is none.
 Reconnection Search::best(const std::vector<const Membrane*>& membranes) const {
     Reconnection found;
     found.gain = std::numeric_limits<float>::lowest();
     std::vector<int> faces;
     std::vector<Rim> rims;
-    for (const Membrane* membrane : membranes) {
-        faces.insert(faces.end(), membrane->faces.begin(), membrane->faces.end());
-        rims.insert(rims.end(), membrane->rims.begin(), membrane->rims.end());
+    std::vector<std::size_t> membrane_of;
+    for (std::size_t m = 0; m < membranes.size(); ++m) {
+        faces.insert(faces.end(), membranes[m]->faces.begin(), membranes[m]->faces.end());
+        rims.insert(rims.end(), membranes[m]->rims.begin(), membranes[m]->rims.end());
+        membrane_of.resize(rims.size(), m);
     }
-    if (rims.size() > kMostRims) return found;
+    if (rims.size() > (membranes.size() > 2 ? kMostOfGroup : kMostRims)) return found;
     PerFace<char> out(surface_.face_count(), 0);
     for (const int f : faces) {
         if (out[f]++ != 0) return found;  // the membranes overlap
         found.gone.push_back(surface_.faces[f]);
     }
-    const std::size_t of_first = membranes.front()->rims.size();
     const Edges edges(network_, surface_, out);
     const Surroundings around(surface_, support_, faces, edge_);
     const float before = around.cost(found.gone);
     const int euler = euler_characteristic(found.gone, rims);
-    for (const Matching& matching : matchings(rims.size())) {
-        const bool across = std::any_of(matching.begin(), matching.end(), [&](const auto& pair) {
-            return (pair.first < of_first) != (pair.second < of_first);
-        });
-        if (across != (membranes.size() > 1)) continue;
-        const bool handle = static_cast<int>(rims.size() - 2 * matching.size()) < euler;
+    for (const RimParts& parts : partitions(rims.size())) {
+        if (!connect_all(parts, membrane_of)) continue;
+        const bool handle = euler_characteristic(parts) < euler;
         if (handle && points_.empty()) continue;
-        std::vector<Triangle> added = patches(rims, matching, surface_.positions, edges);
+        std::vector<Triangle> added = patches_of(parts, rims, surface_.positions, edges);
         if (added.empty() || !network_.can_exchange_faces(found.gone, added)) continue;
         const float gain = before - around.cost(added);
         if (gain <= found.gain) continue;
-        if (handle && gain >= kLeastGain && !knows_handle(membranes, rims, matching, out)) continue;
+        if (handle && gain >= kLeastGain && !knows_handle(membranes, rims, parts, out)) continue;
         found.gain = gain;
         found.added = std::move(added);
     }
@@ -214,6 +167,33 @@ Reconnection Search::of_pair(const Wide& a, const Wide& b) const {
     return found.gain >= least ? found : Reconnection();
 }
 
+Reconnection Search::of_all(const std::vector<const Wide*>& group) const {
+    Reconnection found;
+    found.gain = std::numeric_limits<float>::lowest();
+    for (std::size_t ring = 0; ring <= kWidest; ++ring) {
+        std::vector<Membrane> membranes;
+        for (const Wide* wide : group) membranes.push_back((*wide)[std::min(ring, wide->size() - 1)]);
+        if (!take_apart(surface_, support_, membranes)) continue;
+        std::vector<const Membrane*> all;
+        for (const Membrane& membrane : membranes) all.push_back(&membrane);
+        Reconnection next = best(all);
+        if (next.gain > found.gain) found = std::move(next);
+    }
+    return found;
+}
+
+Reconnection Search::of_group(std::vector<const Wide*> group) const {
+    for (; group.size() >= 3; group.pop_back()) {
+        float missing = 0;
+        for (const Wide* wide : group) missing += wide->front().missing;
+        Reconnection found = of_all(group);
+        if (found.gain < std::max(kLeastGain, kLeastShare * missing)) continue;
+        found.membranes.resize(group.size());
+        return found;
+    }
+    return {};
+}
+
 bool Search::may_join(const Membrane& a, const Membrane& b) const {
     return a.rims.size() + b.rims.size() <= kMostRims && face_each_other(surface_, a, b, edge_);
 }
@@ -243,6 +223,13 @@ std::vector<Reconnection> find_reconnections(const Network& network, const Surfa
         for (int b = a + 1; b < count; ++b)
             if (search.may_join(membrane(a), membrane(b)))
                 keep(search.of_pair(widened(a), widened(b)), {a, b});
+    }
+    for (std::vector<int> group : membrane_groups(surface, membranes, search.edge(), kMostOfGroup)) {
+        std::vector<const Wide*> of;
+        for (const int i : group) of.push_back(&widened(i));
+        Reconnection change = search.of_group(of);
+        group.resize(change.membranes.size());
+        keep(std::move(change), group);
     }
     std::stable_sort(found.begin(), found.end(),
                      [](const Reconnection& a, const Reconnection& b) { return a.gain > b.gain; });

@@ -86,7 +86,7 @@ TEST(Patches, JoinTheEndsOfATubeToATorus) {
         const auto rims = scene.rims();
         ASSERT_EQ(rims.size(), 2U);
         const std::vector<Triangle> patch =
-            joining_patch(rims[0], rims[1], scene.surface.positions, scene.edges());
+            joining_patch({rims[0], rims[1]}, scene.surface.positions, scene.edges());
         ASSERT_EQ(patch.size(), 2 * static_cast<std::size_t>(around));
         Network torus = scene.network;
         ASSERT_TRUE(torus.can_exchange_faces({}, patch));
@@ -106,7 +106,7 @@ TEST(Patches, JoinTwoPartsWithRimsOfDifferentLengths) {
     for (std::size_t a = 0; a < rims.size(); ++a)
         for (std::size_t b = a + 1; b < rims.size(); ++b) {
             const std::vector<Triangle> patch =
-                joining_patch(rims[a], rims[b], scene.surface.positions, scene.edges());
+                joining_patch({rims[a], rims[b]}, scene.surface.positions, scene.edges());
             if (!scene.network.can_exchange_faces({}, patch)) continue;
             Network network = scene.network;
             network.exchange_faces({}, patch);
@@ -115,6 +115,29 @@ TEST(Patches, JoinTwoPartsWithRimsOfDifferentLengths) {
             joined += network.component_count() == 1 ? 1 : 0;
         }
     EXPECT_GT(joined, 0);
+}
+
+TEST(Patches, JoinThreeRimsAndMore) {
+    for (const int holes : {3, 4, 5}) {
+        SCOPED_TRACE(holes);
+        Network network = network_of(shapes::icosphere(2), 0.02);
+        for (VertexId corner = 0; corner < holes; ++corner) {  // of the icosahedron, far from each other
+            std::vector<Triangle> around;
+            for (const Triangle& f : network.faces())
+                if (std::find(f.begin(), f.end(), corner) != f.end()) around.push_back(f);
+            network.exchange_faces(around, {});
+        }
+        const std::vector<Rim> rims = boundary_loops(network.slot_count(), network.faces());
+        ASSERT_EQ(rims.size(), static_cast<std::size_t>(holes));
+        const Surface surface(network);
+        const PerFace<char> none(surface.face_count(), 0);
+        const auto patch = joining_patch(rims, surface.positions, {network, surface, none});
+        ASSERT_TRUE(network.can_exchange_faces({}, patch));
+        network.exchange_faces({}, patch);
+        EXPECT_EQ(network.validate(), "");
+        EXPECT_EQ(network.boundary_loop_count(), 0);
+        EXPECT_EQ(network.genus(), holes - 1);
+    }
 }
 
 TEST(Patches, NeedNoEdgeThatExists) {
@@ -136,7 +159,7 @@ TEST(Patches, JoinLongRimsByTheShortestEdges) {
         const Scene scene(shapes::tube(around, 3));
         const auto rims = scene.rims();
         const std::vector<Triangle> patch =
-            joining_patch(rims[0], rims[1], scene.surface.positions, scene.edges());
+            joining_patch({rims[0], rims[1]}, scene.surface.positions, scene.edges());
         ASSERT_EQ(patch.size(), 2U * static_cast<std::size_t>(around));
         float longest = 0, least = std::numeric_limits<float>::max();
         for (const Triangle& f : patch)
@@ -152,8 +175,11 @@ TEST(Patches, AreRefusedForLongRimsAndRimsThatTouch) {
     const Scene scene(shapes::tube(kLongestRim + 1, 3));
     const auto rims = scene.rims();
     EXPECT_TRUE(closing_patch(rims[0], scene.surface.positions, scene.edges()).empty());
-    EXPECT_TRUE(joining_patch(rims[0], rims[1], scene.surface.positions, scene.edges()).empty());
-    EXPECT_TRUE(joining_patch(rims[0], rims[0], scene.surface.positions, scene.edges()).empty());
+    EXPECT_TRUE(joining_patch({rims[0], rims[1]}, scene.surface.positions, scene.edges()).empty());
+    EXPECT_TRUE(joining_patch({rims[0], rims[0]}, scene.surface.positions, scene.edges()).empty());
+    const Rim three(rims[0].begin(), rims[0].begin() + 3);
+    EXPECT_TRUE(joining_patch({three, rims[1], three}, scene.surface.positions, scene.edges()).empty());
+    EXPECT_TRUE(joining_patch({rims[0], rims[1], {}}, scene.surface.positions, scene.edges()).empty());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -89,7 +90,9 @@ int learn(Network& network, const TargetSpace& target, int threads = 1, const To
     Random random(1);
     int changes = 0;
     for (int round = 0; round < 10; ++round) {
-        const auto found = topology_changes(network, target, rules, random, team);
+        const auto now = topology_evidence(network, target, random, team);
+        if (!now) return changes;
+        const auto found = topology_changes(network, target, *now, rules);
         if (found.empty()) return changes;
         for (const Reconnection& change : found) {
             if (!network.can_exchange_faces(change.gone, change.added)) continue;
@@ -130,9 +133,42 @@ TEST(Reconnection, HandlesFormOnACoarseMeshIfTheyMay) {
     ASSERT_GT(40000, 40 * network.vertex_count());
     EXPECT_EQ(learn(network, target), 0);
     TopologyRules rules;
-    rules.handles_while_coarse = true;
+    rules.from_tetrahedron = true;
     EXPECT_GT(learn(network, target, 1, rules), 0);
     EXPECT_EQ(network.genus(), 1);
+}
+
+/// The corners of a regular tetrahedron on the unit sphere.
+const std::array<vcg::Point3d, 4>& four_ways() {
+    static const double k = 1 / std::sqrt(3.0);
+    static const std::array<vcg::Point3d, 4> ways{{{k, k, k}, {k, -k, -k}, {-k, k, -k}, {-k, -k, k}}};
+    return ways;
+}
+
+/// A hollow sphere, its wall from \p inner to 1, with four round openings.
+shapes::Cloud four_openings(int count, double inner) {
+    const double rim = std::cos(0.7);  // the openings' half angle
+    shapes::Cloud cloud;
+    for (const vcg::Point3d& p : shapes::sphere_cloud(count)) {
+        double nearest = -1;
+        for (const vcg::Point3d& way : four_ways()) nearest = std::max(nearest, way * p);
+        if (nearest > rim) continue;
+        cloud.push_back(p);
+        cloud.push_back(p * inner);
+    }
+    return cloud;
+}
+
+// Any two of the four joined leave a tube in which the other two are membranes still.
+TEST(Reconnection, MembranesOverOneHollowGoTogether) {
+    const TargetSpace target = target_of(four_openings(20000, 0.93));
+    Network network = network_in_frame(target, shapes::icosphere(3));
+    TopologyRules rules;
+    rules.from_tetrahedron = true;
+    EXPECT_GT(learn(network, target, 1, rules), 0);
+    EXPECT_EQ(network.genus(), 3);
+    EXPECT_EQ(network.component_count(), 1);
+    EXPECT_EQ(network.boundary_loop_count(), 0);
 }
 
 /// A sphere that the points cover only below \p top; both from -1 to 1.
@@ -147,7 +183,7 @@ struct Cut {
         ThreadTeam team(1);
         TopologyRules rules;
         rules.opens_from = opens_from;
-        return membranes_to_open(ball, target, rules, random, team);
+        return membranes_to_open(*topology_evidence(ball, target, random, team), rules);
     }
 
     TargetSpace target;
@@ -173,7 +209,8 @@ TEST(MembranesToOpen, AreNotThoseThatFaceAnother) {
     ThreadTeam team(1);
     TopologyRules rules;
     rules.opens_from = 0;
-    EXPECT_TRUE(membranes_to_open(plugged(target), target, rules, random, team).empty());
+    const auto now = topology_evidence(plugged(target), target, random, team);
+    EXPECT_TRUE(membranes_to_open(*now, rules).empty());
 }
 
 TEST(Reconnection, RightMeshesStay) {
@@ -241,7 +278,7 @@ TEST(TopologyStages, ArePassedOnceEachAndEndWithTheGoal) {
     TopologyStages stages(400, 5000);
     for (int vertices = 400; vertices <= 5000; ++vertices)
         if (stages.pass(vertices)) passed.push_back(vertices);
-    EXPECT_EQ(passed, (std::vector<int>{600, 1200, 2400, 4800, 5000}));
+    EXPECT_EQ(passed, (std::vector<int>{600, 1200, 2400, 5000}));
     for (int vertices = 4000; vertices <= 6000; ++vertices) EXPECT_FALSE(stages.pass(vertices));
     TopologyStages small(4, 100);
     EXPECT_FALSE(small.pass(99));
