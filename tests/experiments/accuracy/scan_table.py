@@ -120,8 +120,7 @@ def tuned_chain(points, truth, count):
         for samples in SAMPLES_PER_NODE:
             meshes = pymeshlab.MeshSet(verbose=False)
             meshes.add_mesh(cloud)
-            meshes.generate_surface_reconstruction_screened_poisson(depth=depth, samplespernode=samples)
-            meshes.meshing_remove_connected_component_by_diameter(mincomponentdiag=pymeshlab.PercentageValue(25))
+            peers.poisson_of_normals(meshes, depth=depth, samplespernode=samples)
             if meshes.current_mesh().face_number() == 0:
                 continue
             peers.decimated(meshes, count)
