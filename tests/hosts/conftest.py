@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "hosts"))
+for folder in ("bench", "hosts"):
+    sys.path.insert(0, str(ROOT / "tests" / folder))
 for folder in ("accuracy", "paper", "pictures"):
     sys.path.insert(0, str(ROOT / "tests" / "experiments" / folder))
 
