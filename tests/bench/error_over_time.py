@@ -31,13 +31,15 @@ os.environ["OMP_NUM_THREADS"] = "1"  # before any OpenMP is loaded
 
 import numpy as np  # noqa: E402
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "experiments" / "accuracy"))
+for folder in ("accuracy", "pictures"):
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "experiments" / folder))
 import compare_accuracy  # noqa: E402
 import models  # noqa: E402
 import peers  # noqa: E402
 import scan_table  # noqa: E402
 from compare_accuracy import geometric_mean, numbers, table, topology_right  # noqa: E402
 from in_host import CGAL  # noqa: E402
+from small_png import make_small  # noqa: E402
 
 import pymeshlab  # noqa: E402
 
@@ -252,13 +254,15 @@ def summary(rows, clock, counts):
 
 def draw_method(panel, method, rows, clock):
     """A curve over the sizes, which stand beside ours."""
+    from matplotlib.patheffects import withStroke
     title, color, marker, line = METHODS[method]
     ours = method == "neural"
     panel.plot([row[clock] for row in rows], [row["sum_rms"] for row in rows], color=color, marker=marker, label=title,
                linestyle=line, linewidth=2.6 if ours else 1.4, markersize=6, zorder=3 if ours else 2)
     for row in rows if ours else []:
         panel.annotate(f"{row['target']:,}", (row[clock], row["sum_rms"]), (-6, -2), ha="right", va="top",
-                       textcoords="offset points", fontsize=7)
+                       textcoords="offset points", fontsize=7, zorder=4,
+                       path_effects=[withStroke(linewidth=2.5, foreground="white")])
 
 
 def plot(rows, clock, path):
@@ -284,6 +288,7 @@ def plot(rows, clock, path):
                   title="the lower left is better: a smaller error in less time")
     figure.tight_layout(rect=(0, .2, 1, 1))
     figure.savefig(path, dpi=100)
+    make_small(path)
 
 
 def main(arguments=None):
