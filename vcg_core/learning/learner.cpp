@@ -83,7 +83,7 @@ StopReason Learner::grow(Progress& progress) {
     double done = 0;  // of growth; collapses do not take it back
     schedule_.begin(signals());
     mends_notches_ = !state_.to_the_letter() && network().boundary_loop_count() > 0;
-    TopologyStages stages(begin, goal);
+    TopologyStages stages(begin, std::min(goal, most_examined(target_)));
     while (network().vertex_count() < goal) {
         learn_batch(batch_size(), [this] {
             if (schedule_.split_due(signals())) vertex_split();

@@ -4,6 +4,7 @@
 #include "vcg_core/topology/learned_topology.h"
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
@@ -47,6 +48,12 @@ float width_of(const Rim& rim, const Surface& surface) {
 
 }  // namespace
 
+int most_examined(const TargetSpace& target) {
+    // A stage may begin some vertices late.
+    const std::size_t most = target.positions().size() / 10 * 9 / kFewestPerVertex;
+    return target.is_exact() ? std::numeric_limits<int>::max() : static_cast<int>(most);
+}
+
 std::optional<TopologyEvidence> topology_evidence(const Network& network, const TargetSpace& target,
                                                   Random& random, ThreadTeam& team) {
     Surface surface(network);
@@ -66,8 +73,8 @@ std::vector<Reconnection> topology_changes(const Network& network, const TargetS
         points_for_handles(target, rules, now.signals, static_cast<std::size_t>(network.vertex_count()));
     std::vector<Reconnection> chosen;
     std::set<int> used;
-    for (Reconnection& change :
-         find_reconnections(network, now.surface, now.support, now.membranes, points)) {
+    for (Reconnection& change : find_reconnections(network, now.surface, now.support, now.membranes, points,
+                                                   rules.from_tetrahedron)) {
         const auto taken = [&](int membrane) { return used.count(membrane) != 0; };
         if (std::any_of(change.membranes.begin(), change.membranes.end(), taken)) continue;
         used.insert(change.membranes.begin(), change.membranes.end());

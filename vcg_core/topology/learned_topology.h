@@ -17,12 +17,17 @@
 
 namespace neuralmesh {
 
-/// The stages of growth at which the topology is examined: 300 x 2^k vertices, and the last vertex. Each is
+/// The number of vertices for the last stage: beyond, the points of \p target are too few for each to tell of
+/// the topology.
+int most_examined(const TargetSpace& target);
+
+/// The stages of growth at which the topology is examined: 300 x 2^k vertices, and the last number. Each is
 /// passed once, so a run has at most log2(vertices) of them whatever the points are.
 class TopologyStages {
 public:
-    /// Of growth from \p vertices to \p goal.
-    TopologyStages(int vertices, int goal) : goal_(goal), next_(std::min(kFirst, goal)) {
+    /// Of growth from \p vertices on; \p goal is the last stage. None if that is passed already.
+    TopologyStages(int vertices, int goal)
+        : goal_(goal), next_(std::min(kFirst, goal)), over_(vertices >= goal) {
         while (next_ <= vertices && next_ < goal) advance();
     }
     /// True once for each stage that a network of \p vertices has reached.
@@ -37,11 +42,11 @@ public:
 
 private:
     static constexpr int kFirst = 300;
-    void advance() { next_ = next_ < goal_ / 3 ? 2 * next_ : goal_; }
+    void advance() { next_ = next_ < goal_ / 5 * 2 ? 2 * next_ : goal_; }
 
     int goal_;
     int next_;
-    bool over_ = false;
+    bool over_;
 };
 
 /// What a sample of the points says of a closed network.
@@ -52,8 +57,8 @@ struct TopologyEvidence {
     std::vector<Membrane> membranes;
 };
 
-/// The signals are a fair sample of \p target, 30 per vertex. Nothing if the network is open or has less than
-/// eight points per vertex. Does not depend on the number of threads. Cost: about that of learning the
+/// The signals are a fair sample of \p target, 30 per vertex. Nothing if the network is open or has less
+/// than eight points per vertex. Does not depend on the number of threads. Cost: about that of learning the
 /// signals.
 std::optional<TopologyEvidence> topology_evidence(const Network& network, const TargetSpace& target,
                                                   Random& random, ThreadTeam& team);

@@ -203,7 +203,7 @@ bool Search::may_join(const Membrane& a, const Membrane& b) const {
 std::vector<Reconnection> find_reconnections(const Network& network, const Surface& surface,
                                              const FaceSignals& support,
                                              const std::vector<Membrane>& membranes,
-                                             const std::vector<vcg::Point3f>& points) {
+                                             const std::vector<vcg::Point3f>& points, bool in_groups) {
     const Search search(network, surface, support, points);
     std::vector<Reconnection> found;
     const auto keep = [&](Reconnection change, const std::vector<int>& of) {
@@ -224,7 +224,9 @@ std::vector<Reconnection> find_reconnections(const Network& network, const Surfa
             if (search.may_join(membrane(a), membrane(b)))
                 keep(search.of_pair(widened(a), widened(b)), {a, b});
     }
-    for (std::vector<int> group : membrane_groups(surface, membranes, search.edge(), kMostOfGroup)) {
+    std::vector<std::vector<int>> groups;
+    if (in_groups) groups = membrane_groups(surface, membranes, search.edge(), kMostOfGroup);
+    for (std::vector<int>& group : groups) {
         std::vector<const Wide*> of;
         for (const int i : group) of.push_back(&widened(i));
         Reconnection change = search.of_group(of);

@@ -25,10 +25,12 @@ struct Reconnection {
 /// handle, or one component of two; closed rims of a tube take a handle away; a membrane with one rim is
 /// closed by a smaller surface. A joint that makes a handle also needs a gap that is wide for \p points, and
 /// points wherever one can go around the handle: see corridors.h. If there are no \p points, none is made.
+/// If \p in_groups, three and more membranes may be joined, too, see membrane_groups.h: the openings of one
+/// hollow, where every joint of two leaves a tube that spans the others.
 /// Each of them alone leaves \p network a manifold. O(membranes x (faces + signals around a membrane))
 std::vector<Reconnection> find_reconnections(const Network& network, const Surface& surface,
                                              const FaceSignals& support,
                                              const std::vector<Membrane>& membranes,
-                                             const std::vector<vcg::Point3f>& points);
+                                             const std::vector<vcg::Point3f>& points, bool in_groups);
 
 }  // namespace neuralmesh

@@ -284,6 +284,20 @@ TEST(TopologyStages, ArePassedOnceEachAndEndWithTheGoal) {
     EXPECT_FALSE(small.pass(99));
     EXPECT_TRUE(small.pass(100));
     EXPECT_FALSE(small.pass(100));
+    TopologyStages none(5000, 5000);
+    EXPECT_FALSE(none.pass(5000));
+}
+
+TEST(TopologyStages, EndWhereThePointsAreTooFew) {
+    const TargetSpace target = target_of(two_spheres(5000));
+    EXPECT_EQ(most_examined(target), 10000 * 9 / 10 / 8);
+    Random random(1);
+    ThreadTeam team(1);
+    EXPECT_TRUE(topology_evidence(bridged(target), target, random, team));
+    const TargetSpace few = target_of(two_spheres(1000));
+    const Network network = bridged(few);
+    ASSERT_GT(network.vertex_count(), most_examined(few));
+    EXPECT_FALSE(topology_evidence(network, few, random, team));
 }
 
 }  // namespace
