@@ -50,7 +50,7 @@ float width_of(const Rim& rim, const Surface& surface) {
 
 int most_examined(const TargetSpace& target) {
     // A stage may begin some vertices late.
-    const std::size_t most = target.positions().size() / 10 * 9 / kFewestPerVertex;
+    const std::size_t most = target.positions().size() / 100 * 96 / kFewestPerVertex;
     return target.is_exact() ? std::numeric_limits<int>::max() : static_cast<int>(most);
 }
 

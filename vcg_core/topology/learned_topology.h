@@ -42,6 +42,7 @@ public:
 
 private:
     static constexpr int kFirst = 300;
+    /// Stages beyond four fifths of the last would be of no use to it.
     void advance() { next_ = next_ < goal_ / 5 * 2 ? 2 * next_ : goal_; }
 
     int goal_;
