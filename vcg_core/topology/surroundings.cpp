@@ -27,6 +27,36 @@ Box box_of(const Surface& surface, int face) {
     return box.extend(surface.corner(face, 1)).extend(surface.corner(face, 2));
 }
 
+/// The bounding boxes of the faces of a patch, of every few of them, which are near each other, and of all.
+class PatchBoxes {
+public:
+    PatchBoxes(const std::vector<Triangle>& patch, const PerVertex<Vector3>& positions)
+        : of_face_(patch.size()), of_group_((patch.size() + kGroup - 1) / kGroup) {
+        for (std::size_t p = 0; p < patch.size(); ++p) {
+            for (const VertexId v : patch[p]) of_face_[p].extend(positions[v]);
+            of_group_[p / kGroup].extend(of_face_[p]);
+            all_.extend(of_face_[p]);
+        }
+    }
+    /// Calls \p visit for the faces whose boxes are nearer to \p signal than \p squared, which it may lower.
+    template <class Visit>
+    void for_near(const Vector3& signal, const float& squared, const Visit& visit) const {
+        const auto is_near = [&](const Box& box) { return box.squaredExteriorDistance(signal) < squared; };
+        if (!is_near(all_)) return;
+        for (std::size_t group = 0; group < of_group_.size(); ++group) {
+            if (!is_near(of_group_[group])) continue;
+            const std::size_t end = std::min((group + 1) * kGroup, of_face_.size());
+            for (std::size_t p = group * kGroup; p < end; ++p)
+                if (is_near(of_face_[p])) visit(p);
+        }
+    }
+
+private:
+    static constexpr std::size_t kGroup = 8;
+    std::vector<Box> of_face_, of_group_;
+    Box all_;
+};
+
 }  // namespace
 
 Surroundings::Surroundings(const Surface& surface, const FaceSignals& support,
@@ -65,24 +95,18 @@ float Surroundings::expected(const Triangle& face) const {
 }
 
 float Surroundings::cost(const std::vector<Triangle>& patch) const {
-    Box box;
-    std::vector<Box> boxes(patch.size());
-    for (std::size_t p = 0; p < patch.size(); ++p) {
-        for (const VertexId v : patch[p]) boxes[p].extend(surface_.positions[v]);
-        box.extend(boxes[p]);
-    }
+    const PatchBoxes boxes(patch, surface_.positions);
     std::vector<float> wins(kept_.size(), 0.0F), patch_wins(patch.size(), 0.0F);
     double cost = 0;
     for (const Near& signal : signals_) {
         float least = signal.squared_distance;
         std::size_t winner = patch.size();
-        for (std::size_t p = 0; p < patch.size() && box.squaredExteriorDistance(signal.point) < least; ++p) {
-            if (boxes[p].squaredExteriorDistance(signal.point) >= least) continue;
+        boxes.for_near(signal.point, least, [&](std::size_t p) {
             const float squared = squared_distance(signal.point, patch[p]);
-            if (squared >= least) continue;
+            if (squared >= least) return;
             least = squared;
             winner = p;
-        }
+        });
         if (winner < patch.size()) {
             ++patch_wins[winner];
         } else if (signal.kept >= 0) {

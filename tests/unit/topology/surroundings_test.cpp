@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// What patches cost, against the plain sum over all signals and all faces.
+#include "vcg_core/topology/surroundings.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/targets.h"
+#include "vcg_core/topology/membranes.h"
+
+namespace neuralmesh {
+namespace {
+
+using targets::network_in_frame;
+using targets::target_of;
+
+/// The cost of the whole surface of \p faces.
+double plain_cost(const Surface& surface, const FaceSignals& support, const std::vector<Triangle>& faces,
+                  float edge) {
+    const auto& at = surface.positions;
+    std::vector<float> wins(faces.size(), 0);
+    double cost = 0;
+    for (const FaceSignals::Assigned& s : support.signals) {
+        float least = std::numeric_limits<float>::max();
+        std::size_t winner = 0;
+        for (std::size_t f = 0; f < faces.size(); ++f) {
+            const float squared =
+                foot_on_triangle(s.point, at[faces[f][0]], at[faces[f][1]], at[faces[f][2]]).squared_distance;
+            if (squared >= least) continue;
+            least = squared;
+            winner = f;
+        }
+        ++wins[winner];
+        cost += std::min(1.0, static_cast<double>(least / (0.5F * edge * 0.5F * edge)));
+    }
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        const float area = area_vector(faces[f], at).norm() / 2;
+        cost += std::max(0.0, static_cast<double>(support.expected_on(faces[f], area) - wins[f]));
+    }
+    return cost;
+}
+
+TEST(Surroundings, TellTheDifferenceThatAPatchMakes) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(4000, 0.02));
+    const Network network = network_in_frame(target, shapes::icosphere(3));
+    const Surface surface(network);
+    Random random(1);
+    ThreadTeam team(1);
+    const FaceSignals support = face_signals(network, surface, fair_sample(target, 4000, random), team);
+    const float edge = mean_edge_length(surface);
+    for (const VertexId centre : {100, 300, 500}) {
+        SCOPED_TRACE(centre);
+        Membrane membrane;  // the faces of two rings: the patch has more faces than one group of boxes
+        for (const VertexId v : network.ring(centre))
+            for (const int f : surface.faces_around(v)) membrane.faces.push_back(f);
+        std::sort(membrane.faces.begin(), membrane.faces.end());
+        membrane.faces.erase(std::unique(membrane.faces.begin(), membrane.faces.end()), membrane.faces.end());
+        ASSERT_TRUE(complete(surface, support, membrane));
+        PerFace<char> out(surface.face_count(), 0);
+        std::vector<Triangle> gone, patched;
+        for (const int f : membrane.faces) {
+            out[f] = 1;
+            gone.push_back(surface.faces[f]);
+        }
+        const auto patch = closing_patch(membrane.rims.front(), surface.positions, {network, surface, out});
+        ASSERT_GT(patch.size(), 8U);
+        for (int f = 0; f < surface.face_count(); ++f)
+            if (out[f] == 0) patched.push_back(surface.faces[f]);
+        patched.insert(patched.end(), patch.begin(), patch.end());
+        std::vector<Triangle> whole;
+        for (int f = 0; f < surface.face_count(); ++f) whole.push_back(surface.faces[f]);
+        const Surroundings around(surface, support, membrane.faces, edge);
+        const double plain =
+            plain_cost(surface, support, patched, edge) - plain_cost(surface, support, whole, edge);
+        EXPECT_GT(std::abs(plain), 0.5);
+        EXPECT_NEAR(around.cost(patch) - around.cost(gone), plain, 1e-2);
+    }
+}
+
+}  // namespace
+}  // namespace neuralmesh
