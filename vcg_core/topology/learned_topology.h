@@ -17,8 +17,8 @@
 
 namespace neuralmesh {
 
-/// The number of vertices for the last stage: beyond, the points of \p target are too few for each to tell of
-/// the topology.
+/// The number of vertices at the last stage of a long growth: with more, the points of \p target are too few
+/// for each vertex to tell of the topology.
 int most_examined(const TargetSpace& target);
 
 /// The stages of growth at which the topology is examined: 300 x 2^k vertices, and the last number. Each is

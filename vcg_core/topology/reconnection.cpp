@@ -53,14 +53,14 @@ public:
     Reconnection of_one(const Wide& membrane) const;
     /// The same of two membranes, joined.
     Reconnection of_pair(const Wide& a, const Wide& b) const;
-    /// The same of a group: of all of it, or of those that lack the most signals, three at least. As many are
-    /// joined as \return says in Reconnection::membranes.
+    /// The same of a group, or of the first of it, three at least, which lack the most signals. The size of
+    /// Reconnection::membranes tells how many.
     Reconnection of_group(std::vector<const Wide*> group) const;
     bool may_join(const Membrane& a, const Membrane& b) const;
     float edge() const { return edge_; }
 
 private:
-    /// Of a whole group.
+    /// The best reconnection of a whole group, whatever it gains.
     Reconnection of_all(const std::vector<const Wide*>& group) const;
     Reconnection best(const std::vector<const Membrane*>& membranes) const;
     bool widen(Membrane& membrane) const;
