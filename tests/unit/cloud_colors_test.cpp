@@ -9,6 +9,7 @@
 #include <cmath>
 #include <string>
 
+#include "tests/unit/support/nearest_face.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/mesh/surface.h"
@@ -88,16 +89,9 @@ struct Attached {
 std::vector<Attached> attached(const TargetSpace& target, const Surface& surface) {
     std::vector<Attached> result;
     for (std::size_t i = 0; i < target.positions().size(); ++i) {
-        Foot nearest{1e30F, {}};
-        int face = -1;
-        for (int f = 0; f < surface.face_count(); ++f) {
-            const Foot foot = foot_on_triangle(to_eigen(target.positions()[i]), surface.corner(f, 0),
-                                               surface.corner(f, 1), surface.corner(f, 2));
-            if (foot.squared_distance >= nearest.squared_distance) continue;
-            nearest = foot;
-            face = f;
-        }
-        result.push_back({surface.faces[face], nearest.weights, target.colors()[i]});
+        const Hit hit =
+            referee::nearest_face(to_eigen(target.positions()[i]), surface.positions, surface.faces);
+        result.push_back({surface.faces[hit.face], hit.foot.weights, target.colors()[i]});
     }
     return result;
 }

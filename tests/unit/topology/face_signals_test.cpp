@@ -5,15 +5,16 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <numeric>
 
+#include "tests/unit/support/nearest_face.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/targets.h"
 
 namespace neuralmesh {
 namespace {
 
+using referee::nearest_face;
 using targets::network_in_frame;
 using targets::target_of;
 
@@ -24,15 +25,6 @@ shapes::Cloud lower_sphere(int count, double top) {
         if (p[2] < top) cloud.push_back(p);
     cloud.emplace_back(0, 0, 1);  // so that the frame is that of the whole sphere
     return cloud;
-}
-
-float least_distance(const Surface& surface, const Vector3& p) {
-    float least = std::numeric_limits<float>::max();
-    for (int f = 0; f < surface.face_count(); ++f)
-        least = std::min(least,
-                         foot_on_triangle(p, surface.corner(f, 0), surface.corner(f, 1), surface.corner(f, 2))
-                             .squared_distance);
-    return least;
 }
 
 TEST(FaceSignals, GiveEverySignalToTheNearestFace) {
@@ -49,7 +41,8 @@ TEST(FaceSignals, GiveEverySignalToTheNearestFace) {
         EXPECT_EQ(support.of(f).size(), support.wins[f]);
         sum += support.wins[f];
         for (const FaceSignals::Assigned& s : support.of(f)) {
-            EXPECT_EQ(s.squared_distance, least_distance(surface, s.point));
+            EXPECT_EQ(s.squared_distance,
+                      nearest_face(s.point, surface.positions, surface.faces).foot.squared_distance);
             EXPECT_EQ(s.squared_distance, foot_on_triangle(s.point, surface.corner(f, 0),
                                                            surface.corner(f, 1), surface.corner(f, 2))
                                               .squared_distance);

@@ -8,8 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "tests/unit/support/nearest_face.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/targets.h"
 #include "vcg_core/topology/membranes.h"
@@ -23,24 +23,15 @@ using targets::target_of;
 /// The cost of the whole surface of \p faces.
 double plain_cost(const Surface& surface, const FaceSignals& support, const std::vector<Triangle>& faces,
                   float edge) {
-    const auto& at = surface.positions;
     std::vector<float> wins(faces.size(), 0);
     double cost = 0;
     for (const FaceSignals::Assigned& s : support.signals) {
-        float least = std::numeric_limits<float>::max();
-        std::size_t winner = 0;
-        for (std::size_t f = 0; f < faces.size(); ++f) {
-            const float squared =
-                foot_on_triangle(s.point, at[faces[f][0]], at[faces[f][1]], at[faces[f][2]]).squared_distance;
-            if (squared >= least) continue;
-            least = squared;
-            winner = f;
-        }
-        ++wins[winner];
-        cost += std::min(1.0, static_cast<double>(least / (0.5F * edge * 0.5F * edge)));
+        const Hit hit = referee::nearest_face(s.point, surface.positions, faces);
+        ++wins[static_cast<std::size_t>(hit.face)];
+        cost += std::min(1.0, static_cast<double>(hit.foot.squared_distance / (0.5F * edge * 0.5F * edge)));
     }
     for (std::size_t f = 0; f < faces.size(); ++f) {
-        const float area = area_vector(faces[f], at).norm() / 2;
+        const float area = area_vector(faces[f], surface.positions).norm() / 2;
         cost += std::max(0.0, static_cast<double>(support.expected_on(faces[f], area) - wins[f]));
     }
     return cost;
