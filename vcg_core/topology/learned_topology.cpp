@@ -26,16 +26,16 @@ constexpr std::size_t kMostPerVertex = 40;
 /// opening there may be small ones.
 constexpr float kComparable = 0.2F;
 
-/// The points by which handles are judged: all of the cloud, or \p signals if they have weights. None if no
-/// handle may form.
+/// The points by which handles are judged: all of the cloud, or the signals of \p support if they have
+/// weights. None if no handle may form.
 std::vector<vcg::Point3f> points_for_handles(const TargetSpace& target, const TopologyRules& rules,
-                                             const std::vector<Vector3>& signals, std::size_t vertices) {
+                                             const FaceSignals& support, std::size_t vertices) {
     if (target.is_exact()) return {};
     if (!rules.from_tetrahedron && target.positions().size() > kMostPerVertex * vertices) return {};
     if (!target.is_weighted()) return target.positions();
     std::vector<vcg::Point3f> points;
-    points.reserve(signals.size());
-    for (const Vector3& p : signals) points.emplace_back(p[0], p[1], p[2]);
+    points.reserve(support.signals.size());
+    for (const FaceSignals::Assigned& signal : support.signals) points.push_back(to_vcg(signal.point));
     return points;
 }
 
@@ -61,16 +61,16 @@ std::optional<TopologyEvidence> topology_evidence(const Network& network, const 
     if (surface.has_boundary() ||
         (!target.is_exact() && target.positions().size() < kFewestPerVertex * vertices))
         return std::nullopt;
-    std::vector<Vector3> signals = fair_sample(target, kSignalsPerVertex * vertices, random);
-    FaceSignals support = face_signals(network, surface, signals, team);
+    FaceSignals support =
+        face_signals(network, surface, fair_sample(target, kSignalsPerVertex * vertices, random), team);
     std::vector<Membrane> membranes = find_membranes(surface, support);
-    return TopologyEvidence{std::move(surface), std::move(signals), std::move(support), std::move(membranes)};
+    return TopologyEvidence{std::move(surface), std::move(support), std::move(membranes)};
 }
 
 std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target,
                                            const TopologyEvidence& now, const TopologyRules& rules) {
     const std::vector<vcg::Point3f> points =
-        points_for_handles(target, rules, now.signals, static_cast<std::size_t>(network.vertex_count()));
+        points_for_handles(target, rules, now.support, static_cast<std::size_t>(network.vertex_count()));
     std::vector<Reconnection> chosen;
     std::set<int> used;
     for (Reconnection& change : find_reconnections(network, now.surface, now.support, now.membranes, points,

@@ -42,7 +42,7 @@ public:
 
 private:
     static constexpr int kFirst = 300;
-    /// Stages beyond four fifths of the last would be of no use to it.
+    /// A stage beyond four fifths of the last would find the same as that.
     void advance() { next_ = next_ < goal_ / 5 * 2 ? 2 * next_ : goal_; }
 
     int goal_;
@@ -53,7 +53,6 @@ private:
 /// What a sample of the points says of a closed network.
 struct TopologyEvidence {
     Surface surface;
-    std::vector<Vector3> signals;
     FaceSignals support;
     std::vector<Membrane> membranes;
 };

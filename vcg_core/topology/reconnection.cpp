@@ -53,15 +53,12 @@ public:
     Reconnection of_one(const Wide& membrane) const;
     /// The same of two membranes, joined.
     Reconnection of_pair(const Wide& a, const Wide& b) const;
-    /// The same of a group, or of the first of it, three at least, which lack the most signals. The size of
-    /// Reconnection::membranes tells how many.
-    Reconnection of_group(std::vector<const Wide*> group) const;
+    /// The same of three and more.
+    Reconnection of_group(const std::vector<const Wide*>& group) const;
     bool may_join(const Membrane& a, const Membrane& b) const;
     float edge() const { return edge_; }
 
 private:
-    /// The best reconnection of a whole group, whatever it gains.
-    Reconnection of_all(const std::vector<const Wide*>& group) const;
     Reconnection best(const std::vector<const Membrane*>& membranes) const;
     bool widen(Membrane& membrane) const;
     /// Whether the points know a handle, or one component, where the rims of the same part are joined.
@@ -145,8 +142,11 @@ Wide Search::widened(const Membrane& membrane) const {
     return wide;
 }
 
+/// The least gain of a reconnection of membranes that lack so many signals.
+float least_gain(float missing) { return std::max(kLeastGain, kLeastShare * missing); }
+
 Reconnection Search::of_one(const Wide& membrane) const {
-    const float least = std::max(kLeastGain, kLeastShare * membrane.front().missing);
+    const float least = least_gain(membrane.front().missing);
     Reconnection found;
     for (std::size_t ring = 0; ring < membrane.size() && ring < kWidest; ++ring) {
         Reconnection next = best({&membrane[ring]});
@@ -156,7 +156,7 @@ Reconnection Search::of_one(const Wide& membrane) const {
 }
 
 Reconnection Search::of_pair(const Wide& a, const Wide& b) const {
-    const float least = std::max(kLeastGain, kLeastShare * (a.front().missing + b.front().missing));
+    const float least = least_gain(a.front().missing + b.front().missing);
     Reconnection found = best({&a.front(), &b.front()});
     if (found.gain < kHopeless) return {};
     for (const Membrane& wide_a : a)
@@ -167,7 +167,9 @@ Reconnection Search::of_pair(const Wide& a, const Wide& b) const {
     return found.gain >= least ? found : Reconnection();
 }
 
-Reconnection Search::of_all(const std::vector<const Wide*>& group) const {
+Reconnection Search::of_group(const std::vector<const Wide*>& group) const {
+    float missing = 0;
+    for (const Wide* wide : group) missing += wide->front().missing;
     Reconnection found;
     found.gain = std::numeric_limits<float>::lowest();
     for (std::size_t ring = 0; ring <= kWidest; ++ring) {
@@ -179,19 +181,7 @@ Reconnection Search::of_all(const std::vector<const Wide*>& group) const {
         Reconnection next = best(all);
         if (next.gain > found.gain) found = std::move(next);
     }
-    return found;
-}
-
-Reconnection Search::of_group(std::vector<const Wide*> group) const {
-    for (; group.size() >= 3; group.pop_back()) {
-        float missing = 0;
-        for (const Wide* wide : group) missing += wide->front().missing;
-        Reconnection found = of_all(group);
-        if (found.gain < std::max(kLeastGain, kLeastShare * missing)) continue;
-        found.membranes.resize(group.size());
-        return found;
-    }
-    return {};
+    return found.gain >= least_gain(missing) ? found : Reconnection();
 }
 
 bool Search::may_join(const Membrane& a, const Membrane& b) const {
@@ -227,11 +217,13 @@ std::vector<Reconnection> find_reconnections(const Network& network, const Surfa
     std::vector<std::vector<int>> groups;
     if (in_groups) groups = membrane_groups(surface, membranes, search.edge(), kMostOfGroup);
     for (std::vector<int>& group : groups) {
-        std::vector<const Wide*> of;
-        for (const int i : group) of.push_back(&widened(i));
-        Reconnection change = search.of_group(of);
-        group.resize(change.membranes.size());
-        keep(std::move(change), group);
+        // Without those that lack the least signals, as long as the others gain too little with them.
+        for (std::size_t before = found.size(); group.size() >= 3 && found.size() == before;
+             group.pop_back()) {
+            std::vector<const Wide*> of;
+            for (const int i : group) of.push_back(&widened(i));
+            keep(search.of_group(of), group);
+        }
     }
     std::stable_sort(found.begin(), found.end(),
                      [](const Reconnection& a, const Reconnection& b) { return a.gain > b.gain; });
