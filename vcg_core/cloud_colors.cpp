@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "vcg_core/base/parallel_for.h"
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/mesh/face_tree.h"
 #include "vcg_core/mesh/surface.h"
@@ -21,7 +20,6 @@ constexpr std::size_t kFewestPoints = 100000;
 constexpr std::size_t kPointsPerVertex = 30;
 /// Points between two reports of progress: about .02 s of one thread.
 constexpr std::size_t kInBatch = 20000;
-constexpr int kChunk = 512;
 constexpr float kWhite = 255;
 
 /// A point with its colour, and the area that it stands for.
@@ -80,10 +78,10 @@ public:
           color_sums_(network.slot_count(), Vector3::Zero()) {}
 
     void add(const std::vector<Sample>& samples, ThreadTeam& team) {
-        std::vector<Hit> hits(samples.size());
-        for_chunks(hits.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) hits[i] = tree_.nearest(samples[i].position);
-        });
+        std::vector<Vector3> positions;
+        positions.reserve(samples.size());
+        for (const Sample& sample : samples) positions.push_back(sample.position);
+        const std::vector<Hit> hits = tree_.nearest(positions, team);
         for (std::size_t i = 0; i < hits.size(); ++i) add(samples[i], hits[i]);
     }
 

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <utility>
 
-#include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/sound_moves.h"
 
 namespace neuralmesh {
@@ -23,26 +22,42 @@ Thickening::Thickening(const LearningTask& task) {
     }
 }
 
-Vector3 Thickening::move_at(const Vector3& p) const {
-    const Hit hit = tree_->nearest(p);
+Vector3 Thickening::move_at(const Hit& hit) const {
     const Triangle& face = shell_->faces[hit.face];
     const auto& w = hit.foot.weights;
     return w[0] * moves_[face[0]] + w[1] * moves_[face[1]] + w[2] * moves_[face[2]];
 }
 
+std::vector<Vector3> Thickening::moves_at(const std::vector<Vector3>& points, ThreadTeam& team) const {
+    std::vector<Vector3> moves;
+    moves.reserve(points.size());
+    for (const Hit& hit : tree_->nearest(points, team)) moves.push_back(move_at(hit));
+    return moves;
+}
+
 std::optional<TargetSpace> Thickening::thicker(const LearningTask& task, ThreadTeam& team) const {
     if (!shell_) return std::nullopt;
-    return task.target().moved([this](const vcg::Point3f& p) { return p + to_vcg(move_at(to_eigen(p))); },
-                               team);
+    const TargetSpace& target = task.target();
+    if (target.is_exact())
+        return target.moved(
+            [this](const vcg::Point3f& p) { return p + to_vcg(move_at(tree_->nearest(to_eigen(p)))); });
+    std::vector<Vector3> points;
+    points.reserve(target.positions().size());
+    for (const vcg::Point3f& p : target.positions()) points.push_back(to_eigen(p));
+    const std::vector<Vector3> moves = moves_at(points, team);
+    std::vector<vcg::Point3f> moved = target.positions();
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += to_vcg(moves[i]);
+    return target.moved_to(std::move(moved));
 }
 
 void Thickening::take_back(Network& network, ThreadTeam& team) const {
     if (!shell_) return;
+    std::vector<Vector3> positions;
+    for (const VertexId v : network.vertices()) positions.push_back(to_eigen(network.position(v)));
+    const std::vector<Vector3> at = moves_at(positions, team);
     PerVertex<Vector3> moves(network.slot_count(), Vector3::Zero());
-    constexpr int kChunk = 256;
-    parallel_for(network.slot_count(), kChunk, team, [&](VertexId v) {
-        if (network.alive(v)) moves[v] = -move_at(to_eigen(network.position(v)));
-    });
+    std::size_t next = 0;
+    for (const VertexId v : network.vertices()) moves[v] = -at[next++];
     move_soundly(network, std::move(moves), team);
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/learning_task.h"
@@ -30,8 +31,10 @@ public:
     void take_back(Network& network, ThreadTeam& team) const;
 
 private:
-    /// At a point near the shell or thicker().
-    Vector3 move_at(const Vector3& p) const;
+    /// At the point nearest to \p hit.
+    Vector3 move_at(const Hit& hit) const;
+    /// At points near the shell or thicker().
+    std::vector<Vector3> moves_at(const std::vector<Vector3>& points, ThreadTeam& team) const;
 
     std::optional<Surface> shell_;  ///< nothing if there are no thin walls
     PerVertex<Vector3> moves_;      ///< of its vertices

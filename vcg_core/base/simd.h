@@ -98,6 +98,13 @@ NEURALMESH_ALWAYS_INLINE void add_cross(EightVectors& sum, const EightVectors& a
     sum.z += a.x * b.y - a.y * b.x;
 }
 
+/// Whether any lane of a mask is set.
+NEURALMESH_ALWAYS_INLINE bool any(const EightInts& mask) {
+    std::uint64_t pairs[4];
+    std::memcpy(pairs, &mask, sizeof pairs);
+    return (pairs[0] | pairs[1] | pairs[2] | pairs[3]) != 0;
+}
+
 /// Sets the lanes of v to 0 where mask is 0 and keeps them where it is -1.
 NEURALMESH_ALWAYS_INLINE void keep_where(const EightInts& mask, Eight& v) {
     EightInts bits;

@@ -17,12 +17,7 @@ constexpr std::size_t kChunk = 512;
 }  // namespace
 
 std::vector<Hit> nearest_by_tree(const Surface& surface, const TrackedPoints& tracked, ThreadTeam& team) {
-    const FaceTree tree(surface, team);
-    std::vector<Hit> hits(tracked.points.size());
-    for_chunks(hits.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) hits[i] = tree.nearest(tracked.points[i]);
-    });
-    return hits;
+    return FaceTree(surface, team).nearest(tracked.points, team);
 }
 
 std::vector<Hit> nearest_by_walk(const Surface& surface, const TrackedPoints& tracked, ThreadTeam& team) {

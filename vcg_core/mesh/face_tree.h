@@ -31,6 +31,9 @@ public:
     /// The nearest face of \p p, the one of smallest index among equals; face -1 if the tree is empty. Exact
     /// up to float rounding. O(log faces) expected near the surface.
     Hit nearest(const Vector3& p) const;
+    /// That of each of \p points, up to float rounding, in a quarter of the time where they are dense. The
+    /// result does not depend on the number of threads. O(points x log faces)
+    std::vector<Hit> nearest(const std::vector<Vector3>& points, ThreadTeam& team) const;
 
     /// Calls \p visit(f, g) for every face g whose bounding box touches that of f, where f is the \p i-th
     /// face in the order of the tree and g comes after it in that order. Over all i this gives each pair
@@ -79,6 +82,7 @@ private:
     void divide_to_subtrees(Indexed<Entry>& entries, const Subtree& tree, std::vector<Subtree>& subtrees);
     void divide_to_leaves(Indexed<Entry>& entries, const Subtree& tree);
     void set_boxes(const Surface& surface, ThreadTeam& team);
+    struct Packet;
     template <class Visit>
     void for_overlapping(const Box& box, int first, const Visit& visit) const;
 

@@ -8,23 +8,19 @@
 #include <cstdint>
 #include <utility>
 
+#include "vcg_core/base/z_order.h"
+
 namespace neuralmesh {
 
 namespace {
 
-/// 21 bits of a coordinate in [-1, 1], with two zero bits after each.
-std::uint64_t spread_bits(float coordinate) {
-    const float scaled = (std::clamp(coordinate, -1.0F, 0.999F) + 1) * 0x1p20F;
-    auto x = static_cast<std::uint64_t>(scaled);
-    x = (x | x << 32) & 0x1f00000000ffffu;
-    x = (x | x << 16) & 0x1f0000ff0000ffu;
-    x = (x | x << 8) & 0x100f00f00f00f00fu;
-    x = (x | x << 4) & 0x10c30c30c30c30c3u;
-    return (x | x << 2) & 0x1249249249249249u;
+/// Of 2^21 cells along [-1, 1].
+std::uint64_t cell_of(float coordinate) {
+    return static_cast<std::uint64_t>((std::clamp(coordinate, -1.0F, 0.999F) + 1) * 0x1p20F);
 }
 
 std::uint64_t morton_code(const vcg::Point3f& p) {
-    return spread_bits(p[0]) | spread_bits(p[1]) << 1 | spread_bits(p[2]) << 2;
+    return z_order(cell_of(p[0]), cell_of(p[1]), cell_of(p[2]));
 }
 
 }  // namespace

@@ -7,19 +7,10 @@
 #include <limits>
 #include <utility>
 
+#include "vcg_core/base/z_order.h"
+
 namespace neuralmesh {
 namespace {
-
-/// Spreads the low 21 bits of \p x: bit i moves to bit 3 i.
-std::uint64_t spread(std::uint64_t x) {
-    x &= 0x1fffff;
-    x = (x | x << 32) & 0x1f00000000ffff;
-    x = (x | x << 16) & 0x1f0000ff0000ff;
-    x = (x | x << 8) & 0x100f00f00f00f00f;
-    x = (x | x << 4) & 0x10c30c30c30c30c3;
-    x = (x | x << 2) & 0x1249249249249249;
-    return x;
-}
 
 /// Of the \p cells along an axis, that at the fraction \p at of the axis.
 std::uint64_t cell_along(float at, std::uint64_t cells) {
@@ -74,7 +65,7 @@ void NearestPoints::sort_points() {
         std::uint64_t code = 0;
         for (int k = 0; k < 3; ++k) {
             const float at = (points_[i][k] - corner_[k]) / side_;
-            code |= spread(cell_along(at, std::uint64_t{1} << levels_)) << k;
+            code |= spread_bits(cell_along(at, std::uint64_t{1} << levels_)) << k;
         }
         keys_[i] = code << (64 - 3 * levels_) | i;
     }

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "vcg_core/base/bits.h"
-#include "vcg_core/base/parallel_for.h"
 
 namespace neuralmesh {
 
@@ -220,16 +219,15 @@ std::optional<TargetSpace> TargetSpace::evenly(const CloudSurvey& survey) const 
     return even;
 }
 
-TargetSpace TargetSpace::moved(Move move, ThreadTeam& team) const {
+TargetSpace TargetSpace::moved(Move move) const {
     TargetSpace result = *this;
-    if (is_exact()) {
-        result.move_ = std::move(move);
-        return result;
-    }
-    constexpr std::size_t kChunk = 512;
-    for_chunks(positions_.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) result.positions_[i] = move(positions_[i]);
-    });
+    result.move_ = std::move(move);
+    return result;
+}
+
+TargetSpace TargetSpace::moved_to(std::vector<vcg::Point3f> positions) const {
+    TargetSpace result = *this;
+    result.positions_ = std::move(positions);
     return result;
 }
 

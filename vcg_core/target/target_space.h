@@ -19,7 +19,6 @@
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/packed_normal.h"
 #include "vcg_core/base/random.h"
-#include "vcg_core/base/thread_team.h"
 #include "vcg_core/target/alias_table.h"
 #include "vcg_core/target/point_areas.h"
 
@@ -90,10 +89,12 @@ public:
 
     using Move = std::function<vcg::Point3f(const vcg::Point3f&)>;
 
-    /// The same target with every signal p at \p move(p), in the same frame. The points of a cloud are moved
-    /// by this call, on the threads of \p team; signals from faces or from a sampler when they are drawn, and
-    /// positions() stays as it is. \p move is called from several threads at a time. O(points)
-    TargetSpace moved(Move move, ThreadTeam& team) const;
+    /// The same target with every signal p at \p move(p), in the same frame. positions() stays as it is.
+    /// \p move is called from several threads at a time. O(points) \pre is_exact()
+    TargetSpace moved(Move move) const;
+    /// The cloud with its points at \p positions, in the same order and the same frame. O(points)
+    /// \pre !is_exact(), as many positions as points
+    TargetSpace moved_to(std::vector<vcg::Point3f> positions) const;
 
     /// The cloud without duplicate points, in the same frame, if more than a tenth of the points are exact
     /// duplicates; nothing otherwise, or for triangles. The share is estimated from samples of about 100,000

@@ -5,23 +5,16 @@
 
 #include <numeric>
 
-#include "vcg_core/base/parallel_for.h"
 #include "vcg_core/mesh/face_tree.h"
 
 namespace neuralmesh {
 namespace {
 
 constexpr int kRings = 4;
-constexpr int kChunk = 1024;  ///< signals per task of a thread
 
 void assign(const Surface& surface, const std::vector<Vector3>& signals, ThreadTeam& team,
             FaceSignals& support) {
-    const FaceTree tree(surface, team);
-    std::vector<Hit> hits(signals.size());
-    parallel_for(static_cast<int>(signals.size()), kChunk, team, [&](int i) {
-        const auto k = static_cast<std::size_t>(i);
-        hits[k] = tree.nearest(signals[k]);
-    });
+    const std::vector<Hit> hits = FaceTree(surface, team).nearest(signals, team);
     support.wins.assign(surface.face_count(), 0);
     for (const Hit& hit : hits) ++support.wins[hit.face];
     support.first.assign(surface.face_count() + 1, 0);

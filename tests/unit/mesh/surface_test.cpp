@@ -163,6 +163,63 @@ TEST(FaceTree, DoesNotDependOnTheNumberOfThreads) {
     }
 }
 
+/// Near the surface, on its vertices, where several faces are equally near, and far away.
+std::vector<Vector3> probes(const Surface& surface, std::size_t count, Random& random) {
+    std::vector<Vector3> points = surface.positions.vector();
+    while (points.size() < count) {
+        const auto v =
+            static_cast<VertexId>(random.below(static_cast<std::uint32_t>(surface.positions.size())));
+        points.push_back(surface.positions[v] + 0.05F * in_cube(random));
+        if (points.size() % 9 == 0) points.back() = 3 * in_cube(random);
+    }
+    return points;
+}
+
+/// Two faces that share the foot may be exchanged where rounding makes one distance smaller.
+void expect_same(const Surface& surface, const Vector3& p, const Hit& found, const Hit& expected) {
+    const Foot foot = foot_on_triangle(p, surface.corner(found.face, 0), surface.corner(found.face, 1),
+                                       surface.corner(found.face, 2));
+    EXPECT_EQ(found.foot.squared_distance, foot.squared_distance);
+    EXPECT_EQ(found.foot.weights, foot.weights);
+    if (found.face == expected.face) return;
+    constexpr float kRounding = 3e-7F;  // of coordinates up to 1
+    EXPECT_NEAR(std::sqrt(found.foot.squared_distance), std::sqrt(expected.foot.squared_distance), kRounding);
+}
+
+// Of all faces, and of some that share no edges.
+TEST(FaceTree, FindsTheNearestFacesOfManyPointsAsOfEach) {
+    const Surface surface(network_of(shapes::torus_grid(40, 20), 0.05));
+    Random random(7);
+    ThreadTeam one(1), three(3);
+    for (const int step : {1, 7, 400})
+        for (const std::size_t count : {1U, 7U, 9U, 4000U}) {
+            const FaceTree tree(surface, every(step, surface));
+            std::vector<Vector3> points = probes(surface, 4000, random);
+            points.resize(count);
+            const std::vector<Hit> hits = tree.nearest(points, one), same = tree.nearest(points, three);
+            ASSERT_EQ(hits.size(), count);
+            for (std::size_t i = 0; i < count; ++i) {
+                expect_same(surface, points[i], hits[i], tree.nearest(points[i]));
+                ASSERT_EQ(same[i].face, hits[i].face) << "point " << i;
+            }
+        }
+}
+
+// Faces without area or extent, and a plane, in which cells have no height.
+TEST(FaceTree, FindsTheNearestFacesOfManyPointsInAPlane) {
+    Random random(8);
+    ThreadTeam team(2);
+    auto flat = shapes::torus_grid(12, 8);
+    for (auto& p : flat.positions) p[2] = 0;
+    for (std::size_t i = 1; i < 9; ++i) flat.positions[i] = flat.positions[0];
+    const Surface surface(network_of(flat));
+    const FaceTree tree(surface);
+    const std::vector<Vector3> points = probes(surface, 1000, random);
+    const std::vector<Hit> hits = tree.nearest(points, team);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        expect_same(surface, points[i], hits[i], tree.nearest(points[i]));
+}
+
 // A vertex is as near to all of its faces.
 TEST(FaceTree, FindsTheFaceOfSmallestIndexAmongEquals) {
     const Surface surface(network_of(shapes::icosphere(2)));
@@ -175,6 +232,8 @@ TEST(FaceTree, FindsNothingWithoutFaces) {
     const Surface surface(network_of(shapes::cube()));
     const FaceTree tree(surface, {});
     EXPECT_EQ(tree.nearest({0, 0, 0}).face, -1);
+    ThreadTeam team(1);
+    EXPECT_EQ(tree.nearest({{0, 0, 0}}, team).at(0).face, -1);
     tree.for_overlapping(surface, 0, [](int) { ADD_FAILURE(); });
 }
 
