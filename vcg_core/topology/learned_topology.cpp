@@ -14,7 +14,7 @@
 namespace neuralmesh {
 namespace {
 
-constexpr std::size_t kSignalsPerVertex = 30;
+constexpr std::size_t kSignalsPerVertex = 20;
 /// With fewer points per vertex, faces without any are common.
 constexpr std::size_t kFewestPerVertex = 8;
 

@@ -57,7 +57,7 @@ struct TopologyEvidence {
     std::vector<Membrane> membranes;
 };
 
-/// The signals are a fair sample of \p target, 30 per vertex. Nothing if the network is open or has less
+/// The signals are a fair sample of \p target, 20 per vertex. Nothing if the network is open or has less
 /// than eight points per vertex. Does not depend on the number of threads. Cost: about that of learning the
 /// signals.
 std::optional<TopologyEvidence> topology_evidence(const Network& network, const TargetSpace& target,

@@ -53,6 +53,8 @@ public:
     Reconnection of_one(const Wide& membrane) const;
     /// The same of two membranes, joined.
     Reconnection of_pair(const Wide& a, const Wide& b) const;
+    /// The same of two membranes as one: the sides of a web, and the faces between them along its free edge.
+    Reconnection of_web(const Wide& a, const Wide& b) const;
     /// The same of three and more.
     Reconnection of_group(const std::vector<const Wide*>& group) const;
     bool may_join(const Membrane& a, const Membrane& b) const;
@@ -167,6 +169,22 @@ Reconnection Search::of_pair(const Wide& a, const Wide& b) const {
     return found.gain >= least ? found : Reconnection();
 }
 
+/// A web may have points at its free edge: those of the corner that it spans are nearest to it.
+Reconnection Search::of_web(const Wide& a, const Wide& b) const {
+    const float least = least_gain(a.front().missing + b.front().missing);
+    Reconnection found;
+    for (std::size_t ring = 1; ring < std::min(a.size(), b.size()); ++ring) {
+        Membrane web = a[ring];
+        web.faces.insert(web.faces.end(), b[ring].faces.begin(), b[ring].faces.end());
+        std::sort(web.faces.begin(), web.faces.end());
+        web.faces.erase(std::unique(web.faces.begin(), web.faces.end()), web.faces.end());
+        if (!complete(surface_, support_, web) || web.rims.size() != 1) continue;
+        Reconnection next = best({&web});
+        if (next.gain >= least && next.gain > found.gain) found = std::move(next);
+    }
+    return found;
+}
+
 Reconnection Search::of_group(const std::vector<const Wide*>& group) const {
     float missing = 0;
     for (const Wide* wide : group) missing += wide->front().missing;
@@ -210,9 +228,12 @@ std::vector<Reconnection> find_reconnections(const Network& network, const Surfa
     };
     for (int a = 0; a < count; ++a) {
         if (membrane(a).certain) keep(search.of_one(widened(a)), {a});
-        for (int b = a + 1; b < count; ++b)
-            if (search.may_join(membrane(a), membrane(b)))
-                keep(search.of_pair(widened(a), widened(b)), {a, b});
+        for (int b = a + 1; b < count; ++b) {
+            if (!search.may_join(membrane(a), membrane(b))) continue;
+            Reconnection change = search.of_pair(widened(a), widened(b));
+            if (change.added.empty()) change = search.of_web(widened(a), widened(b));
+            keep(std::move(change), {a, b});
+        }
     }
     std::vector<std::vector<int>> groups;
     if (in_groups) groups = membrane_groups(surface, membranes, search.edge(), kMostOfGroup);

@@ -20,9 +20,10 @@ struct Reconnection {
 };
 
 /// The best reconnection of every certain membrane, and of every pair of membranes that face each other,
-/// which joins them; those alone that gain enough (see reconnection.cpp), the largest gain first. Membranes
-/// may be widened by one or two rings for it: the surface dents around a hole that it plugs. A joint makes a
-/// handle, or one component of two; closed rims of a tube take a handle away; a membrane with one rim is
+/// which joins them. Where joining gains too little they may be the sides of a web, and are closed as one
+/// with the faces between them. Only those that gain enough (see reconnection.cpp), the largest gain first.
+/// Membranes may be widened by one or two rings: the surface dents around a hole that it plugs. A joint makes
+/// a handle, or one component of two; closed rims of a tube take a handle away; a membrane with one rim is
 /// closed by a smaller surface. A joint that makes a handle also needs a gap that is wide for \p points, and
 /// points wherever one can go around the handle: see corridors.h. If there are no \p points, none is made.
 /// If \p in_groups, three and more membranes may be joined, too, see membrane_groups.h: the openings of one
