@@ -3,6 +3,7 @@
 
 #include "vcg_core/topology/face_signals.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "vcg_core/mesh/face_tree.h"
@@ -77,12 +78,17 @@ PerVertex<float> densities(const Network& network, const Surface& surface, const
 
 std::vector<Vector3> fair_sample(const TargetSpace& target, std::size_t count, Random& random) {
     std::vector<Vector3> signals;
-    const bool all = !target.is_exact() && !target.is_weighted() && target.positions().size() <= count;
-    signals.reserve(all ? target.positions().size() : count);
-    if (all) {
-        for (const vcg::Point3f& p : target.positions()) signals.push_back(to_eigen(p));
-    } else {
+    const std::vector<vcg::Point3f>& points = target.positions();
+    if (target.is_exact() || target.is_weighted()) {
+        signals.reserve(count);
         while (signals.size() < count) signals.push_back(to_eigen(target.sample(random)));
+        return signals;
+    }
+    count = std::min(count, points.size());
+    signals.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t first = i * points.size() / count, end = (i + 1) * points.size() / count;
+        signals.push_back(to_eigen(points[first + random.below(static_cast<std::uint32_t>(end - first))]));
     }
     return signals;
 }

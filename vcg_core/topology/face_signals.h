@@ -15,8 +15,8 @@
 
 namespace neuralmesh {
 
-/// A fair sample of \p target: all its points once if they are no more than \p count and have no weights,
-/// else \p count signals. O(count).
+/// A fair sample of \p target: of a cloud without weights at most \p count points, each once, one of every
+/// few that follow each other; else \p count signals. O(count).
 std::vector<Vector3> fair_sample(const TargetSpace& target, std::size_t count, Random& random);
 
 /// The support of every face of a surface.

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "tests/unit/support/nearest_face.h"
@@ -25,6 +26,20 @@ shapes::Cloud lower_sphere(int count, double top) {
         if (p[2] < top) cloud.push_back(p);
     cloud.emplace_back(0, 0, 1);  // so that the frame is that of the whole sphere
     return cloud;
+}
+
+TEST(FairSample, HasEveryPointOfACloudOnceAtMost) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(1000));
+    Random random(1);
+    std::vector<Vector3> signals = fair_sample(target, 700, random);
+    ASSERT_EQ(signals.size(), 700U);
+    const auto before = [](const Vector3& a, const Vector3& b) {
+        return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+    };
+    std::sort(signals.begin(), signals.end(), before);
+    EXPECT_TRUE(std::adjacent_find(signals.begin(), signals.end()) == signals.end());
+    EXPECT_EQ(fair_sample(target, 1001, random).size(), 1000U);
+    EXPECT_EQ(fair_sample(target_of(shapes::cube()), 1001, random).size(), 1001U) << "drawn from faces";
 }
 
 TEST(FaceSignals, GiveEverySignalToTheNearestFace) {
