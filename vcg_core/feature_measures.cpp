@@ -10,7 +10,10 @@ namespace neuralmesh {
 FeatureMeasures measures_of(const Learner& learner, const CreaseMeasure& observed, const Network& shown,
                             const PerVertex<VertexId>& source, const Settings& settings) {
     FeatureMeasures measures;
-    if (settings.uses(kCreaseMeasure)) measures.creases = observed.values(learner.network(), shown, source);
+    if (settings.uses(kCreaseMeasure)) {
+        ThreadTeam team(thread_count(settings.threads));
+        measures.creases = observed.values(learner.network(), shown, source, team);
+    }
     if (!settings.uses(kFeatureCounter)) return measures;
     measures.normal_counters.resize(shown.slot_count());
     for (const VertexId v : shown.vertices())

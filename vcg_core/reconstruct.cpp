@@ -154,7 +154,9 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     note_topology(task, learned, mesh.report);
     warn_if_not_opened(settings, mesh.report);
     Random random(stream_seed(settings.random_seed, Stream::rms_error));
-    mesh.report.rms_error = 100 * rms_distance(task.target(), learned.network, kDistanceSamples, random);
+    ThreadTeam team(thread_count(settings.threads));
+    mesh.report.rms_error =
+        100 * rms_distance(task.target(), learned.network, kDistanceSamples, random, team);
     mesh.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return mesh;
 }

@@ -11,19 +11,24 @@
 
 namespace neuralmesh {
 
-double rms_distance(const TargetSpace& target, const Network& network, int samples, Random& random) {
-    const Surface surface(network);
-    const FaceTree tree(surface);
-    double sum = 0, weights = 0;
-    const auto add = [&](const vcg::Point3f& point, double weight) {
-        sum += weight * static_cast<double>(tree.nearest(to_eigen(point)).foot.squared_distance);
-        weights += weight;
-    };
-    const std::vector<vcg::Point3f>& points = target.positions();
-    if (!target.is_exact() && points.size() <= static_cast<std::size_t>(samples)) {
-        for (std::size_t i = 0; i < points.size(); ++i) add(points[i], static_cast<double>(target.weight(i)));
+double rms_distance(const TargetSpace& target, const Network& network, int samples, Random& random,
+                    ThreadTeam& team) {
+    const std::vector<vcg::Point3f>& positions = target.positions();
+    const auto count = static_cast<std::size_t>(samples);
+    const bool all = !target.is_exact() && positions.size() <= count;
+    std::vector<Vector3> points;
+    points.reserve(all ? positions.size() : count);
+    if (all) {
+        for (const vcg::Point3f& p : positions) points.push_back(to_eigen(p));
     } else {
-        for (int i = 0; i < samples; ++i) add(target.sample(random), 1);
+        while (points.size() < count) points.push_back(to_eigen(target.sample(random)));
+    }
+    const std::vector<Hit> hits = FaceTree(Surface(network), team).nearest(points, team);
+    double sum = 0, weights = 0;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        const double weight = all ? static_cast<double>(target.weight(i)) : 1;
+        sum += weight * static_cast<double>(hits[i].foot.squared_distance);
+        weights += weight;
     }
     return std::sqrt(sum / weights);
 }

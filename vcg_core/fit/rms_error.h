@@ -5,6 +5,7 @@
 #pragma once
 
 #include "vcg_core/base/random.h"
+#include "vcg_core/base/thread_team.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/target/target_space.h"
 
@@ -12,8 +13,9 @@ namespace neuralmesh {
 
 /// Root mean square distance of \p target from the nearest faces of \p network, in the core's frame (1 is the
 /// diagonal of the bounding box): of all points, each by its weight, if \p target is a cloud of at most
-/// \p samples points; else of \p samples random ones. O((faces + samples) log faces) expected.
-/// \pre \p network has a face; samples > 0
-double rms_distance(const TargetSpace& target, const Network& network, int samples, Random& random);
+/// \p samples points; else of \p samples random ones. Does not depend on the number of threads. O((faces +
+/// samples) log faces) expected. \pre \p network has a face; samples > 0
+double rms_distance(const TargetSpace& target, const Network& network, int samples, Random& random,
+                    ThreadTeam& team);
 
 }  // namespace neuralmesh

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vcg_core/base/parallel_for.h"
 #include "vcg_core/learning/filtered_faces.h"
 #include "vcg_core/learning/two_planes.h"
 
@@ -38,15 +39,23 @@ VertexId source_of(const PerVertex<VertexId>& source, VertexId v) { return sourc
 /// f of every vertex of \p shown, by the planes of \p faces, those of \p base. Vertex v of \p shown lies near
 /// source[v] of \p base and has the normal spread spreads[v].
 PerVertex<float> crease_strengths(const Network& base, const FilteredFaces& faces, const Network& shown,
-                                  const PerVertex<VertexId>& source, const PerVertex<float>& spreads) {
-    TwoPlanes planes(base, faces);
+                                  const PerVertex<VertexId>& source, const PerVertex<float>& spreads,
+                                  ThreadTeam& team) {
+    constexpr std::size_t kLeastChunk = 512, kMostChunks = 16;  // each has TwoPlanes, O(faces)
+    const auto slots = static_cast<std::size_t>(shown.slot_count());
+    const std::size_t chunk = std::max(kLeastChunk, (slots + kMostChunks - 1) / kMostChunks);
     PerVertex<float> result(shown.slot_count(), 0);
-    for (const VertexId v : shown.vertices()) {
-        const Crease crease =
-            planes.crease_near(shown.position(v), mean_edge_at(shown, v), source_of(source, v));
-        const float strength = kUnit * crease.turn * std::sqrt(std::sqrt(spreads[v]));
-        result[v] = strength / (1 + std::max(kLeastFall, strength - 1) * 4 * crease.squared_distance);
-    }
+    for_chunks(slots, chunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
+        TwoPlanes planes(base, faces);
+        for (auto v = static_cast<VertexId>(begin); v < static_cast<VertexId>(end); ++v) {
+            if (!shown.alive(v)) continue;
+            const Crease crease =
+                planes.crease_near(shown.position(v), mean_edge_at(shown, v), source_of(source, v));
+            const float strength = kUnit * crease.turn * std::sqrt(std::sqrt(spreads[v]));
+            const float fall = std::max(kLeastFall, strength - 1);
+            result[v] = strength / (1 + fall * 4 * crease.squared_distance);
+        }
+    });
     return result;
 }
 
@@ -72,14 +81,16 @@ void CreaseMeasure::add(const CreaseMeasure& other) {
     moments_ += other.moments_;
 }
 
-PerVertex<float> CreaseMeasure::values(const Network& learned) const { return values(learned, learned, {}); }
+PerVertex<float> CreaseMeasure::values(const Network& learned, ThreadTeam& team) const {
+    return values(learned, learned, {}, team);
+}
 
 PerVertex<float> CreaseMeasure::values(const Network& learned, const Network& shown,
-                                       const PerVertex<VertexId>& source) const {
+                                       const PerVertex<VertexId>& source, ThreadTeam& team) const {
     if (moments_ == 0) {
         CreaseMeasure now;
         now.observe(learned);
-        return now.values(learned, shown, source);
+        return now.values(learned, shown, source, team);
     }
     const auto moments = static_cast<float>(moments_);
     PerVertex<Point3f> means = position_sums_;
@@ -87,9 +98,9 @@ PerVertex<float> CreaseMeasure::values(const Network& learned, const Network& sh
     PerVertex<float> spreads(shown.slot_count(), 0);
     for (const VertexId v : shown.vertices()) spreads[v] = spread_sums_[source_of(source, v)] / moments;
 
-    PerVertex<float> result = crease_strengths(learned, {learned, means}, shown, source, spreads);  // f
+    PerVertex<float> result = crease_strengths(learned, {learned, means}, shown, source, spreads, team);  // f
     if (!source.empty()) {
-        const PerVertex<float> g = crease_strengths(shown, FilteredFaces(shown), shown, {}, spreads);
+        const PerVertex<float> g = crease_strengths(shown, FilteredFaces(shown), shown, {}, spreads, team);
         for (VertexId v = 0; v < result.size(); ++v)
             result[v] = std::sqrt(result[v] * std::sqrt(result[v] * g[v]));
     }

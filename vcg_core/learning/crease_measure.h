@@ -6,6 +6,7 @@
 
 #include <vcg/space/point3.h>
 
+#include "vcg_core/base/thread_team.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
@@ -41,13 +42,13 @@ public:
     int moments() const { return moments_; }
 
     /// The value of every slot of \p learned, the network observed; 0 for free slots. Without a moment, its
-    /// present positions count as one. O(vertices).
-    PerVertex<float> values(const Network& learned) const;
+    /// present positions count as one. Does not depend on the number of threads. O(vertices).
+    PerVertex<float> values(const Network& learned, ThreadTeam& team) const;
     /// The values of \p shown, the network after the fit: its vertex v lies near the vertex source[v] of
     /// \p learned. Distances are measured from the positions, and in the edges, of \p shown. If \p source is
     /// empty, every vertex has the same id in both networks, and g = f. O(vertices).
-    PerVertex<float> values(const Network& learned, const Network& shown,
-                            const PerVertex<VertexId>& source) const;
+    PerVertex<float> values(const Network& learned, const Network& shown, const PerVertex<VertexId>& source,
+                            ThreadTeam& team) const;
 
 private:
     PerVertex<vcg::Point3f> position_sums_;

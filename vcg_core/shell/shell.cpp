@@ -247,7 +247,8 @@ Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& ran
     const Box3f box = main_box(points);
 
     progress(0.2, "Start mesh: counting components and handles");
-    const std::vector<LayerPlace> places = layer_places(CloudSurvey(points, options.threads));
+    ThreadTeam team(thread_count(options.threads));
+    const std::vector<LayerPlace> places = layer_places(CloudSurvey(points, options.threads), team);
     examined->survey = survey_lattices(points, places, box, options);
     examined->enclosure = enclosure_of(examined->survey, places);
     examined_ = std::move(examined);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "vcg_core/base/parallel_for.h"
 #include "vcg_core/target/neighbour_scatter.h"
 
 namespace neuralmesh {
@@ -74,20 +75,22 @@ void find_opposite_layers(const NearestPoints& cloud, NearestPoints::Place place
 
 }  // namespace
 
-std::vector<LayerPlace> layer_places(const CloudSurvey& survey) {
+std::vector<LayerPlace> layer_places(const CloudSurvey& survey, ThreadTeam& team) {
+    constexpr int kPlacesAtATime = 16;
     const NearestPoints& cloud = survey.cloud;
     const std::size_t step = std::max<std::size_t>(1, cloud.size() / kPlaces);
-    std::vector<NearestPoints::Neighbour> near;
-    std::vector<LayerPlace> places;
-    for (std::size_t i = step / 2; i < cloud.size(); i += step) {
-        const auto place = static_cast<NearestPoints::Place>(i);
-        cloud.nearest(place, kNeighbours, near);
-        if (near.size() < static_cast<std::size_t>(kNeighbours)) continue;
-        LayerPlace found{cloud.point(place), normal_of(cloud, place, near)};
-        find_opposite_layers(cloud, place, std::sqrt(near.back().squared_distance), found);
-        places.push_back(found);
-    }
-    return places;
+    const std::size_t count = (cloud.size() + step - 1 - step / 2) / step;
+    return parallel_collect<LayerPlace>(
+        static_cast<int>(count), kPlacesAtATime, team, [&](int i, std::vector<LayerPlace>& places) {
+            const auto place =
+                static_cast<NearestPoints::Place>(step / 2 + static_cast<std::size_t>(i) * step);
+            std::vector<NearestPoints::Neighbour> near;
+            cloud.nearest(place, kNeighbours, near);
+            if (near.size() < static_cast<std::size_t>(kNeighbours)) return;
+            LayerPlace found{cloud.point(place), normal_of(cloud, place, near)};
+            find_opposite_layers(cloud, place, std::sqrt(near.back().squared_distance), found);
+            places.push_back(found);
+        });
 }
 
 double share_with_opposite_layer(const std::vector<LayerPlace>& places) {

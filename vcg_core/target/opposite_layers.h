@@ -9,6 +9,7 @@
 
 #include <vector>
 
+#include "vcg_core/base/thread_team.h"
 #include "vcg_core/target/cloud_survey.h"
 
 namespace neuralmesh {
@@ -26,8 +27,8 @@ struct LayerPlace {
 /// About 1,000 places of the cloud, in the order of space. Opposite layers are looked for up to some twenty
 /// spacings away: the other side of a wall, or of a gap. Layers less than some three spacings apart, or
 /// closer than the noise lets tell, count as one. Points with too few neighbours for a plane are no places.
-/// O(places x 2,000 points).
-std::vector<LayerPlace> layer_places(const CloudSurvey& survey);
+/// Does not depend on the number of threads. O(places x 2,000 points).
+std::vector<LayerPlace> layer_places(const CloudSurvey& survey, ThreadTeam& team);
 
 /// The share of \p places that have an opposite layer at most some eight spacings away.
 double share_with_opposite_layer(const std::vector<LayerPlace>& places);

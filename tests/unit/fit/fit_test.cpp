@@ -30,7 +30,8 @@ FitReport fit(Network& network, const TargetSpace& target, const FitOptions& opt
 
 double rms(const TargetSpace& target, const Network& network) {
     Random random(9);
-    return rms_distance(target, network, 5000, random);
+    ThreadTeam team(1);
+    return rms_distance(target, network, 5000, random, team);
 }
 
 /// The largest angle between the normals of neighbouring faces, as a cosine.

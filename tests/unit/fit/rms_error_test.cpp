@@ -21,12 +21,15 @@ TEST(RmsError, IsThatOfAllPointsOfASmallCloud) {
     const TargetSpace target = targets::target_of(cloud);
     const Network sphere = targets::network_in_frame(target, shapes::icosphere(5));
     const double unit = 1 / target.frame().diagonal;
+    ThreadTeam team(1), three(3);
     for (const std::uint32_t seed : {1U, 2U, 3U}) {
         Random random(seed);
-        EXPECT_NEAR(rms_distance(target, sphere, 100, random), 0.2 * unit, 2e-4 * unit);
+        EXPECT_NEAR(rms_distance(target, sphere, 100, random, team), 0.2 * unit, 2e-4 * unit);
     }
-    Random one(1), other(2);
-    EXPECT_NE(rms_distance(target, sphere, 99, one), rms_distance(target, sphere, 99, other));
+    Random one(1), other(2), again(2);
+    EXPECT_NE(rms_distance(target, sphere, 99, one, team), rms_distance(target, sphere, 99, other, team));
+    Random same(2);
+    EXPECT_EQ(rms_distance(target, sphere, 99, again, team), rms_distance(target, sphere, 99, same, three));
 }
 
 }  // namespace

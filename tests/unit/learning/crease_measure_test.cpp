@@ -33,7 +33,8 @@ struct Learned {
             if (sweep >= 6) measure.observe(learner.network());
         }
         network = learner.network();
-        values = measure.values(network);
+        ThreadTeam team(1);
+        values = measure.values(network, team);
     }
 
     double mean_edge() const {
@@ -115,7 +116,8 @@ TEST(CreaseMeasure, FindsNothingOnAPlane) {
     const Network network = referee::network_of(shapes::grid(12, 9));
     CreaseMeasure measure;
     measure.observe(network);
-    for (const float value : measure.values(network)) EXPECT_LT(value, 1e-3F);
+    ThreadTeam team(1);
+    for (const float value : measure.values(network, team)) EXPECT_LT(value, 1e-3F);
 }
 
 TEST(CreaseMeasure, IsIndifferentToScale) {
@@ -127,8 +129,9 @@ TEST(CreaseMeasure, IsIndifferentToScale) {
     of_small.observe(run.network);
     of_large.observe(large);
     EXPECT_EQ(of_small.moments(), 1);
-    const PerVertex<float> a = of_small.values(run.network);
-    const PerVertex<float> b = of_large.values(large);
+    ThreadTeam team(1);
+    const PerVertex<float> a = of_small.values(run.network, team);
+    const PerVertex<float> b = of_large.values(large, team);
     EXPECT_GT(*std::max_element(a.begin(), a.end()), 1.0F);
     for (VertexId v = 0; v < a.size(); ++v) EXPECT_NEAR(a[v], b[v], 1e-4F);
 }
@@ -140,7 +143,9 @@ TEST(CreaseMeasure, MeasuresAMovedVertexWhereItLies) {
     const CreaseMeasure none;
     CreaseMeasure one;
     one.observe(run.network);
-    EXPECT_EQ(none.values(run.network), one.values(run.network));
+    ThreadTeam team(1), three(3);
+    EXPECT_EQ(one.values(run.network, team), one.values(run.network, three));
+    EXPECT_EQ(none.values(run.network, team), one.values(run.network, team));
 
     const double half = 0.5 / std::sqrt(3.0);
     PerVertex<VertexId> source(run.network.slot_count());
@@ -159,8 +164,8 @@ TEST(CreaseMeasure, MeasuresAMovedVertexWhereItLies) {
     const vcg::Point3f p = moved.position(nearest);
     const auto edge = static_cast<float>(run.mean_edge());
     moved.set_position(nearest, p - vcg::Point3f(0, edge, 0));
-    const float there = one.values(run.network)[nearest];
-    const float aside = one.values(run.network, moved, source)[nearest];
+    const float there = one.values(run.network, team)[nearest];
+    const float aside = one.values(run.network, moved, source, team)[nearest];
     EXPECT_GT(there, 1.0F);
     EXPECT_LT(aside, 0.5F * there);
 }

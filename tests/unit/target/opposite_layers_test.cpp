@@ -19,7 +19,8 @@ constexpr int kPoints = 20000;
 double share_of(const shapes::Cloud& cloud) {
     std::vector<vcg::Point3f> points;
     for (const vcg::Point3d& p : cloud) points.push_back(vcg::Point3f::Construct(p));
-    return share_with_opposite_layer(layer_places(CloudSurvey(points, 1)));
+    ThreadTeam team(1);
+    return share_with_opposite_layer(layer_places(CloudSurvey(points, 1), team));
 }
 
 /// A sphere of \p kPoints points and another one within it, \p spacings spacings of the points away.
@@ -47,6 +48,20 @@ TEST(OppositeLayers, OfOneLayerAreNone) {
     const double spacing = std::sqrt(4 * M_PI / kPoints);
     for (const double noise : {0.5, 1.0, 2.0})
         EXPECT_LT(share_of(shapes::sphere_cloud(kPoints, noise * spacing)), 0.2) << noise;
+}
+
+TEST(OppositeLayers, DoNotDependOnTheThreads) {
+    std::vector<vcg::Point3f> points;
+    for (const vcg::Point3d& p : two_spheres(5)) points.push_back(vcg::Point3f::Construct(p));
+    ThreadTeam one(1), three(3);
+    const CloudSurvey survey(points, 1);
+    const std::vector<LayerPlace> places = layer_places(survey, one), same = layer_places(survey, three);
+    ASSERT_EQ(places.size(), same.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        EXPECT_EQ(places[i].position, same[i].position);
+        EXPECT_EQ(places[i].above, same[i].above);
+        EXPECT_EQ(places[i].below, same[i].below);
+    }
 }
 
 TEST(OppositeLayers, OfCloudsWithoutASurfaceAreNone) {
