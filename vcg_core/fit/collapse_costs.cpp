@@ -9,10 +9,12 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/face_rules.h"
 #include "vcg_core/fit/support.h"
+#include "vcg_core/mesh/triangle_lanes.h"
 
 namespace neuralmesh {
 
@@ -22,6 +24,58 @@ constexpr int kChunk = 128;
 constexpr int kStarPoints = 64;         ///< about as many points of a star are measured
 constexpr float kExaminedShare = 0.4F;  ///< of the vertices
 constexpr int kTries = 3;               ///< neighbours to collapse into
+
+constexpr std::size_t kLanes = 8;
+
+/// Points of the faces around a vertex, one of every few.
+struct StarPoints {
+    void add(const PointsByFace::Assignment& point) {
+        const std::size_t lane = points.size() % kLanes;
+        if (lane == 0) packets.emplace_back();
+        packets.back().x[lane] = point.point[0];
+        packets.back().y[lane] = point.point[1];
+        packets.back().z[lane] = point.point[2];
+        points.push_back(&point);
+    }
+
+    Support::Patch patch;                                 ///< of all points
+    int step = 1;                                         ///< points that each one here stands for
+    std::vector<const PointsByFace::Assignment*> points;  ///< face by face
+    std::vector<std::size_t> face_ends;                   ///< where those of the faces end
+    std::vector<EightVectors> packets;                    ///< the positions of the points
+};
+
+/// The faces of a star that are left when its vertex goes into a neighbour.
+struct NewFaces {
+    struct Face {
+        Vector3 ab, ac;
+        int position;  ///< in the ring
+    };
+    Vector3 corner;  ///< the neighbour
+    std::array<Face, Ring::kMaxValence> edges;
+    std::size_t count = 0;
+};
+
+/// The nearest of the faces for each of eight points.
+struct NearestOfEight {
+    Eight squared_distance;
+    EightInts position;
+};
+
+NEURALMESH_MULTIVERSIONED void find_nearest(const NewFaces& faces, const EightVectors& points,
+                                            NearestOfEight& nearest) {
+    const EightVectors ap{points.x - faces.corner[0], points.y - faces.corner[1], points.z - faces.corner[2]};
+    nearest.squared_distance = Eight{} + std::numeric_limits<float>::max();
+    nearest.position = EightInts{};
+    for (std::size_t i = 0; i < faces.count; ++i) {
+        const NewFaces::Face& face = faces.edges[i];
+        Eight squared;
+        squared_distance_to_triangle(face.ab, face.ac, ap, squared);
+        const EightInts better = squared < nearest.squared_distance;
+        choose(better, squared, nearest.squared_distance, nearest.squared_distance);
+        choose(better, EightInts{} + face.position, nearest.position, nearest.position);
+    }
+}
 
 /// Measures the collapses of vertices.
 class CollapseCosts {
@@ -37,12 +91,14 @@ public:
         for (VertexId u : network_.ring(v))
             if (network_.can_collapse(v, u)) order[count++] = {quadric(v, u), u};
         std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
+        if (count == 0) return best;
+        const StarPoints star = points_around(v);
         int tries = 0;
         for (std::size_t i = 0; i < count && tries < kTries; ++i) {
             const VertexId into = order[i].second;
             if (!keeps_shape(v, into)) continue;
             ++tries;
-            const float cost = cost_of(v, into, best.cost);
+            const float cost = cost_of(star, v, into, best.cost);
             if (cost < best.cost) best = {cost, v, into};
         }
         return best;
@@ -51,7 +107,7 @@ public:
     /// About the least cost of removing \p v: the smallest quadric of its neighbours times the density of the
     /// points. 0 where the star lacks points or has no area.
     float estimate(VertexId v) const {
-        const Support::Patch around = star(v);
+        const Support::Patch around = patch_of(v);
         if (around.missing_points > 0 || network_.ring(v).valence == 0 || !(around.twice_area > 0)) return 0;
         float least = Collapse::kForbidden;
         for (VertexId u : network_.ring(v)) least = std::min(least, quadric(v, u));
@@ -102,46 +158,63 @@ private:
         return keeps;
     }
 
-    Support::Patch star(VertexId v) const {
+    Support::Patch patch_of(VertexId v) const {
         Support::Patch result;
         for (int f : surface_.faces_around(v))
             support_.add(result, surface_.faces[f], area_vector(surface_, f).norm(), points_.of(f).size());
         return result;
     }
 
-    /// Rise of the sum of squared distances of the points around \p v when it goes into \p u; a value of at
-    /// least \p bound if it is not less, or if surface would stretch over where there are no points.
-    float cost_of(VertexId v, VertexId u, float bound) const {
-        const Support::Patch before = star(v);
-        const int step = std::max(1, before.points / kStarPoints);
-        std::array<int, Ring::kMaxValence> counts{};  // points of the new faces, by ring position
-        float sum = 0;
+    StarPoints points_around(VertexId v) const {
+        StarPoints star;
+        star.patch = patch_of(v);
+        star.step = std::max(1, star.patch.points / kStarPoints);
         int next = 0;
         for (int f : surface_.faces_around(v)) {
             const Span<const PointsByFace::Assignment> of_face = points_.of(f);
-            for (; next < of_face.size(); next += step) {
-                float least = std::numeric_limits<float>::max();
-                std::size_t nearest = 0;
-                for_new_faces(v, u, [&](int i, VertexId a, VertexId b) {
-                    const float d =
-                        foot_on_triangle(of_face[next].point, at(u), at(a), at(b)).squared_distance;
-                    if (d < least) nearest = static_cast<std::size_t>(i);
-                    least = std::min(least, d);
-                });
-                counts[nearest] += step;
-                sum += of_face[next].influence * (least - of_face[next].foot.squared_distance) *
-                       static_cast<float>(step);
-            }
+            for (; next < of_face.size(); next += star.step) star.add(of_face[next]);
             next -= of_face.size();
+            star.face_ends.push_back(star.points.size());
+        }
+        return star;
+    }
+
+    NewFaces new_faces(VertexId v, VertexId u) const {
+        NewFaces faces;
+        faces.corner = at(u);
+        for_new_faces(v, u, [&](int i, VertexId a, VertexId b) {
+            faces.edges[faces.count++] = {at(a) - at(u), at(b) - at(u), i};
+        });
+        return faces;
+    }
+
+    /// Rise of the sum of squared distances of the points around \p v when it goes into \p u; a value of at
+    /// least \p bound if it is not less, or if surface would stretch over where there are no points.
+    float cost_of(const StarPoints& star, VertexId v, VertexId u, float bound) const {
+        const NewFaces faces = new_faces(v, u);
+        std::array<int, Ring::kMaxValence> counts{};  // points of the new faces, by ring position
+        float sum = 0;
+        NearestOfEight nearest;
+        std::size_t next = 0;
+        for (const std::size_t end : star.face_ends) {
+            for (; next < end; ++next) {
+                const std::size_t lane = next % kLanes;
+                if (lane == 0) find_nearest(faces, star.packets[next / kLanes], nearest);
+                const PointsByFace::Assignment& point = *star.points[next];
+                counts[static_cast<std::size_t>(nearest.position[lane])] += star.step;
+                sum += point.influence * (nearest.squared_distance[lane] - point.foot.squared_distance) *
+                       static_cast<float>(star.step);
+            }
             // A heuristic: the points of the remaining faces rarely lower the sum by half.
             if (sum > 2 * bound) return sum;
         }
+        const Support::Patch& before = star.patch;
         Support::Patch after;
         for_new_faces(v, u, [&](int i, VertexId a, VertexId b) {
             support_.add(after, {u, a, b}, area_vector(at(u), at(a), at(b)).norm(),
                          counts[static_cast<std::size_t>(i)]);
         });
-        float cost = std::max(sum, 0.0F) + support_.cost_of_change(before, after, step);
+        float cost = std::max(sum, 0.0F) + support_.cost_of_change(before, after, star.step);
         if (before.twice_area > 0)
             cost += static_cast<float>(before.points) * beyond_boundary(v, u) / (before.twice_area / 2);
         return cost;

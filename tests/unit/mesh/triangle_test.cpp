@@ -7,10 +7,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "tests/unit/support/shapes.h"
+#include "vcg_core/mesh/triangle_lanes.h"
 
 namespace neuralmesh {
 namespace {
@@ -75,6 +77,36 @@ TEST(FootOnTriangle, GivesCornersWithoutAPartTheWeightZero) {
     EXPECT_EQ(foot_on_triangle(Vector3(0.5F, -1, 0), a, b, c).weights[2], 0);
     EXPECT_EQ(foot_on_triangle(Vector3(-1, 0.5F, 0), a, b, c).weights[1], 0);
     EXPECT_EQ(foot_on_triangle(Vector3(1, 1, 0), a, b, c).weights[0], 0);
+}
+
+/// Of a lattice of few places, so that triangles may be degenerate, and points lie on borders of regions.
+Vector3 on_lattice(Random& random) {
+    const auto coordinate = [&] { return 0.25F * static_cast<float>(random.below(5)) - 0.5F; };
+    const float x = coordinate(), y = coordinate();
+    return {x, y, coordinate()};
+}
+
+TEST(SquaredDistanceToTriangle, HasTheBitsOfTheFoot) {
+    Random random(11);
+    for (int run = 0; run < 20000; ++run) {
+        const auto place = [&] { return run % 2 == 0 ? on_lattice(random) : in_cube(random); };
+        const Vector3 ab = place(), ac = place();
+        std::array<Vector3, 8> points;
+        EightVectors lanes;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            points[i] = place();
+            lanes.x[i] = points[i][0];
+            lanes.y[i] = points[i][1];
+            lanes.z[i] = points[i][2];
+        }
+        Eight squared;
+        squared_distance_to_triangle(ab, ac, lanes, squared);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const float expected = foot_on_triangle(ab, ac, points[i]).squared_distance;
+            ASSERT_TRUE(squared[i] == expected || (std::isnan(squared[i]) && std::isnan(expected)))
+                << squared[i] << " for " << expected << ", run " << run;
+        }
+    }
 }
 
 TEST(Triangle, HasItsNormalOnTheSideFromWhichItIsCounterClockwise) {
