@@ -7,14 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/face_rules.h"
+#include "vcg_core/fit/few_faces.h"
 #include "vcg_core/fit/support.h"
-#include "vcg_core/mesh/triangle_lanes.h"
 
 namespace neuralmesh {
 
@@ -25,16 +24,12 @@ constexpr int kStarPoints = 64;         ///< about as many points of a star are 
 constexpr float kExaminedShare = 0.4F;  ///< of the vertices
 constexpr int kTries = 3;               ///< neighbours to collapse into
 
-constexpr std::size_t kLanes = 8;
-
 /// Points of the faces around a vertex, one of every few.
 struct StarPoints {
     void add(const PointsByFace::Assignment& point) {
-        const std::size_t lane = points.size() % kLanes;
+        const std::size_t lane = points.size() % PointPacket::kPoints;
         if (lane == 0) packets.emplace_back();
-        packets.back().x[lane] = point.point[0];
-        packets.back().y[lane] = point.point[1];
-        packets.back().z[lane] = point.point[2];
+        packets.back().set(lane, point.point);
         points.push_back(&point);
     }
 
@@ -42,40 +37,8 @@ struct StarPoints {
     int step = 1;                                         ///< points that each one here stands for
     std::vector<const PointsByFace::Assignment*> points;  ///< face by face
     std::vector<std::size_t> face_ends;                   ///< where those of the faces end
-    std::vector<EightVectors> packets;                    ///< the positions of the points
+    std::vector<PointPacket> packets;                     ///< the same points
 };
-
-/// The faces of a star that are left when its vertex goes into a neighbour.
-struct NewFaces {
-    struct Face {
-        Vector3 ab, ac;
-        int position;  ///< in the ring
-    };
-    Vector3 corner;  ///< the neighbour
-    std::array<Face, Ring::kMaxValence> edges;
-    std::size_t count = 0;
-};
-
-/// The nearest of the faces for each of eight points.
-struct NearestOfEight {
-    Eight squared_distance;
-    EightInts position;
-};
-
-NEURALMESH_MULTIVERSIONED void find_nearest(const NewFaces& faces, const EightVectors& points,
-                                            NearestOfEight& nearest) {
-    const EightVectors ap{points.x - faces.corner[0], points.y - faces.corner[1], points.z - faces.corner[2]};
-    nearest.squared_distance = Eight{} + std::numeric_limits<float>::max();
-    nearest.position = EightInts{};
-    for (std::size_t i = 0; i < faces.count; ++i) {
-        const NewFaces::Face& face = faces.edges[i];
-        Eight squared;
-        squared_distance_to_triangle(face.ab, face.ac, ap, squared);
-        const EightInts better = squared < nearest.squared_distance;
-        choose(better, squared, nearest.squared_distance, nearest.squared_distance);
-        choose(better, EightInts{} + face.position, nearest.position, nearest.position);
-    }
-}
 
 /// Measures the collapses of vertices.
 class CollapseCosts {
@@ -179,29 +142,21 @@ private:
         return star;
     }
 
-    NewFaces new_faces(VertexId v, VertexId u) const {
-        NewFaces faces;
-        faces.corner = at(u);
-        for_new_faces(v, u, [&](int i, VertexId a, VertexId b) {
-            faces.edges[faces.count++] = {at(a) - at(u), at(b) - at(u), i};
-        });
-        return faces;
-    }
-
     /// Rise of the sum of squared distances of the points around \p v when it goes into \p u; a value of at
     /// least \p bound if it is not less, or if surface would stretch over where there are no points.
     float cost_of(const StarPoints& star, VertexId v, VertexId u, float bound) const {
-        const NewFaces faces = new_faces(v, u);
+        FewFaces faces;
+        for_new_faces(v, u, [&](int i, VertexId a, VertexId b) { faces.add(at(u), at(a), at(b), i); });
         std::array<int, Ring::kMaxValence> counts{};  // points of the new faces, by ring position
         float sum = 0;
-        NearestOfEight nearest;
+        FewFaces::Nearest nearest;
         std::size_t next = 0;
         for (const std::size_t end : star.face_ends) {
             for (; next < end; ++next) {
-                const std::size_t lane = next % kLanes;
-                if (lane == 0) find_nearest(faces, star.packets[next / kLanes], nearest);
+                const std::size_t lane = next % PointPacket::kPoints;
+                if (lane == 0) faces.find_nearest(star.packets[next / PointPacket::kPoints], nearest);
                 const PointsByFace::Assignment& point = *star.points[next];
-                counts[static_cast<std::size_t>(nearest.position[lane])] += star.step;
+                counts[static_cast<std::size_t>(nearest.label[lane])] += star.step;
                 sum += point.influence * (nearest.squared_distance[lane] - point.foot.squared_distance) *
                        static_cast<float>(star.step);
             }

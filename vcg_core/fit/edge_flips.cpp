@@ -9,6 +9,7 @@
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/face_rules.h"
+#include "vcg_core/fit/few_faces.h"
 #include "vcg_core/fit/support.h"
 
 namespace neuralmesh {
@@ -101,18 +102,31 @@ private:
 
     /// \return -Support::kForbidden for a flip that would stretch surface over where there are no points
     float distance_drop(const Quad& q) const {
+        constexpr int kInPacket = static_cast<int>(PointPacket::kPoints);
+        constexpr int kF = 0, kG = 1;
+        FewFaces faces;  // of equally near ones that of g counts
+        faces.add(at(q.d), at(q.c), at(q.a), kG);
+        faces.add(at(q.c), at(q.d), at(q.b), kF);
         float drop = 0;
-        int count = 0;
         int count_f = 0;
         for (int face : {q.f, q.g}) {
-            for (const PointsByFace::Assignment& point : points_.of(face)) {
-                const float f = foot_on_triangle(point.point, at(q.c), at(q.d), at(q.b)).squared_distance;
-                const float g = foot_on_triangle(point.point, at(q.d), at(q.c), at(q.a)).squared_distance;
-                drop += point.influence * (point.foot.squared_distance - std::min(f, g));
-                ++count;
-                count_f += f < g ? 1 : 0;
+            const Span<const PointsByFace::Assignment> points = points_.of(face);
+            for (int first = 0; first < points.size(); first += kInPacket) {
+                const int end = std::min(first + kInPacket, points.size());
+                PointPacket packet;
+                for (int i = first; i < end; ++i)
+                    packet.set(static_cast<std::size_t>(i - first), points[i].point);
+                FewFaces::Nearest nearest;
+                faces.find_nearest(packet, nearest);
+                for (int i = first; i < end; ++i) {
+                    const auto lane = static_cast<std::size_t>(i - first);
+                    drop += points[i].influence *
+                            (points[i].foot.squared_distance - nearest.squared_distance[lane]);
+                    count_f += nearest.label[lane] == kF ? 1 : 0;
+                }
             }
         }
+        const int count = points_.of(q.f).size() + points_.of(q.g).size();
         Support::Patch before;
         Support::Patch after;
         add(before, {q.a, q.b, q.c}, points_.of(q.f).size());
