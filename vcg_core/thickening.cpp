@@ -41,13 +41,12 @@ std::optional<TargetSpace> Thickening::thicker(const LearningTask& task, ThreadT
     if (target.is_exact())
         return target.moved(
             [this](const vcg::Point3f& p) { return p + to_vcg(move_at(tree_->nearest(to_eigen(p)))); });
-    std::vector<Vector3> points;
-    points.reserve(target.positions().size());
-    for (const vcg::Point3f& p : target.positions()) points.push_back(to_eigen(p));
-    const std::vector<Vector3> moves = moves_at(points, team);
-    std::vector<vcg::Point3f> moved = target.positions();
-    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += to_vcg(moves[i]);
-    return target.moved_to(std::move(moved));
+    return target.moved_in_batches([&](Span<vcg::Point3f> batch) {
+        std::vector<Vector3> points;
+        for (const vcg::Point3f& p : batch) points.push_back(to_eigen(p));
+        const std::vector<Vector3> moves = moves_at(points, team);
+        for (int i = 0; i < batch.size(); ++i) batch[i] += to_vcg(moves[static_cast<std::size_t>(i)]);
+    });
 }
 
 void Thickening::take_back(Network& network, ThreadTeam& team) const {

@@ -27,8 +27,8 @@ std::vector<std::uint32_t> along_z_order(const std::vector<Vector3>& points, con
     int bits = 1;
     while (bits < kMostBits && std::size_t{1} << (3 * bits) < points.size()) ++bits;
     const auto cells = static_cast<float>(1 << bits);
-    const Vector3 sizes = box.sizes().cwiseMax(std::numeric_limits<float>::min());
-    const Vector3 scale = cells * sizes.cwiseInverse();
+    constexpr float kLeastSize = 1e-20F;  // of a flat box
+    const Vector3 scale = cells * box.sizes().cwiseMax(kLeastSize).cwiseInverse();
     std::vector<std::uint32_t> cell(points.size());
     for_chunks(points.size(), kLanes * kPackets, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {

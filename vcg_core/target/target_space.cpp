@@ -225,9 +225,13 @@ TargetSpace TargetSpace::moved(Move move) const {
     return result;
 }
 
-TargetSpace TargetSpace::moved_to(std::vector<vcg::Point3f> positions) const {
+TargetSpace TargetSpace::moved_in_batches(const std::function<void(Span<vcg::Point3f>)>& move) const {
+    constexpr std::size_t kBatch = 100000;
     TargetSpace result = *this;
-    result.positions_ = std::move(positions);
+    vcg::Point3f* points = result.positions_.data();
+    const std::size_t count = positions_.size();
+    for (std::size_t begin = 0; begin < count; begin += kBatch)
+        move({points + begin, points + std::min(begin + kBatch, count)});
     return result;
 }
 

@@ -19,6 +19,7 @@
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/packed_normal.h"
 #include "vcg_core/base/random.h"
+#include "vcg_core/base/span.h"
 #include "vcg_core/target/alias_table.h"
 #include "vcg_core/target/point_areas.h"
 
@@ -92,9 +93,9 @@ public:
     /// The same target with every signal p at \p move(p), in the same frame. positions() stays as it is.
     /// \p move is called from several threads at a time. O(points) \pre is_exact()
     TargetSpace moved(Move move) const;
-    /// The cloud with its points at \p positions, in the same order and the same frame. O(points)
-    /// \pre !is_exact(), as many positions as points
-    TargetSpace moved_to(std::vector<vcg::Point3f> positions) const;
+    /// The cloud with its points moved by \p move, which gets many of them at a time, in the same order and
+    /// the same frame. O(points) \pre !is_exact()
+    TargetSpace moved_in_batches(const std::function<void(Span<vcg::Point3f>)>& move) const;
 
     /// The cloud without duplicate points, in the same frame, if more than a tenth of the points are exact
     /// duplicates; nothing otherwise, or for triangles. The share is estimated from samples of about 100,000

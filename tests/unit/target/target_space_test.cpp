@@ -236,13 +236,18 @@ TEST(TargetSpace, MovesWhatItDraws) {
     }
 }
 
-TEST(TargetSpace, MovesItsPoints) {
-    const TargetSpace target = target_of(shapes::sphere_cloud(2000));
-    std::vector<vcg::Point3f> positions = target.positions();
-    for (vcg::Point3f& p : positions) p *= 1.25F;
-    const TargetSpace other = target.moved_to(positions);
+TEST(TargetSpace, MovesItsPointsInBatches) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(250000));
+    int batches = 0;
+    const TargetSpace other = target.moved_in_batches([&](Span<vcg::Point3f> batch) {
+        ++batches;
+        for (vcg::Point3f& p : batch) p *= 1.25F;
+    });
+    EXPECT_GT(batches, 1);
     EXPECT_EQ(other.frame().diagonal, target.frame().diagonal);
-    EXPECT_EQ(other.positions(), positions);
+    ASSERT_EQ(other.positions().size(), target.positions().size());
+    for (std::size_t i = 0; i < target.positions().size(); ++i)
+        ASSERT_EQ(other.positions()[i], target.positions()[i] * 1.25F);
     Random random(4), again(4);
     for (int i = 0; i < 1000; ++i) ASSERT_EQ(other.sample(again), target.sample(random) * 1.25F);
 }
