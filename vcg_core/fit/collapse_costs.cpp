@@ -53,8 +53,8 @@ public:
         std::size_t count = 0;
         for (VertexId u : network_.ring(v))
             if (network_.can_collapse(v, u)) order[count++] = {quadric(v, u), u};
-        std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
         if (count == 0) return best;
+        std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
         const StarPoints star = points_around(v);
         int tries = 0;
         for (std::size_t i = 0; i < count && tries < kTries; ++i) {

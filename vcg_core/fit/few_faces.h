@@ -36,7 +36,7 @@ public:
     void add(const Vector3& a, const Vector3& b, const Vector3& c, int label) {
         faces_[count_++] = {a, b - a, c - a, label};
     }
-    /// \pre there is a face. O(faces).
+    /// Without a face the distances are the largest float. O(faces).
     void find_nearest(const PointPacket& packet, Nearest& nearest) const;
 
 private:

@@ -69,6 +69,7 @@ NEURALMESH_ALWAYS_INLINE void squared_distance_to(const Eigen::AlignedBox3f& box
 struct FaceTree::Packet {
     EightVectors points;
     Eight least;      ///< squared distance so far
+    Eight bound;      ///< on the squared distance of boxes to look at
     EightInts face;   ///< at that distance; -1: none
     EightInts place;  ///< of the face in the order of the tree
 
@@ -79,7 +80,7 @@ struct FaceTree::Packet {
 void FaceTree::Packet::look_at(Packet& packet, const FaceTree& tree, int place) {
     Eight squared;
     squared_distance_to(tree.boxes_[place], packet.points, squared);
-    if (!any(~(squared > packet.least))) return;
+    if (!any(~(squared > packet.bound))) return;
     const Corners& corners = tree.corners_[place];
     const EightVectors ap{packet.points.x - corners.a[0], packet.points.y - corners.a[1],
                           packet.points.z - corners.a[2]};
@@ -87,6 +88,7 @@ void FaceTree::Packet::look_at(Packet& packet, const FaceTree& tree, int place) 
     const EightInts face = EightInts{} + tree.order_[place];
     const EightInts better = (squared < packet.least) | ((squared == packet.least) & (face < packet.face));
     choose(better, squared, packet.least, packet.least);
+    packet.bound = packet.least * kShare + kSquaredRounding;
     choose(better, face, packet.face, packet.face);
     choose(better, EightInts{} + place, packet.place, packet.place);
 }
@@ -103,15 +105,15 @@ void FaceTree::Packet::search(Packet& packet, const FaceTree& tree) {
     stack[height++] = {Eight{}, 0};
     while (height > 0) {
         const Waiting& top = stack[--height];
-        if (!any(~(top.squared_distance > packet.least))) continue;
+        if (!any(~(top.squared_distance > packet.bound))) continue;
         int n = top.node;
         while (!tree.nodes_[n].is_leaf()) {
             const int left = n + 1, right = tree.nodes_[n].right;
             Eight to_left, to_right;
             squared_distance_to(tree.nodes_[left].box, packet.points, to_left);
             squared_distance_to(tree.nodes_[right].box, packet.points, to_right);
-            const bool goes_left = any(~(to_left > packet.least));
-            const bool goes_right = any(~(to_right > packet.least));
+            const bool goes_left = any(~(to_left > packet.bound));
+            const bool goes_right = any(~(to_right > packet.bound));
             if (!goes_left && !goes_right) break;
             if (goes_left && goes_right) {
                 const bool left_first = to_left[kMiddle] <= to_right[kMiddle];
@@ -133,7 +135,7 @@ std::vector<Hit> FaceTree::nearest(const std::vector<Vector3>& points, ThreadTea
     const std::vector<std::uint32_t> order = along_z_order(points, nodes_[0].box, team);
     const auto search_packet = [&](std::size_t first, std::size_t last) {
         Packet packet;
-        packet.least = Eight{} + kFar;
+        packet.least = packet.bound = Eight{} + kFar;
         packet.face = packet.place = EightInts{} - 1;
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             const Vector3& p = points[order[std::min(first + lane, last)]];

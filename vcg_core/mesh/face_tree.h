@@ -29,10 +29,10 @@ public:
     FaceTree(const Surface& surface, std::vector<int> faces, ThreadTeam& team);
 
     /// The nearest face of \p p, the one of smallest index among equals; face -1 if the tree is empty. Exact
-    /// up to float rounding. O(log faces) expected near the surface.
+    /// by foot_on_triangle() for faces up to about 1. O(log faces) expected near the surface.
     Hit nearest(const Vector3& p) const;
-    /// That of each of \p points, up to float rounding, in a quarter of the time where they are dense. The
-    /// result does not depend on the number of threads. O(points x log faces)
+    /// That of each of \p points, the same bits, in a quarter of the time where they are dense. Does not
+    /// depend on the number of threads. O(points x log faces)
     std::vector<Hit> nearest(const std::vector<Vector3>& points, ThreadTeam& team) const;
 
     /// Calls \p visit(f, g) for every face g whose bounding box touches that of f, where f is the \p i-th
@@ -82,6 +82,9 @@ private:
     void divide_to_subtrees(Indexed<Entry>& entries, const Subtree& tree, std::vector<Subtree>& subtrees);
     void divide_to_leaves(Indexed<Entry>& entries, const Subtree& tree);
     void set_boxes(const Surface& surface, ThreadTeam& team);
+    /// The computed squared distance of a face has an error of some roundings of the face's size, which is at
+    /// most about 1. So boxes are looked at up to kShare x the least distance found + kSquaredRounding.
+    static constexpr float kShare = 1.001F, kSquaredRounding = 2e-10F;
     struct Packet;
     template <class Visit>
     void for_overlapping(const Box& box, int first, const Visit& visit) const;
