@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "vcg_core/base/logarithm.h"
 #include "vcg_core/mesh/face_tree.h"
 
 namespace neuralmesh {
@@ -75,6 +76,17 @@ PerVertex<float> densities(const Network& network, const Surface& surface, const
 }
 
 }  // namespace
+
+double FaceSignals::lack_of(const std::vector<int>& faces) const {
+    double won = 0, expects = 0;
+    for (const int f : faces) {
+        won += wins[f];
+        expects += static_cast<double>(expected[f]);
+    }
+    if (won >= expects) return 0;
+    // Of Poisson distributions with one mean and the other.
+    return expects - won + (won > 0 ? won * portable_log(won / expects) : 0);
+}
 
 std::vector<Vector3> fair_sample(const TargetSpace& target, std::size_t count, Random& random) {
     std::vector<Vector3> signals;

@@ -46,6 +46,9 @@ struct FaceSignals {
     bool lacks_support(int face) const {
         return static_cast<float>(wins[face]) < kLeastShare * expected[face];
     }
+    /// ln of how much likelier \p faces won as few signals as they did without support than with it; 0 if
+    /// they won all that they should have.
+    double lack_of(const std::vector<int>& faces) const;
 };
 
 /// Assigns every one of \p signals to its nearest face. The density around a vertex is that of the faces with

@@ -15,8 +15,9 @@ namespace neuralmesh {
 namespace {
 
 constexpr std::size_t kSignalsPerVertex = 20;
-/// With fewer points per vertex, faces without any are common.
-constexpr std::size_t kFewestPerVertex = 8;
+/// With fewer points per vertex, faces without any are common. With eight, feline from 20,000 points has two
+/// handles with 10 of 30 seeds instead of 19.
+constexpr std::size_t kFewestPerVertex = 6;
 
 /// With more points per vertex, the mesh is too coarse to tell a handle from a bridge: it has a bridge
 /// wherever parts are closer than its edges are long.

@@ -58,7 +58,7 @@ struct TopologyEvidence {
 };
 
 /// The signals are a fair sample of \p target, 20 per vertex. Nothing if the network is open or has less
-/// than eight points per vertex. Does not depend on the number of threads. Cost: about that of learning the
+/// than six points per vertex. Does not depend on the number of threads. Cost: about that of learning the
 /// signals.
 std::optional<TopologyEvidence> topology_evidence(const Network& network, const TargetSpace& target,
                                                   Random& random, ThreadTeam& team);

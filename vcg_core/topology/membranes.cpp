@@ -21,11 +21,6 @@ constexpr std::size_t kMostFaces = 2000;
 /// Most times that faces are added to make the rims clean.
 constexpr int kMostRepairs = 8;
 
-/// ln of how much likelier \p wins are without support than with \p expected signals.
-double evidence(double wins, double expected) {
-    return expected - wins + (wins > 0 ? wins * portable_log(wins / expected) : 0);
-}
-
 class Members {
 public:
     Members(const Surface& surface, const std::vector<int>& faces)
@@ -200,24 +195,21 @@ bool complete(const Surface& surface, const FaceSignals& signals, Membrane& memb
 
 std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& signals) {
     const float edge = mean_edge_length(surface);
-    const double least_evidence = portable_log(static_cast<double>(surface.face_count())) + 7;
+    const double least_lack = portable_log(static_cast<double>(surface.face_count())) + kTubeLack;
     PerFace<char> seen(surface.face_count(), 0);
     std::vector<Membrane> membranes;
     for (int f = 0; f < surface.face_count(); ++f) {
         if (seen[f] != 0 || !signals.lacks_support(f)) continue;
         Membrane membrane;
         membrane.faces = region_of(surface, signals, f, seen);
-        double wins = 0, expected = 0;
         float area = 0;
-        for (const int g : membrane.faces) {
-            wins += signals.wins[g];
-            expected += static_cast<double>(signals.expected[g]);
-            area += signals.area[g];
-        }
-        const double found = evidence(wins, expected);
-        if (area < kLeastPart * edge * edge || found < least_evidence / 4) continue;
-        membrane.certain = area >= kLeastArea * edge * edge && found >= least_evidence;
-        if (complete(surface, signals, membrane)) membranes.push_back(std::move(membrane));
+        for (const int g : membrane.faces) area += signals.area[g];
+        const double lack = signals.lack_of(membrane.faces);
+        if (area < kLeastPart * edge * edge || lack < least_lack / 4 || !complete(surface, signals, membrane))
+            continue;
+        membrane.certain = membrane.rims.size() > 1 ? lack >= kTubeLack
+                                                    : area >= kLeastArea * edge * edge && lack >= least_lack;
+        membranes.push_back(std::move(membrane));
     }
     return membranes;
 }

@@ -24,11 +24,15 @@ struct Membrane {
 /// The face beyond an edge of \p face, the one from corner \p edge to the next; -1 on a boundary. O(valence)
 int face_beyond(const Surface& surface, int face, std::size_t edge);
 
-/// The membranes of a closed surface: faces that lack support and share edges. A membrane counts if its lack
-/// of signals is no accident of the sample (log-likelihood above ln(faces) + 7) and its area is that of
-/// several faces. Faces that would hang on it by a corner only, or as an island inside, are part of it, so
-/// that the surface stays a manifold without it; membranes that become too large by that are left out.
-/// O(faces log faces)
+/// How much a tube has to lack to be no accident of the sample; see FaceSignals::lack_of(). Faces without
+/// signals seldom lie around a tube by chance.
+constexpr double kTubeLack = 7;
+
+/// The membranes of a closed surface: faces that lack support and share edges. A membrane is certain if it
+/// lacks ln(faces) + 7 and its area is that of several faces, or if it is a tube, with more than one rim, and
+/// lacks kTubeLack. Those that lack a quarter of the former are found. Faces that would hang on it by a
+/// corner only, or as an island inside, are part of it, so that the surface stays a manifold without it;
+/// membranes that become too large by that are left out. O(faces log faces)
 std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& signals);
 
 /// Membranes are near each other if their rims are no further apart than this many mean edges.

@@ -11,6 +11,7 @@
 
 #include "vcg_core/topology/corridors.h"
 #include "vcg_core/topology/membrane_groups.h"
+#include "vcg_core/topology/necks.h"
 #include "vcg_core/topology/rim_parts.h"
 #include "vcg_core/topology/surroundings.h"
 
@@ -235,6 +236,8 @@ std::vector<Reconnection> find_reconnections(const Network& network, const Surfa
             keep(std::move(change), {a, b});
         }
     }
+    for (const Membrane& neck : find_necks(network, surface, support))
+        keep(search.of_one(search.widened(neck)), {});
     std::vector<std::vector<int>> groups;
     if (in_groups) groups = membrane_groups(surface, membranes, search.edge(), kMostOfGroup);
     for (std::vector<int>& group : groups) {

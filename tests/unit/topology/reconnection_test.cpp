@@ -331,7 +331,7 @@ TEST(TopologyStages, ArePassedOnceEachAndEndWithTheGoal) {
 
 TEST(TopologyStages, EndWhereThePointsAreTooFew) {
     const TargetSpace target = target_of(two_spheres(5000));
-    EXPECT_EQ(most_examined(target), 10000 / 100 * 96 / 8);
+    EXPECT_EQ(most_examined(target), 10000 / 100 * 96 / 6);
     Random random(1);
     ThreadTeam team(1);
     EXPECT_TRUE(topology_evidence(bridged(target), target, random, team));
