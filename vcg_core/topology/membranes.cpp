@@ -193,9 +193,13 @@ bool complete(const Surface& surface, const FaceSignals& signals, Membrane& memb
     return true;
 }
 
+double least_lack(const Surface& surface) {
+    return portable_log(static_cast<double>(surface.face_count())) + kTubeLack;
+}
+
 std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& signals) {
     const float edge = mean_edge_length(surface);
-    const double least_lack = portable_log(static_cast<double>(surface.face_count())) + kTubeLack;
+    const double least = least_lack(surface);
     PerFace<char> seen(surface.face_count(), 0);
     std::vector<Membrane> membranes;
     for (int f = 0; f < surface.face_count(); ++f) {
@@ -205,10 +209,10 @@ std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& 
         float area = 0;
         for (const int g : membrane.faces) area += signals.area[g];
         const double lack = signals.lack_of(membrane.faces);
-        if (area < kLeastPart * edge * edge || lack < least_lack / 4 || !complete(surface, signals, membrane))
+        if (area < kLeastPart * edge * edge || lack < least / 4 || !complete(surface, signals, membrane))
             continue;
-        membrane.certain = membrane.rims.size() > 1 ? lack >= kTubeLack
-                                                    : area >= kLeastArea * edge * edge && lack >= least_lack;
+        membrane.certain =
+            membrane.rims.size() > 1 ? lack >= kTubeLack : area >= kLeastArea * edge * edge && lack >= least;
         membranes.push_back(std::move(membrane));
     }
     return membranes;

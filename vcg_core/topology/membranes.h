@@ -28,8 +28,11 @@ int face_beyond(const Surface& surface, int face, std::size_t edge);
 /// signals seldom lie around a tube by chance.
 constexpr double kTubeLack = 7;
 
+/// The same of a membrane with one rim: it may lie anywhere on the surface. ln(faces) + kTubeLack
+double least_lack(const Surface& surface);
+
 /// The membranes of a closed surface: faces that lack support and share edges. A membrane is certain if it
-/// lacks ln(faces) + 7 and its area is that of several faces, or if it is a tube, with more than one rim, and
+/// lacks least_lack() and its area is that of several faces, or if it is a tube, with more than one rim, and
 /// lacks kTubeLack. Those that lack a quarter of the former are found. Faces that would hang on it by a
 /// corner only, or as an island inside, are part of it, so that the surface stays a manifold without it;
 /// membranes that become too large by that are left out. O(faces log faces)

@@ -170,10 +170,20 @@ Reconnection Search::of_pair(const Wide& a, const Wide& b) const {
     return found.gain >= least ? found : Reconnection();
 }
 
-/// A web may have points at its free edge: those of the corner that it spans are nearest to it.
+/// Whether their normals differ by clearly more than 90 degrees.
+bool are_opposite(const Membrane& a, const Membrane& b) {
+    return a.area.dot(b.area) < -0.1F * a.area.norm() * b.area.norm();
+}
+
+/// A web may have points at its free edge: those of the corner that it spans are nearest to it. Two small
+/// membranes on either side of a sharp edge are none: its sides are opposite, and lack signals by no
+/// accident.
 Reconnection Search::of_web(const Wide& a, const Wide& b) const {
-    const float least = least_gain(a.front().missing + b.front().missing);
+    std::vector<int> sides = a.front().faces;
+    sides.insert(sides.end(), b.front().faces.begin(), b.front().faces.end());
     Reconnection found;
+    if (!are_opposite(a.front(), b.front()) || support_.lack_of(sides) < least_lack(surface_)) return found;
+    const float least = least_gain(a.front().missing + b.front().missing);
     for (std::size_t ring = 1; ring < std::min(a.size(), b.size()); ++ring) {
         Membrane web = a[ring];
         web.faces.insert(web.faces.end(), b[ring].faces.begin(), b[ring].faces.end());
