@@ -78,8 +78,10 @@ LearnerOptions learner_options(const LearningTask& task, const Settings& setting
     if (is_calm(task))
         options.settling_signals_per_vertex = static_cast<int>(
             static_cast<std::int64_t>(options.settling_signals_per_vertex) * carried / grow_to);
-    // Each layer of a sheet wins the signals of both by turns: that says nothing of membranes.
-    options.learn_topology = options.learn_topology && task.encloses_space;
+    // Each layer of a sheet wins the signals of both by turns: that says nothing of membranes. The topology of
+    // a given mesh is what somebody asked for.
+    options.learn_topology =
+        options.learn_topology && task.encloses_space && settings.start_mesh != kGivenMesh;
     options.topology_rules = task.topology_rules;
     // The layers of a sheet fold into each other while they learn. Their area vectors cancel, and smoothing
     // at right angles to what is left of them throws vertices off the sheet, where they win no signal.

@@ -57,7 +57,8 @@ struct Settings {
     int start_mesh = kShell;
     /// For kGivenMesh: the host's number of the layer, which only the host reads; -1: none.
     int start_layer = 0;
-    bool learn_topology = false;  ///< growth gives up membranes, see topology/learned_topology.h
+    /// Growth gives up membranes, see topology/learned_topology.h; not of a given mesh.
+    bool learn_topology = true;
     bool fit_to_points = true;
     bool draw_from_faces = true;
     bool selected_only = false;

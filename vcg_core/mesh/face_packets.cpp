@@ -70,7 +70,7 @@ struct FaceTree::Packet {
     EightVectors points;
     Eight least;      ///< squared distance so far
     Eight bound;      ///< on the squared distance of boxes to look at
-    EightInts face;   ///< at that distance; -1: none
+    EightInts face;   ///< at the least distance; -1: none
     EightInts place;  ///< of the face in the order of the tree
 
     NEURALMESH_MULTIVERSIONED static void search(Packet& packet, const FaceTree& tree);

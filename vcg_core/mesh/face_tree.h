@@ -55,6 +55,9 @@ private:
     static constexpr int kLeafFaces = 4;
     /// The tree is balanced, so this is more than its height.
     static constexpr std::size_t kStack = 64;
+    /// The computed squared distance of a face has an error of some roundings of the face's size, which is at
+    /// most about 1. So boxes are looked at up to kShare x the least distance found + kSquaredRounding.
+    static constexpr float kShare = 1.001F, kSquaredRounding = 2e-10F;
 
     struct Node {
         Box box;
@@ -82,9 +85,6 @@ private:
     void divide_to_subtrees(Indexed<Entry>& entries, const Subtree& tree, std::vector<Subtree>& subtrees);
     void divide_to_leaves(Indexed<Entry>& entries, const Subtree& tree);
     void set_boxes(const Surface& surface, ThreadTeam& team);
-    /// The computed squared distance of a face has an error of some roundings of the face's size, which is at
-    /// most about 1. So boxes are looked at up to kShare x the least distance found + kSquaredRounding.
-    static constexpr float kShare = 1.001F, kSquaredRounding = 2e-10F;
     struct Packet;
     template <class Visit>
     void for_overlapping(const Box& box, int first, const Visit& visit) const;

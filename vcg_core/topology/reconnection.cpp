@@ -63,6 +63,8 @@ public:
 
 private:
     Reconnection best(const std::vector<const Membrane*>& membranes) const;
+    /// Makes a membrane of \p faces. \return false if it cannot be completed.
+    bool make(Membrane& membrane, std::vector<int> faces) const;
     bool widen(Membrane& membrane) const;
     /// Whether the points know a handle, or one component, where the rims of the same part are joined.
     bool knows_handle(const std::vector<const Membrane*>& membranes, const std::vector<Rim>& rims,
@@ -127,16 +129,20 @@ Reconnection Search::best(const std::vector<const Membrane*>& membranes) const {
     return found;
 }
 
+bool Search::make(Membrane& membrane, std::vector<int> faces) const {
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    membrane.faces = std::move(faces);
+    return complete(surface_, support_, membrane);
+}
+
 /// Adds the faces around.
 bool Search::widen(Membrane& membrane) const {
     std::vector<int> faces;
     for (const int f : membrane.faces)
         for (const VertexId v : surface_.faces[f])
             faces.insert(faces.end(), surface_.faces_around(v).begin(), surface_.faces_around(v).end());
-    std::sort(faces.begin(), faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-    membrane.faces = std::move(faces);
-    return complete(surface_, support_, membrane);
+    return make(membrane, std::move(faces));
 }
 
 Wide Search::widened(const Membrane& membrane) const {
@@ -170,6 +176,12 @@ Reconnection Search::of_pair(const Wide& a, const Wide& b) const {
     return found.gain >= least ? found : Reconnection();
 }
 
+std::vector<int> faces_of(const Membrane& a, const Membrane& b) {
+    std::vector<int> faces = a.faces;
+    faces.insert(faces.end(), b.faces.begin(), b.faces.end());
+    return faces;
+}
+
 /// Whether their normals differ by clearly more than 90 degrees.
 bool are_opposite(const Membrane& a, const Membrane& b) {
     return a.area.dot(b.area) < -0.1F * a.area.norm() * b.area.norm();
@@ -179,17 +191,14 @@ bool are_opposite(const Membrane& a, const Membrane& b) {
 /// membranes on either side of a sharp edge are none: its sides are opposite, and lack signals by no
 /// accident.
 Reconnection Search::of_web(const Wide& a, const Wide& b) const {
-    std::vector<int> sides = a.front().faces;
-    sides.insert(sides.end(), b.front().faces.begin(), b.front().faces.end());
     Reconnection found;
-    if (!are_opposite(a.front(), b.front()) || support_.lack_of(sides) < least_lack(surface_)) return found;
+    if (!are_opposite(a.front(), b.front()) ||
+        support_.lack_of(faces_of(a.front(), b.front())) < least_lack(surface_))
+        return found;
     const float least = least_gain(a.front().missing + b.front().missing);
     for (std::size_t ring = 1; ring < std::min(a.size(), b.size()); ++ring) {
-        Membrane web = a[ring];
-        web.faces.insert(web.faces.end(), b[ring].faces.begin(), b[ring].faces.end());
-        std::sort(web.faces.begin(), web.faces.end());
-        web.faces.erase(std::unique(web.faces.begin(), web.faces.end()), web.faces.end());
-        if (!complete(surface_, support_, web) || web.rims.size() != 1) continue;
+        Membrane web;
+        if (!make(web, faces_of(a[ring], b[ring])) || web.rims.size() != 1) continue;
         Reconnection next = best({&web});
         if (next.gain >= least && next.gain > found.gain) found = std::move(next);
     }

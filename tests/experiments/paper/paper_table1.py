@@ -28,8 +28,8 @@ import paper_runs
 from compare_accuracy import numbers, table
 
 VARIANTS = {
-    "to the letter": {"start_mesh": 1, "min_wins_per_split": 0, "fit_to_points": 0},
-    "with maturity": {"start_mesh": 1, "fit_to_points": 0},
+    "to the letter": {"start_mesh": 1, "learn_topology": 0, "min_wins_per_split": 0, "fit_to_points": 0},
+    "with maturity": {"start_mesh": 1, "learn_topology": 0, "fit_to_points": 0},
     "default": {},
 }
 KINDS = {"ad": 0, "nad": 1}  # the parameter utility_counter

@@ -52,9 +52,9 @@ IndexedMesh<double> ball(double apart) {
 
 TEST(LearnedTopology, PartsThatTheStartMeshJoinsComeApart) {
     Settings settings = settings_of();
-    settings.start_mesh = kGivenMesh;
+    settings.start_mesh = kTetrahedron;
     const Cloud cloud = two_spheres(20000, 3);
-    const NeuralMesh apart = learn(cloud, settings, ball(3));
+    const NeuralMesh apart = learn(cloud, settings);
     EXPECT_EQ(apart.report.components, 2);
     EXPECT_EQ(apart.report.genus, 0);
     EXPECT_EQ(apart.report.boundary_loops, 0);
@@ -62,7 +62,13 @@ TEST(LearnedTopology, PartsThatTheStartMeshJoinsComeApart) {
     EXPECT_NE(apart.report.notes.back().find("Membranes were given up"), std::string::npos);
     soundness::expect_exact(apart, settings);
     settings.learn_topology = false;
-    EXPECT_EQ(learn(cloud, settings, ball(3)).report.components, 1);
+    EXPECT_EQ(learn(cloud, settings).report.components, 1);
+}
+
+TEST(LearnedTopology, AGivenMeshKeepsItsTopology) {
+    Settings settings = settings_of();
+    settings.start_mesh = kGivenMesh;
+    EXPECT_EQ(learn(two_spheres(20000, 3), settings, ball(3)).report.components, 1);
 }
 
 TEST(LearnedTopology, FindsTheHandleOfATorusFromTheTetrahedron) {
@@ -124,11 +130,12 @@ TEST(LearnedTopology, TellsOfOpenings) {
 
 TEST(LearnedTopology, TheBytesDoNotDependOnTheThreads) {
     Settings settings = settings_of(1);
-    settings.start_mesh = kGivenMesh;
+    settings.start_mesh = kTetrahedron;
     const Cloud cloud = two_spheres(10000, 3);
-    const NeuralMesh one = learn(cloud, settings, ball(3));
+    const NeuralMesh one = learn(cloud, settings);
+    EXPECT_EQ(one.report.components, 2);
     settings.threads = 3;
-    const NeuralMesh three = learn(cloud, settings, ball(3));
+    const NeuralMesh three = learn(cloud, settings);
     EXPECT_EQ(one.positions, three.positions);
     EXPECT_EQ(one.faces, three.faces);
 }
@@ -141,6 +148,15 @@ TEST(LearnedTopology, WithoutMembranesNothingChanges) {
     const NeuralMesh without = learn(cloud, settings);
     EXPECT_EQ(with.positions, without.positions);
     EXPECT_EQ(with.faces, without.faces);
+}
+
+// Small faces on either side of an edge have no points by chance.
+TEST(LearnedTopology, SharpEdgesAreNoWebs) {
+    Settings settings = settings_of();
+    const Cloud cloud = shapes::box_cloud(20000, {2, 2, 2});
+    const NeuralMesh with = learn(cloud, settings);
+    settings.learn_topology = false;
+    EXPECT_EQ(with.positions, learn(cloud, settings).positions);
 }
 
 TEST(LearnedTopology, HostileCloudsGiveSoundMeshes) {

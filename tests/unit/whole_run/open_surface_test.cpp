@@ -314,6 +314,7 @@ TEST(OpenSurface, OfTheFewestVerticesIsExact) {
 TEST(OpenSurface, CannotStartFromATetrahedron) {
     Settings settings = settings_with(200, kOpenSurface);
     settings.start_mesh = kTetrahedron;
+    settings.learn_topology = false;
     const NeuralMesh mesh = learn(shapes::sphere_cloud(2000), settings);
     EXPECT_EQ(mesh.report.boundary_loops, 0);
     EXPECT_TRUE(has_warning(mesh, "because start_mesh 1 (tetrahedron) is"));
