@@ -105,8 +105,8 @@ std::vector<SettingInfo> mesh_rows() {
         row(&S::learn_topology, "learn_topology", "Learn topology",
             "While it grows, a closed mesh gives up membranes: parts without points that bridge limbs, span gaps or "
             "plug holes. Their rims are closed or joined, whichever the points support, so the number of "
-            "handles and components may change. If off, they are those of the start mesh, as are those of "
-            "a start mesh from a layer. From a tetrahedron, "
+            "handles and components may change. If off, or if the start mesh is a layer, they are "
+            "those of the start mesh. From a tetrahedron, "
             "wide membranes that are left become holes, unless the surface is closed."),
         row(&S::fit_to_points, "fit_to_points", "Fit to points",
             "After learning, fit the surface to the points by least squares. If off, the mesh stays as the "

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kSignalsPerVertex = 20;
 /// With fewer points per vertex, faces without any are common. With eight, feline from 20,000 points has two
-/// handles with 10 of 30 seeds instead of 19.
+/// handles with 10 of 30 seeds instead of 16.
 constexpr std::size_t kFewestPerVertex = 6;
 
 /// With more points per vertex, the mesh is too coarse to tell a handle from a bridge: it has a bridge

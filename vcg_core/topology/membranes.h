@@ -28,7 +28,7 @@ int face_beyond(const Surface& surface, int face, std::size_t edge);
 /// signals seldom lie around a tube by chance.
 constexpr double kTubeLack = 7;
 
-/// The same of a membrane with one rim: it may lie anywhere on the surface. ln(faces) + kTubeLack
+/// How much a membrane with one rim has to lack, ln(faces) + kTubeLack: it may lie anywhere on the surface.
 double least_lack(const Surface& surface);
 
 /// The membranes of a closed surface: faces that lack support and share edges. A membrane is certain if it

@@ -187,9 +187,8 @@ bool are_opposite(const Membrane& a, const Membrane& b) {
     return a.area.dot(b.area) < -0.1F * a.area.norm() * b.area.norm();
 }
 
-/// A web may have points at its free edge: those of the corner that it spans are nearest to it. Two small
-/// membranes on either side of a sharp edge are none: its sides are opposite, and lack signals by no
-/// accident.
+/// A web may have points at its free edge: those of the corner that it spans are nearest to it. The sides of
+/// a web are opposite and lack signals by no accident. So small membranes beside a sharp edge are none.
 Reconnection Search::of_web(const Wide& a, const Wide& b) const {
     Reconnection found;
     if (!are_opposite(a.front(), b.front()) ||
