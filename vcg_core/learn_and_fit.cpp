@@ -94,6 +94,7 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
     FitOptions options;
     options.expect_strays = task.outliers > 0;
     options.reduce_to = carried;
+    options.calm = is_calm(task);
     options.refine_to = carried < settings.target_vertices ? settings.target_vertices : 0;
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
     // error is largest at the rim, and vertices inserted there stick out.

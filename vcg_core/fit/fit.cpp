@@ -242,7 +242,7 @@ FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitO
     PartOf reducing(progress, 0.1, 0.5);
     PartOf fitting(progress, reduces ? 0.5 : 0.1, 1);
     if (!fitter.untangle_surface(untangling)) return report;
-    const bool reduced = !reduces || fitter.reduce_to(vertices, reducing);
+    const bool reduced = !reduces || fitter.reduce_to(vertices, options.calm, reducing);
     const PerVertex<VertexId> origins = chained(fitter.origins(), own_sources(network));
     report.sources = origins;
     if (!reduced) return report;

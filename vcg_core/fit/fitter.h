@@ -47,9 +47,9 @@ public:
     /// \p progress asks to stop; then the network is unchanged.
     bool untangle_surface(Progress& progress);
     /// Removes the vertices whose removal costs least, in rounds that each end with a least-squares solution.
-    /// Uses part of the points. \return false if \p progress asks to stop or no more vertices can go
-    /// \pre the network has more than \p vertices vertices
-    bool reduce_to(int vertices, Progress& progress);
+    /// Uses part of the points; see FitOptions for \p calm. \return false if \p progress asks to stop or no
+    /// more vertices can go \pre the network has more than \p vertices vertices
+    bool reduce_to(int vertices, bool calm, Progress& progress);
 
     /// Assigns the fitted points to their nearest faces and finds the held-out points, all by exact search.
     PointsByFace locate_points(const Surface& surface);
@@ -117,7 +117,7 @@ private:
     auto guarded(const Surface& surface, const Change& change);
     void place_vertices(const Surface& surface);
     void redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses);
-    void set_points_aside();
+    void set_points_aside(int points_per_vertex);
     PointsByFace update_for_removal(Surface& surface, PointsByFace points);
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
 
