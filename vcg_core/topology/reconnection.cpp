@@ -182,7 +182,8 @@ std::vector<int> faces_of(const Membrane& a, const Membrane& b) {
     return faces;
 }
 
-/// Whether their normals differ by clearly more than 90 degrees.
+/// Whether their normals differ by clearly more than 90 degrees: the angle at the edges of a cube. With a
+/// bound of 120 degrees, webs of armadillo stay.
 bool are_opposite(const Membrane& a, const Membrane& b) {
     return a.area.dot(b.area) < -0.1F * a.area.norm() * b.area.norm();
 }
