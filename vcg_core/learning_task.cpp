@@ -71,18 +71,6 @@ void remove_repeated_points(LearningTask& task) {
                             std::to_string(all) + " points repeat others: every place was learned once.");
 }
 
-Shell make_shell(const TargetSpace& target, const Settings& settings, Progress& progress) {
-    ShellOptions options;
-    options.target_vertices = settings.target_vertices;
-    // Without the fit, which takes vertices away again, more of them at the start would leave none to split.
-    const int most_wanted = std::min(settings.target_vertices, kMostStartVertices / kMostPerFinal);
-    options.most_vertices = settings.redistributes_vertices() ? kMostPerFinal * most_wanted : 0;
-    options.threads = settings.threads;
-    options.learn_outliers = !settings.remove_outliers;
-    Random random(stream_seed(settings.random_seed, Stream::shell));
-    return Shell(target, options, random, progress);
-}
-
 std::string share_of(std::size_t part, std::size_t all) {
     const double share = std::max(0.001, static_cast<double>(part) / static_cast<double>(all));
     return std::to_string(part) + " of " + std::to_string(all) + " points (" + percent(share) + ")";
@@ -113,6 +101,19 @@ private:
     int threads_;
     std::optional<CloudSurvey> survey_;
 };
+
+Shell make_shell(const TargetSpace& target, const Settings& settings, Survey& survey, Progress& progress) {
+    ShellOptions options;
+    options.target_vertices = settings.target_vertices;
+    // Without the fit, which takes vertices away again, more of them at the start would leave none to split.
+    const int most_wanted = std::min(settings.target_vertices, kMostStartVertices / kMostPerFinal);
+    options.most_vertices = settings.redistributes_vertices() ? kMostPerFinal * most_wanted : 0;
+    options.threads = settings.threads;
+    options.learn_outliers = !settings.remove_outliers;
+    Random random(stream_seed(settings.random_seed, Stream::shell));
+    const CloudSurvey* of_cloud = target.has_faces() ? nullptr : &survey.of(target.positions());
+    return Shell(target, options, random, progress, of_cloud);
+}
 
 void remove_outliers(LearningTask& task, Survey& survey, int threads) {
     const std::vector<std::uint8_t> out = find_outliers(survey.of(task.target().positions()), threads);
@@ -333,7 +334,7 @@ void begin_given(LearningTask& task, const IndexedMesh<double>& mesh, const Sett
 }
 
 /// Makes the start mesh.
-void begin(LearningTask& task, const Settings& settings, const IndexedMesh<double>& given,
+void begin(LearningTask& task, const Settings& settings, const IndexedMesh<double>& given, Survey& survey,
            Progress& progress) {
     if (settings.start_mesh == kGivenMesh) {
         begin_given(task, given, settings);
@@ -355,7 +356,7 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
     }
     PartOf closing(progress, 0, kShellMade);
     PartOf opening(progress, kShellMade, 1);
-    const Shell shell = make_shell(task.target(), settings, closing);
+    const Shell shell = make_shell(task.target(), settings, survey, closing);
     const Enclosure& enclosure = shell.enclosure();
     const bool may_open =
         settings.surface == kAutomatic && may_be_open(enclosure, task.target(), settings, 0);
@@ -388,7 +389,7 @@ LearningTask prepare(const TargetSpace& given, const Settings& settings, const I
     LearningTask task = points_to_learn(given, settings, survey);
     Settings trusted = settings;
     trusted.use_normals = normals_serve(task, survey, settings);
-    begin(task, trusted, start, progress);
+    begin(task, trusted, start, survey, progress);
     if (trusted.use_normals && settings.start_mesh == kShell && task.landing_signals > 0)
         report_normals(task.network, task.target(), task.parts_faced_by_normals, task.notes, task.warnings);
     if (!given.has_faces()) measure_noise(task, survey, settings.target_vertices);

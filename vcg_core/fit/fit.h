@@ -24,8 +24,9 @@ struct FitOptions {
     /// Reduce the network to this number of vertices first, removing those whose removal costs least. 0, or
     /// at least the present number: keep it.
     int reduce_to = 0;
-    /// Whether the noise is small beside the edges. Then the reduction makes do with fewer points, and its
-    /// rounds remove all vertices whose costs do not depend on each other.
+    /// Whether the noise is small beside the edges. Then the reduction to less than half of the vertices goes
+    /// by the shape of the fitted mesh (volume_collapse.h), other reductions make do with fewer points, and
+    /// rounds that gain little end the fit.
     bool calm = false;
     /// Leave out stray points (stray_points.h). For clouds that had outliers: those close to the surface are
     /// still there.

@@ -18,6 +18,7 @@
 #include "vcg_core/fit/noise.h"
 #include "vcg_core/fit/notches.h"
 #include "vcg_core/fit/sound_start.h"
+#include "vcg_core/fit/sources.h"
 #include "vcg_core/fit/stray_points.h"
 #include "vcg_core/fit/webs.h"
 
@@ -158,6 +159,7 @@ void Fitter::examine_layers(const Surface& surface, const PointsByFace& points) 
     layering_ = 0;
     bending_error_ = 0;
     stiff_rounds_ = 0;
+    if (excludes_layers_) return;
     if (static_cast<float>(points.all().size()) < kFewPoints * static_cast<float>(network_.vertex_count()))
         return;
     const PerVertex<float> variances = examine_variances(surface, points);
@@ -345,12 +347,6 @@ int Fitter::mend_boundary(const Surface& surface, const PointsByFace& points) {
         const int opened = open_webs(network_, surface, points, barred);
         return opened + neuralmesh::fill_notches(network_, notches, barred);
     });
-}
-
-PerVertex<VertexId> own_sources(const Network& network) {
-    PerVertex<VertexId> sources(network.slot_count(), -1);
-    for (VertexId v : network.vertices()) sources[v] = v;
-    return sources;
 }
 
 }  // namespace neuralmesh

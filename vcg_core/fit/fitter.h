@@ -46,9 +46,11 @@ public:
     /// Removes self-crossings, see make_sound(), and from then on lets no step add any. \return false if
     /// \p progress asks to stop; then the network is unchanged.
     bool untangle_surface(Progress& progress);
-    /// Removes the vertices whose removal costs least, in rounds that each end with a least-squares solution.
-    /// Uses part of the points; see FitOptions for \p calm. \return false if \p progress asks to stop or no
-    /// more vertices can go \pre the network has more than \p vertices vertices
+    /// Removes the vertices whose removal costs least. The costs are measured at part of the points, in
+    /// rounds that each end with a least-squares solution; or, if \p calm, see FitOptions, and with less than
+    /// half of the vertices to stay, they are those of collapse_by_volume() after a few such solutions.
+    /// \return false if \p progress asks to stop or no more vertices can go \pre the network has more than \p
+    /// vertices vertices
     bool reduce_to(int vertices, bool calm, Progress& progress);
 
     /// Assigns the fitted points to their nearest faces and finds the held-out points, all by exact search.
@@ -118,6 +120,9 @@ private:
     void place_vertices(const Surface& surface);
     void redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses);
     void set_points_aside(int points_per_vertex);
+    bool wants_reduction(int vertices, int at_start, Progress& progress) const;
+    bool reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress);
+    bool reduce_by_costs(int vertices, bool calm, Surface& surface, PointsByFace points, Progress& progress);
     PointsByFace update_for_removal(Surface& surface, PointsByFace points);
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
 
@@ -131,6 +136,7 @@ private:
     float noise_variance_ = 0;           ///< from the last assignment
     PerVertex<float> widest_variances_;  ///< of the points across the surface, so far
     bool layered_places_ = true;         ///< until a search shows none
+    bool excludes_layers_ = false;       ///< a surface of many more vertices has shown none
     bool layered_ = false;               ///< somewhere; from the last exact search, as the next
     float layering_ = 0;                 ///< over most of the surface, see layering()
     double bending_error_ = 0;           ///< of layers: weight of the mean squared gap in squared errors
@@ -161,8 +167,5 @@ auto Fitter::guarded(const Surface& surface, const Change& change) {
         network_ = before;
     }
 }
-
-/// The sources of a network without inserted vertices: every vertex itself, -1 for free slots.
-PerVertex<VertexId> own_sources(const Network& network);
 
 }  // namespace neuralmesh

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -239,7 +240,8 @@ struct Shell::Examined {
         : target(of), options(chosen), start_points(of, chosen.samples, random) {}
 };
 
-Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress) {
+Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress,
+             const CloudSurvey* survey) {
     check(options);
     progress(0.0, "Start mesh: measuring the density of the cloud");
     auto examined = std::make_unique<Examined>(target, options, random);
@@ -248,7 +250,9 @@ Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& ran
 
     progress(0.2, "Start mesh: counting components and handles");
     ThreadTeam team(thread_count(options.threads));
-    const std::vector<LayerPlace> places = layer_places(CloudSurvey(points, options.threads), team);
+    std::optional<CloudSurvey> made;
+    if (survey == nullptr) survey = &made.emplace(points, options.threads);
+    const std::vector<LayerPlace> places = layer_places(*survey, team);
     examined->survey = survey_lattices(points, places, box, options);
     examined->enclosure = enclosure_of(examined->survey, places);
     examined_ = std::move(examined);

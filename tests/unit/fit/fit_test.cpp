@@ -95,16 +95,19 @@ TEST(Fit, FindsTheCreasesOfACube) {
 
 TEST(Fit, GivesTheSameBytesForAnyNumberOfThreads) {
     const TargetSpace target = target_of(shapes::torus_cloud(8000, 0.01));
-    Network one = network_in_frame(target, shapes::scaled(shapes::torus_grid(40, 20), 1.05), 0.005);
-    Network two = one;
-    Network five = one;
-    FitOptions options;
-    options.reduce_to = 500;
-    fit(one, target, options, 1);
-    fit(two, target, options, 2);
-    fit(five, target, options, 5);
-    EXPECT_TRUE(same_bytes(one, two));
-    EXPECT_TRUE(same_bytes(one, five));
+    for (const bool calm : {false, true}) {
+        Network one = network_in_frame(target, shapes::scaled(shapes::torus_grid(40, 20), 1.05), 0.005);
+        Network two = one;
+        Network five = one;
+        FitOptions options;
+        options.reduce_to = calm ? 300 : 500;
+        options.calm = calm;
+        fit(one, target, options, 1);
+        fit(two, target, options, 2);
+        fit(five, target, options, 5);
+        EXPECT_TRUE(same_bytes(one, two));
+        EXPECT_TRUE(same_bytes(one, five));
+    }
 }
 
 // Ten noisy points per vertex, and a mesh nearly on the surface, as learning leaves it: the fit must not pull
@@ -234,18 +237,67 @@ public:
 TEST(Fit, RemovesTheVerticesOfLeastCost) {
     // A cube needs its eight corners only: removing vertices inside its sides costs nothing.
     const TargetSpace target = target_of(shapes::box_cloud(20000));
-    Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 0.6));
-    const int before = network.vertex_count();
+    for (const bool calm : {false, true}) {
+        Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 0.6));
+        const int before = network.vertex_count();
+        FitOptions options;
+        options.reduce_to = 60;
+        options.calm = calm;
+        const FitReport report = fit(network, target, options);
+        EXPECT_LT(5 * 60, before) << "far fewer than the ids in use";
+        EXPECT_EQ(network.vertex_count(), 60);
+        EXPECT_EQ(network.validate(), "");
+        EXPECT_EQ(network.genus(), 0);
+        EXPECT_TRUE(report.improved);
+        EXPECT_LT(rms(target, network), 1e-3);
+        for (VertexId v = 0; v < network.slot_count(); ++v)
+            EXPECT_EQ(report.sources[v] >= 0, network.alive(v));
+    }
+}
+
+// Collapses by volume move the vertices that stay by up to an edge; their counters must not move along.
+TEST(Fit, TellsWhereCountersWereLearned) {
+    const TargetSpace target = target_of(shapes::torus_cloud(20000));
+    Network network = network_in_frame(target, shapes::torus_grid(60, 30));
+    const Network before = network;
     FitOptions options;
-    options.reduce_to = 60;
+    options.reduce_to = 200;
+    options.calm = true;
     const FitReport report = fit(network, target, options);
-    EXPECT_LT(5 * 60, before) << "far fewer than the ids in use";
-    EXPECT_EQ(network.vertex_count(), 60);
-    EXPECT_EQ(network.validate(), "");
-    EXPECT_EQ(network.genus(), 0);
-    EXPECT_TRUE(report.improved);
-    EXPECT_LT(rms(target, network), 1e-3);
-    for (VertexId v = 0; v < network.slot_count(); ++v) EXPECT_EQ(report.sources[v] >= 0, network.alive(v));
+    double sum = 0;
+    for (const VertexId v : network.vertices()) {
+        ASSERT_TRUE(before.alive(report.sources[v]));
+        sum += static_cast<double>((before.position(report.sources[v]) - network.position(v)).Norm());
+    }
+    const auto edge = static_cast<double>(mean_edge_length(Surface(before)));
+    EXPECT_LT(sum / network.vertex_count(), 0.6 * edge);
+}
+
+TEST(Fit, CancelledInTheReductionItLeavesASoundMesh) {
+    class StopLater : public Progress {
+    public:
+        explicit StopLater(int calls) : left_(calls) {}
+        bool operator()(double, const char*) override { return left_-- > 0; }
+
+    private:
+        int left_;
+    };
+    const TargetSpace target = target_of(shapes::sphere_cloud(5000));
+    const Network start = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 1.1));
+    FitOptions options;
+    options.reduce_to = 100;
+    options.calm = true;
+    int reduced = 0;
+    for (int calls = 0; calls < 8; ++calls) {
+        Network network = start;
+        StopLater progress(calls);
+        fit_to_points(network, target, options, 1, 1, progress);
+        EXPECT_EQ(network.validate(), "");
+        EXPECT_EQ(network.genus(), 0);
+        reduced += network.vertex_count() == 100 ? 1 : 0;
+    }
+    EXPECT_GT(reduced, 0);
+    EXPECT_LT(reduced, 7);
 }
 
 TEST(Fit, RemovesNoMoreThanTheTopologyAllows) {
@@ -298,14 +350,17 @@ TEST(Fit, ReportsHowMuchOfItIsDone) {
         int standing_still = 0;
     };
     const TargetSpace target = target_of(shapes::sphere_cloud(5000));
-    Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 1.1), 0.05);
-    FitOptions options;
-    options.reduce_to = 100;
-    Watch progress;
-    fit_to_points(network, target, options, 1, 1, progress);
-    EXPECT_EQ(network.vertex_count(), 100);
-    EXPECT_LT(progress.standing_still, 2) << "the first round of the reduction removes none";
-    EXPECT_GT(progress.last, 0.6);
+    for (const bool calm : {false, true}) {
+        Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 1.1), 0.05);
+        FitOptions options;
+        options.reduce_to = 100;
+        options.calm = calm;
+        Watch progress;
+        fit_to_points(network, target, options, 1, 1, progress);
+        EXPECT_EQ(network.vertex_count(), 100);
+        EXPECT_LT(progress.standing_still, 2) << "the first round of the reduction removes none";
+        EXPECT_GT(progress.last, 0.6);
+    }
 }
 
 }  // namespace

@@ -80,6 +80,28 @@ inline Shape cube() {
     return shape;
 }
 
+/// Each face divided into four at the middles of its edges. The given vertices come first.
+inline Shape divided(const Shape& given) {
+    Shape shape = given;
+    shape.faces.clear();
+    std::map<std::pair<int, int>, int> middles;
+    const auto middle = [&](int a, int b) {
+        const auto found = middles.emplace(std::minmax(a, b), static_cast<int>(shape.positions.size()));
+        if (found.second)
+            shape.positions.push_back((given.positions[static_cast<std::size_t>(a)] +
+                                       given.positions[static_cast<std::size_t>(b)]) /
+                                      2);
+        return found.first->second;
+    };
+    for (const std::array<int, 3>& f : given.faces) {
+        const int a = middle(f[0], f[1]);
+        const int b = middle(f[1], f[2]);
+        const int c = middle(f[2], f[0]);
+        shape.faces.insert(shape.faces.end(), {{f[0], a, c}, {f[1], b, a}, {f[2], c, b}, {a, b, c}});
+    }
+    return shape;
+}
+
 /// The unit sphere: an icosahedron, each face divided into four \p levels times. 10 x 4^levels + 2 vertices.
 inline Shape icosphere(int levels) {
     const double t = (1 + std::sqrt(5.0)) / 2;
@@ -100,24 +122,9 @@ inline Shape icosphere(int levels) {
                  {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
     for (vcg::Point3d& p : shape.positions) p.Normalize();
     for (int level = 0; level < levels; ++level) {
-        std::map<std::pair<int, int>, int> middles;
-        const auto middle = [&](int a, int b) {
-            const auto found = middles.emplace(std::minmax(a, b), static_cast<int>(shape.positions.size()));
-            if (found.second) {
-                vcg::Point3d p = shape.positions[static_cast<std::size_t>(a)] +
-                                 shape.positions[static_cast<std::size_t>(b)];
-                shape.positions.push_back(p.Normalize());
-            }
-            return found.first->second;
-        };
-        std::vector<std::array<int, 3>> finer;
-        for (const std::array<int, 3>& f : shape.faces) {
-            const int a = middle(f[0], f[1]);
-            const int b = middle(f[1], f[2]);
-            const int c = middle(f[2], f[0]);
-            finer.insert(finer.end(), {{f[0], a, c}, {f[1], b, a}, {f[2], c, b}, {a, b, c}});
-        }
-        shape.faces = finer;
+        const std::size_t given = shape.positions.size();
+        shape = divided(shape);
+        for (std::size_t v = given; v < shape.positions.size(); ++v) shape.positions[v].Normalize();
     }
     return shape;
 }

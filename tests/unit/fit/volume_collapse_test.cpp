@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Collapses by volume: against costs computed anew, and what must stay as it is.
+#include "vcg_core/fit/volume_collapse.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "tests/unit/support/network_starts.h"
+#include "tests/unit/support/referee.h"
+#include "tests/unit/support/shapes.h"
+#include "vcg_core/mesh/surface.h"
+
+namespace neuralmesh {
+namespace {
+
+PerVertex<char> nobody(const Network& network) { return PerVertex<char>(network.slot_count(), 0); }
+
+void reduce(Network& network, int vertices) { collapse_by_volume(network, vertices, nobody(network)); }
+
+/// The place of an edge and its cost by Lindstrom and Turk, from the faces of the mesh: the least sum of
+/// squared volumes under the constraint that the volume stays, by the method of Lagrange. The weight of the
+/// shape is that of the code.
+std::pair<Eigen::Vector3d, double> place_of(const Network& network, VertexId a, VertexId b) {
+    const auto at = [&](VertexId v) { return to_eigen(network.position(v)).cast<double>().eval(); };
+    Eigen::Matrix4d system = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
+    std::vector<std::pair<Eigen::Vector3d, double>> planes;
+    for (const Triangle& f : network.faces()) {
+        if (std::none_of(f.begin(), f.end(), [&](VertexId v) { return v == a || v == b; })) continue;
+        const Eigen::Vector3d normal = (at(f[1]) - at(f[0])).cross(at(f[2]) - at(f[0]));
+        planes.emplace_back(normal, normal.dot(at(f[0])));
+    }
+    for (const auto& [normal, offset] : planes) {
+        system.topLeftCorner<3, 3>() += normal * normal.transpose();
+        right.head<3>() += offset * normal;
+        system.topRightCorner<3, 1>() += normal;
+        right[3] += offset;
+    }
+    system.bottomLeftCorner<1, 3>() = system.topRightCorner<3, 1>().transpose();
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    int neighbours = 0;
+    for (const VertexId v : {a, b})
+        for (const VertexId w : network.ring(v))
+            if (w != a && w != b) {
+                mean += at(w);
+                ++neighbours;
+            }
+    const double shape = 1e-4 * system.topLeftCorner<3, 3>().trace();
+    system.topLeftCorner<3, 3>() += shape * Eigen::Matrix3d::Identity();
+    right.head<3>() += shape * mean / neighbours;
+    const Eigen::Vector3d place = system.fullPivLu().solve(right).head<3>();
+    double cost = 0;
+    for (const auto& [normal, offset] : planes)
+        cost += (normal.dot(place) - offset) * (normal.dot(place) - offset);
+    return {place, cost};
+}
+
+TEST(VolumeCollapse, TakesTheEdgeOfLeastCostToItsPlace) {
+    Network network = referee::network_of(shapes::icosphere(2), 0.05);
+    for (int times = 0; times < 30; ++times) {
+        const Network before = network;
+        const std::vector<VertexMoves::DoneCollapse> done =
+            collapse_by_volume(network, network.vertex_count() - 1, nobody(network));
+        ASSERT_EQ(done.size(), 1U);
+        const auto [place, cost] = place_of(before, done[0].gone, done[0].into);
+        const vcg::Point3d where(place[0], place[1], place[2]);
+        EXPECT_LE((vcg::Point3d::Construct(before.position(done[0].into)) - where).Norm(),
+                  (vcg::Point3d::Construct(before.position(done[0].gone)) - where).Norm() + 1e-9);
+        EXPECT_LT((to_eigen(network.position(done[0].into)).cast<double>() - place).norm(), 1e-5);
+        int cheaper = 0;
+        for (const VertexId v : before.vertices())
+            for (const VertexId w : before.ring(v))
+                cheaper += v < w && place_of(before, v, w).second < cost * (1 - 1e-6) ? 1 : 0;
+        EXPECT_EQ(cheaper, 0);
+    }
+}
+
+// The costs of edges are kept, and computed anew only around a collapse.
+TEST(VolumeCollapse, ManyAtOnceAreThoseOneByOne) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        Network at_once = referee::network_of(shapes::torus_grid(24, 12), 0.02, seed);
+        Network one_by_one = at_once;
+        reduce(at_once, 40);
+        for (int vertices = one_by_one.vertex_count() - 1; vertices >= 40; --vertices)
+            reduce(one_by_one, vertices);
+        EXPECT_EQ(at_once.vertex_count(), 40);
+        ASSERT_EQ(at_once.faces(), one_by_one.faces());
+        for (const VertexId v : at_once.vertices()) EXPECT_EQ(at_once.position(v), one_by_one.position(v));
+    }
+}
+
+TEST(VolumeCollapse, KeepsTopologyAndVolume) {
+    for (const shapes::Shape& shape : {shapes::icosphere(3), shapes::torus_grid(40, 20)}) {
+        Network network = referee::network_of(shape, 0.005);
+        const referee::Census before = referee::census(network.faces());
+        const double volume = referee::enclosed_volume(network);
+        for (const int vertices : {400, 200, 100}) {
+            reduce(network, vertices);
+            EXPECT_EQ(network.vertex_count(), vertices);
+            network_starts::expect_sound(network, before);
+            EXPECT_NEAR(referee::enclosed_volume(network), volume, 1e-5 * volume);
+        }
+        for (const Triangle& f : network.faces())
+            EXPECT_GE(triangle_quality(to_eigen(network.position(f[0])), to_eigen(network.position(f[1])),
+                                       to_eigen(network.position(f[2]))),
+                      0.1F);
+    }
+}
+
+TEST(VolumeCollapse, LeavesTheCornersOfACube) {
+    Network network = referee::network_of(shapes::divided(shapes::divided(shapes::divided(shapes::cube()))));
+    ASSERT_EQ(network.vertex_count(), 386);
+    reduce(network, 8);
+    EXPECT_EQ(network.vertex_count(), 8);
+    for (const VertexId v : network.vertices())
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(std::abs(network.position(v)[k]), 0.5, 1e-3);
+}
+
+TEST(VolumeCollapse, LeavesBoundariesAndBarredVertices) {
+    Network network = referee::network_of(shapes::grid(12, 12), 0.01);
+    const Network before = network;
+    PerVertex<char> barred = nobody(network);
+    int inner = 0;
+    for (const VertexId v : network.vertices())
+        if (network.ring(v).open == 0) barred[v] = ++inner % 3 == 0 ? 1 : 0;
+    collapse_by_volume(network, 4, barred);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_LT(network.vertex_count(), before.vertex_count());
+    for (const VertexId v : before.vertices()) {
+        if (before.ring(v).open == 0 && barred[v] == 0) continue;
+        ASSERT_TRUE(network.alive(v));
+        EXPECT_EQ(network.position(v), before.position(v));
+    }
+}
+
+TEST(VolumeCollapse, StopsWhereTheTopologyWouldChange) {
+    Network network = referee::network_of(shapes::torus_grid(20, 10));
+    reduce(network, 4);
+    EXPECT_GE(network.vertex_count(), 7) << "a triangulated torus has at least seven";
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.genus(), 1);
+}
+
+TEST(VolumeCollapse, SaysWhatItDid) {
+    Network network = referee::network_of(shapes::icosphere(3), 0.01);
+    Network replayed = network;
+    const std::vector<VertexMoves::DoneCollapse> done = collapse_by_volume(network, 100, nobody(network));
+    for (const VertexMoves::DoneCollapse& collapse : done) replayed.collapse(collapse.gone, collapse.into);
+    EXPECT_EQ(network.faces(), replayed.faces());
+}
+
+}  // namespace
+}  // namespace neuralmesh
