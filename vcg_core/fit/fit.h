@@ -24,9 +24,8 @@ struct FitOptions {
     /// Reduce the network to this number of vertices first, removing those whose removal costs least. 0, or
     /// at least the present number: keep it.
     int reduce_to = 0;
-    /// Whether the noise is small beside the edges. Then the reduction to less than half of the vertices goes
-    /// by the shape of the fitted mesh (volume_collapse.h), other reductions make do with fewer points, and
-    /// rounds that gain little end the fit.
+    /// Whether the noise is small beside the edges. Then a reduction by a third of the vertices or more goes
+    /// by the shape of the fitted mesh (volume_collapse.h), and the fit ends with rounds that gain little.
     bool calm = false;
     /// Leave out stray points (stray_points.h). For clouds that had outliers: those close to the surface are
     /// still there.

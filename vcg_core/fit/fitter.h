@@ -47,8 +47,8 @@ public:
     /// \p progress asks to stop; then the network is unchanged.
     bool untangle_surface(Progress& progress);
     /// Removes the vertices whose removal costs least. The costs are measured at part of the points, in
-    /// rounds that each end with a least-squares solution; or, if \p calm, see FitOptions, and with less than
-    /// half of the vertices to stay, they are those of collapse_by_volume() after a few such solutions.
+    /// rounds that each end with a least-squares solution. If \p calm, see FitOptions, and a third of the
+    /// vertices are to go, they are those of collapse_by_volume() instead, after a few such solutions.
     /// \return false if \p progress asks to stop or no more vertices can go \pre the network has more than \p
     /// vertices vertices
     bool reduce_to(int vertices, bool calm, Progress& progress);
@@ -122,7 +122,7 @@ private:
     void set_points_aside(int points_per_vertex);
     bool wants_reduction(int vertices, int at_start, Progress& progress) const;
     bool reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress);
-    bool reduce_by_costs(int vertices, bool calm, Surface& surface, PointsByFace points, Progress& progress);
+    bool reduce_by_costs(int vertices, Surface& surface, PointsByFace points, Progress& progress);
     PointsByFace update_for_removal(Surface& surface, PointsByFace points);
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
 

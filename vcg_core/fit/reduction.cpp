@@ -16,21 +16,22 @@ namespace neuralmesh {
 
 namespace {
 
-/// Largest share of the vertices that one round of the reduction removes, and the number of points it uses
-/// for each vertex there is at the start. The second of each pair is for calm points. Clean, the eight models
-/// of the accuracy table then have 1.00 to 1.01 of the error at 500, 1,000 and 2,000 vertices, and a run with
-/// 1,000 takes .87 of the time. With noise of .3 % of the diagonal they would have 1.01 to 1.03 of the error.
-constexpr double kRemovedShare = 0.12, kCalmRemovedShare = 0.2;
-constexpr int kReducingPointsPerVertex = 25, kCalmReducingPointsPerVertex = 15;
+/// Largest share of the vertices that one round of the reduction by costs removes.
+constexpr double kRemovedShare = 0.12;
+/// The number of points that a reduction by costs uses for each vertex there is at the start, and one by
+/// volume, which needs them for its solutions only.
+constexpr int kPointsForCosts = 25, kPointsForVolume = 15;
 constexpr std::size_t kMinReducingVertices = 1000;
 /// With more than this many times the vertices wanted, rounds remove densely: about 12 % of the vertices
 /// instead of 8 %. Clean, bunny, koala, fandisk, block, kitten and feline then have .98, 1.01 and 1.00 of the
 /// error at 500, 1,000 and 2,000 vertices. From twice the vertices on, 10,000 would have 1.01.
 constexpr int kDenseFrom = 2;
-/// Solutions before collapses by volume, each with flips after it. Learned meshes lag behind the points and
-/// have their vertices beside sharp edges, and these collapses keep what the mesh shows. With two, 2,000
-/// vertices have 1.03 of the error, with one 1.1.
-constexpr int kRoundsBefore = 3;
+/// From this many times the vertices wanted on, calm meshes are reduced by volume.
+constexpr double kByVolumeFrom = 1.5;
+/// Solutions before that, with edge flips between them. The learned mesh lags behind the points and has its
+/// vertices beside sharp edges, and the collapses keep what it shows. With two, 2,000 vertices have 1.03 of
+/// the error, with one 1.1.
+constexpr int kSolutionsBefore = 3;
 
 }  // namespace
 
@@ -39,15 +40,14 @@ bool Fitter::reduce_to(int vertices, bool calm, Progress& progress) {
     PartOf untangling(progress, 0.9, 1);
     if (!wants_reduction(vertices, network_.vertex_count(), reducing)) return false;
     final_vertices_ = vertices;
-    set_points_aside(calm ? kCalmReducingPointsPerVertex : kReducingPointsPerVertex);
+    const bool by_volume = calm && network_.vertex_count() >= kByVolumeFrom * vertices;
+    set_points_aside(by_volume ? kPointsForVolume : kPointsForCosts);
     Surface surface(network_);
     PointsByFace points = locate_points(surface);
     set_directions(surface);
     solve(points, surface);
-    const bool dense = network_.vertex_count() > kDenseFrom * vertices;
-    const bool reduced = calm && dense
-                             ? reduce_by_volume(vertices, surface, std::move(points), reducing)
-                             : reduce_by_costs(vertices, calm, surface, std::move(points), reducing);
+    const bool reduced = by_volume ? reduce_by_volume(vertices, surface, std::move(points), reducing)
+                                   : reduce_by_costs(vertices, surface, std::move(points), reducing);
     if (!reduced) return false;
     fitted_.points.insert(fitted_.points.end(), set_aside_.points.begin(), set_aside_.points.end());
     fitted_.weights.insert(fitted_.weights.end(), set_aside_.weights.begin(), set_aside_.weights.end());
@@ -61,18 +61,21 @@ bool Fitter::reduce_by_volume(int vertices, Surface& surface, PointsByFace point
     excludes_layers_ = !layered_;
     PartOf fitting(progress, 0, 0.9);
     PartOf rest(progress, 0.9, 1);
-    for (int round = 1;; ++round) {
-        move_to_creases(surface, points);
-        flip_edges(surface, points);
-        surface = Surface(network_);
-        if (round == kRoundsBefore) break;
-        if (!fitting(static_cast<double>(round) / kRoundsBefore,
+    for (int solutions = 1; solutions < kSolutionsBefore; ++solutions) {
+        if (!fitting(static_cast<double>(solutions) / kSolutionsBefore,
                      "Fitting to the points, before the reduction"))
             return false;
+        flip_edges(surface, points);
+        surface = Surface(network_);
         points = assign_faces(surface);
         set_directions(surface);
         solve(points, surface);
     }
+    // Not before: where there are few points for each vertex, block of 10,000 vertices then had 1.17 of the
+    // error.
+    move_to_creases(surface, points);
+    flip_edges(surface, points);
+    surface = Surface(network_);
     const Network before = network_;
     redirect_to_survivors(guarded(surface, [&](const PerVertex<char>& barred) {
         return collapse_by_volume(network_, vertices, barred);
@@ -85,20 +88,18 @@ bool Fitter::reduce_by_volume(int vertices, Surface& surface, PointsByFace point
     if (network_.vertex_count() == vertices) return true;
     surface = Surface(network_);
     points = assign_faces(surface);
-    return reduce_by_costs(vertices, true, surface, std::move(points), rest);
+    return reduce_by_costs(vertices, surface, std::move(points), rest);
 }
 
-bool Fitter::reduce_by_costs(int vertices, bool calm, Surface& surface, PointsByFace points,
-                             Progress& progress) {
+bool Fitter::reduce_by_costs(int vertices, Surface& surface, PointsByFace points, Progress& progress) {
     const int at_start = network_.vertex_count();
-    const double removed_share = calm ? kCalmRemovedShare : kRemovedShare;
     // Not where each round finds the stray points anew.
     const bool dense = at_start > kDenseFrom * vertices && !expects_strays_;
     while (network_.vertex_count() > vertices) {
         if (!wants_reduction(vertices, at_start, progress)) return false;
         points = update_for_removal(surface, std::move(points));
         const int max_count = std::min(network_.vertex_count() - vertices,
-                                       1 + static_cast<int>(removed_share * network_.vertex_count()));
+                                       1 + static_cast<int>(kRemovedShare * network_.vertex_count()));
         if (!remove_vertices(surface, points, max_count, dense)) return false;
         surface = Surface(network_);
         points = assign_faces(surface);
