@@ -54,9 +54,9 @@ bool is_calm(const LearningTask& task) {
            task.network.boundary_loop_count() == 0;
 }
 
-/// Of calm points. A preview of 1,000 vertices has to come at once, so it grows to 4,000; with 8,000 it would
-/// have .93 of the error and take 1.2 times as long. 2,000 grow to 12,000: with 7,000 they would have 1.1 of
-/// the error.
+/// Of calm points. A preview of 1,000 vertices has to come at once, so it grows to 4,000; with 6,000 it would
+/// have .95 of the error and take 1.2 times as long. 2,000 grow to 12,000: with 7,000 they would have 1.1
+/// times the error.
 int calm_surplus(int final_vertices) {
     constexpr int kOfPreview = 3000;
     constexpr int kLargest = 10000;

@@ -35,9 +35,8 @@ constexpr int kQuietRounds = 3;
 /// The first round after which vertices move to creases: before, they are too far from the points.
 constexpr int kFirstCreases = 1;
 /// The fit ends when two rounds lower the error by less than this share, but not in the first ones. The
-/// second of each pair is for calm points, after whose reduction rounds gain little: the eight models of the
-/// accuracy table have 1.00 of the error with them at 500, 1,000 and 2,000 vertices, in .9 to .96 of the
-/// time.
+/// second of each pair is for calm points, after whose reduction rounds gain little: models with 500, 1,000
+/// and 2,000 vertices have the same error with them, in .91 to .96 of the time.
 constexpr double kLeastProgress = 0.001, kCalmLeastProgress = 0.005;
 constexpr int kFirstRounds = 5, kCalmFirstRounds = 4;
 
