@@ -46,21 +46,27 @@ int carried_vertices(const LearningTask& task, const Settings& settings) {
 /// have .93 of the error. Chosen by tests/experiments/accuracy/accuracy_table.py and open_table.py.
 bool is_calm(const LearningTask& task) {
     constexpr double kCalmNoise = 0.05;  // in edges
-    // Of more outliers some are left beside the surface. Up to a tenth of the points, the most measured, was
-    // fine.
+    return task.noise < kCalmNoise && task.network.boundary_loop_count() == 0;
+}
+
+/// Whether the fit reduces by volume. Not to few vertices: small faces that cut corners off stay as long as
+/// there is anything flat to collapse, and with 400 or 600 vertices 4 of 16 cubes have 15 crease lines, one
+/// by costs. Nor with very many outliers, because some of them are left beside the surface; up to a tenth of
+/// the points, the most measured, was fine.
+bool reduces_by_volume(const LearningTask& task, int final_vertices) {
+    constexpr int kFewest = 1000;
     constexpr double kMostOutliers = 0.2;
     const auto points = static_cast<double>(task.target().positions().size());
-    return task.noise < kCalmNoise && task.outliers < kMostOutliers * points &&
-           task.network.boundary_loop_count() == 0;
+    return is_calm(task) && final_vertices >= kFewest && task.outliers < kMostOutliers * points;
 }
 
 /// Of calm points. A preview of 1,000 vertices has to come at once, so it grows to 4,000; with 6,000 it would
-/// have .95 of the error and take 1.2 times as long. 2,000 grow to 12,000: with 7,000 they would have 1.1
+/// have .95 times the error and take 1.2 times as long. 2,000 grow to 12,000: with 7,000 they would have 1.1
 /// times the error.
-int calm_surplus(int final_vertices) {
-    constexpr int kOfPreview = 3000;
+int calm_surplus(int final_vertices, bool by_volume) {
     constexpr int kLargest = 10000;
-    return std::clamp(8 * final_vertices - 5000, std::min(6 * final_vertices, kOfPreview), kLargest);
+    const int wanted = by_volume ? 8 * final_vertices - 5000 : 3 * final_vertices - 1000;
+    return std::min(wanted, kLargest);
 }
 
 /// Number of vertices that the network grows to; see learn_and_fit(). There is a surplus only if the fit may
@@ -74,7 +80,8 @@ int vertices_to_grow(const LearningTask& task, const Settings& settings, int fin
     const int least = start > final_vertices ? start + start / 4 : start;
     int surplus = surplus_vertices(settings, final_vertices);
     const bool calm = is_calm(task);
-    if (calm) surplus = std::max(surplus, calm_surplus(final_vertices));
+    if (calm)
+        surplus = std::max(surplus, calm_surplus(final_vertices, reduces_by_volume(task, final_vertices)));
     const int grow_to = std::max(least, final_vertices + surplus);
     if (task.target().has_faces()) return grow_to;
     const std::size_t points_per_vertex = calm ? 3 : 10;
@@ -107,6 +114,7 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
     options.expect_strays = task.outliers > 0;
     options.reduce_to = carried;
     options.calm = is_calm(task);
+    options.by_volume = reduces_by_volume(task, carried);
     options.refine_to = carried < settings.target_vertices ? settings.target_vertices : 0;
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
     // error is largest at the rim, and vertices inserted there stick out.

@@ -35,10 +35,10 @@ constexpr int kQuietRounds = 3;
 /// The first round after which vertices move to creases: before, they are too far from the points.
 constexpr int kFirstCreases = 1;
 /// The fit ends when two rounds lower the error by less than this share, but not in the first ones. The
-/// second of each pair is for calm points, after whose reduction rounds gain little: models with 500, 1,000
-/// and 2,000 vertices have the same error with them, in .91 to .96 of the time.
-constexpr double kLeastProgress = 0.001, kCalmLeastProgress = 0.005;
-constexpr int kFirstRounds = 5, kCalmFirstRounds = 4;
+/// second of each pair is for fits after a reduction by volume, where rounds gain little: models with 1,000
+/// and 2,000 vertices have the same error with them, in .92 to .96 of the time.
+constexpr double kLeastProgress = 0.001, kLeastAfterVolume = 0.005;
+constexpr int kFirstRounds = 5, kFirstAfterVolume = 4;
 
 /// Rounds after the insertion of vertices that the points do not carry: by then the mesh is near the points.
 constexpr int kRefinedRounds = 4;
@@ -150,8 +150,8 @@ private:
             report_.sources = fitter_.sources();
             report_.rounds = round + 1;
         }
-        const int first_rounds = options_.calm ? kCalmFirstRounds : kFirstRounds;
-        const double least_progress = options_.calm ? kCalmLeastProgress : kLeastProgress;
+        const int first_rounds = options_.by_volume ? kFirstAfterVolume : kFirstRounds;
+        const double least_progress = options_.by_volume ? kLeastAfterVolume : kLeastProgress;
         if (round >= first_rounds && error > (1 - least_progress) * error_before_last_) return true;
         error_before_last_ = last_error_;
         last_error_ = error;
@@ -232,7 +232,7 @@ FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitO
     PartOf reducing(progress, 0.1, 0.5);
     PartOf fitting(progress, reduces ? 0.5 : 0.1, 1);
     if (!fitter.untangle_surface(untangling)) return report;
-    const bool reduced = !reduces || fitter.reduce_to(vertices, options.calm, reducing);
+    const bool reduced = !reduces || fitter.reduce_to(vertices, options, reducing);
     const PerVertex<VertexId> origins = chained(fitter.origins(), own_sources(network));
     report.sources = origins;
     if (!reduced) return report;

@@ -24,9 +24,12 @@ struct FitOptions {
     /// Reduce the network to this number of vertices first, removing those whose removal costs least. 0, or
     /// at least the present number: keep it.
     int reduce_to = 0;
-    /// Whether the noise is small beside the edges. Then a reduction by a third of the vertices or more goes
-    /// by the shape of the fitted mesh (volume_collapse.h), and the fit ends with rounds that gain little.
+    /// Whether the noise is small beside the edges. Then the reduction makes do with fewer points, and its
+    /// rounds remove all vertices whose costs do not depend on each other.
     bool calm = false;
+    /// Reduce by the shape of the fitted mesh (volume_collapse.h), if a third of the vertices or more are to
+    /// go, and end the fit with rounds that gain little. For calm points.
+    bool by_volume = false;
     /// Leave out stray points (stray_points.h). For clouds that had outliers: those close to the surface are
     /// still there.
     bool expect_strays = false;

@@ -10,6 +10,7 @@
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/fit/crossing_guard.h"
+#include "vcg_core/fit/fit.h"
 #include "vcg_core/fit/held_out.h"
 #include "vcg_core/fit/least_squares.h"
 #include "vcg_core/fit/point_choice.h"
@@ -47,11 +48,10 @@ public:
     /// \p progress asks to stop; then the network is unchanged.
     bool untangle_surface(Progress& progress);
     /// Removes the vertices whose removal costs least. The costs are measured at part of the points, in
-    /// rounds that each end with a least-squares solution. If \p calm, see FitOptions, and a third of the
-    /// vertices are to go, they are those of collapse_by_volume() instead, after a few such solutions.
-    /// \return false if \p progress asks to stop or no more vertices can go \pre the network has more than \p
-    /// vertices vertices
-    bool reduce_to(int vertices, bool calm, Progress& progress);
+    /// rounds that each end with a least-squares solution; with FitOptions::by_volume they are those of
+    /// collapse_by_volume(), after a few such solutions. \return false if \p progress asks to stop or no more
+    /// vertices can go \pre the network has more than \p vertices vertices
+    bool reduce_to(int vertices, const FitOptions& options, Progress& progress);
 
     /// Assigns the fitted points to their nearest faces and finds the held-out points, all by exact search.
     PointsByFace locate_points(const Surface& surface);
@@ -122,7 +122,7 @@ private:
     void set_points_aside(int points_per_vertex);
     bool wants_reduction(int vertices, int at_start, Progress& progress) const;
     bool reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress);
-    bool reduce_by_costs(int vertices, Surface& surface, PointsByFace points, Progress& progress);
+    bool reduce_by_costs(int vertices, bool calm, Surface& surface, PointsByFace points, Progress& progress);
     PointsByFace update_for_removal(Surface& surface, PointsByFace points);
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
 

@@ -95,13 +95,13 @@ TEST(Fit, FindsTheCreasesOfACube) {
 
 TEST(Fit, GivesTheSameBytesForAnyNumberOfThreads) {
     const TargetSpace target = target_of(shapes::torus_cloud(8000, 0.01));
-    for (const bool calm : {false, true}) {
+    for (const bool by_volume : {false, true}) {
         Network one = network_in_frame(target, shapes::scaled(shapes::torus_grid(40, 20), 1.05), 0.005);
         Network two = one;
         Network five = one;
         FitOptions options;
-        options.reduce_to = calm ? 300 : 500;
-        options.calm = calm;
+        options.reduce_to = by_volume ? 300 : 500;
+        options.by_volume = by_volume;
         fit(one, target, options, 1);
         fit(two, target, options, 2);
         fit(five, target, options, 5);
@@ -237,12 +237,12 @@ public:
 TEST(Fit, RemovesTheVerticesOfLeastCost) {
     // A cube needs its eight corners only: removing vertices inside its sides costs nothing.
     const TargetSpace target = target_of(shapes::box_cloud(20000));
-    for (const bool calm : {false, true}) {
+    for (const bool by_volume : {false, true}) {
         Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 0.6));
         const int before = network.vertex_count();
         FitOptions options;
         options.reduce_to = 60;
-        options.calm = calm;
+        options.by_volume = by_volume;
         const FitReport report = fit(network, target, options);
         EXPECT_LT(5 * 60, before) << "far fewer than the ids in use";
         EXPECT_EQ(network.vertex_count(), 60);
@@ -262,7 +262,7 @@ TEST(Fit, TellsWhereCountersWereLearned) {
     const Network before = network;
     FitOptions options;
     options.reduce_to = 200;
-    options.calm = true;
+    options.by_volume = true;
     const FitReport report = fit(network, target, options);
     double sum = 0;
     for (const VertexId v : network.vertices()) {
@@ -286,7 +286,7 @@ TEST(Fit, CancelledInTheReductionItLeavesASoundMesh) {
     const Network start = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 1.1));
     FitOptions options;
     options.reduce_to = 100;
-    options.calm = true;
+    options.by_volume = true;
     int reduced = 0;
     for (int calls = 0; calls < 8; ++calls) {
         Network network = start;
@@ -350,11 +350,11 @@ TEST(Fit, ReportsHowMuchOfItIsDone) {
         int standing_still = 0;
     };
     const TargetSpace target = target_of(shapes::sphere_cloud(5000));
-    for (const bool calm : {false, true}) {
+    for (const bool by_volume : {false, true}) {
         Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 1.1), 0.05);
         FitOptions options;
         options.reduce_to = 100;
-        options.calm = calm;
+        options.by_volume = by_volume;
         Watch progress;
         fit_to_points(network, target, options, 1, 1, progress);
         EXPECT_EQ(network.vertex_count(), 100);
