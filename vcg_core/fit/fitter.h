@@ -136,6 +136,7 @@ private:
     float noise_variance_ = 0;           ///< from the last assignment
     PerVertex<float> widest_variances_;  ///< of the points across the surface, so far
     bool layered_places_ = true;         ///< until a search shows none
+    bool lags_ = false;                  ///< the surface, behind the points: it is as learned
     bool excludes_layers_ = false;       ///< a surface of many more vertices has shown none
     bool layered_ = false;               ///< somewhere; from the last exact search, as the next
     float layering_ = 0;                 ///< over most of the surface, see layering()
