@@ -30,10 +30,9 @@ constexpr int kDenseFrom = 2;
 /// From this many times the vertices wanted on, meshes are reduced by volume.
 constexpr double kByVolumeFrom = 1.5;
 /// Solutions before that, with edge flips between them. The learned mesh lags behind the points and has its
-/// vertices beside sharp edges, and the collapses keep what it shows. With two, 2,000 vertices have 1.03
-/// times the error, with one 5,000 have 1.08; with four, 500 to 10,000 have .98 to 1.01, in 1.03 to 1.08
-/// times the time.
-constexpr int kSolutionsBefore = 3;
+/// vertices beside sharp edges, and the collapses keep what it shows. With three, 500 and 2,000 vertices have
+/// 1.02 and 1.01 times the error.
+constexpr int kSolutionsBefore = 4;
 
 }  // namespace
 
@@ -81,9 +80,10 @@ bool Fitter::reduce_by_volume(int vertices, Surface& surface, PointsByFace point
     move_to_creases(surface, points);
     flip_edges(surface, points);
     surface = Surface(network_);
+    const auto edge = static_cast<double>(mean_edge_length(surface));
     const Network before = network_;
     redirect_to_survivors(guarded(surface, [&](const PerVertex<char>& barred) {
-        return collapse_by_volume(network_, vertices, barred);
+        return collapse_by_volume(network_, vertices, barred, edge);
     }));
     // Vertices have moved by up to an edge.
     PerVertex<VertexId> sources = own_sources(network_);

@@ -21,6 +21,11 @@ namespace {
 /// the places follow what is uneven along its sharp edges.
 constexpr double kShape = 1e-4;
 constexpr int kMaxValence = 12;
+/// Weight of the squared length of an edge, up to that of short edges. Along a sharp edge the fitted vertices
+/// are close together and a little off it, so that it costs more to collapse them than flat faces. Without
+/// this, cubes of 400 and 600 vertices have doubled edges in 4 of 16 clouds, and corners cut off. With 0.1,
+/// fandisk has 1.25 times the error with 2,000 vertices, because its arcs need short edges.
+constexpr double kShortness = 0.01;
 
 using Vector3d = Eigen::Vector3d;
 
@@ -68,9 +73,10 @@ Place best_place(const FaceSums& sums, const Vector3d& mean) {
 
 class Reduction {
 public:
-    Reduction(Network& network, const PerVertex<char>& barred)
+    Reduction(Network& network, const PerVertex<char>& barred, double short_length)
         : network_(network),
           barred_(barred),
+          squared_short_length_(short_length * short_length),
           around_(network.slot_count()),
           changes_(network.slot_count(), 0) {
         for (const VertexId v : network_.vertices()) around_[v] = examine(v);
@@ -145,8 +151,14 @@ private:
 
     void enqueue(VertexId a, VertexId b) {
         if (a > b) std::swap(a, b);  // so that the cost does not depend on where the edge was seen from
-        if (!stays(a) && !stays(b))
-            queue_.push({place(a, b).squared_volume, a, b, changes_[a] + changes_[b]});
+        if (stays(a) || stays(b)) return;
+        queue_.push({place(a, b).squared_volume + cost_of_length(a, b), a, b, changes_[a] + changes_[b]});
+    }
+
+    /// Of the dimension of a squared volume.
+    double cost_of_length(VertexId a, VertexId b) const {
+        const double squared = std::min((at(a) - at(b)).squaredNorm(), squared_short_length_);
+        return kShortness * squared_short_length_ * squared_short_length_ * squared;
     }
 
     bool is_current(const Candidate& edge) const {
@@ -195,6 +207,7 @@ private:
 
     Network& network_;
     const PerVertex<char>& barred_;
+    const double squared_short_length_;
     PerVertex<Around> around_;
     PerVertex<int> changes_;
     std::priority_queue<Candidate> queue_;
@@ -203,8 +216,9 @@ private:
 }  // namespace
 
 std::vector<VertexMoves::DoneCollapse> collapse_by_volume(Network& network, int vertices,
-                                                          const PerVertex<char>& barred) {
-    return Reduction(network, barred).run(vertices);
+                                                          const PerVertex<char>& barred,
+                                                          double short_length) {
+    return Reduction(network, barred, short_length).run(vertices);
 }
 
 }  // namespace neuralmesh
