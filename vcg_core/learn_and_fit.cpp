@@ -40,40 +40,45 @@ int carried_vertices(const LearningTask& task, const Settings& settings) {
     return static_cast<int>(std::min(placed, static_cast<std::size_t>(wanted)));
 }
 
+bool is_closed(const LearningTask& task) { return task.network.boundary_loop_count() == 0; }
+
 /// Whether the noise is small beside the edges. Then the network learns many more vertices than are asked
 /// for, and the fit keeps those that matter. With more noise the additional vertices would follow it. Not
 /// with boundaries: open clouds take longer than closed ones as it is. Cut models of 2,000 vertices would
 /// have .93 of the error. Chosen by tests/experiments/accuracy/accuracy_table.py and open_table.py.
 bool is_calm(const LearningTask& task) {
     constexpr double kCalmNoise = 0.05;  // in edges
-    return task.noise < kCalmNoise && task.network.boundary_loop_count() == 0;
+    return task.noise < kCalmNoise && is_closed(task);
 }
 
-/// What the network grows beyond \p final_vertices if the fit reduces by volume. With 2,500, 500 vertices
-/// would have 1.1 times the error, with 5,000, 2,000 would. A preview of 1,000 has to come at once.
-int surplus_for_volume(int final_vertices) {
+/// What the network grows beyond \p final_vertices if the fit reduces by volume. Calm: with 2,500, 500
+/// vertices would have 1.1 times the error, with 5,000, 2,000 would; a preview of 1,000 has to come at once.
+/// With noise of .6 % of the diagonal and 10,000, 5,000 vertices would have 1.1 times the error.
+int surplus_for_volume(const LearningTask& task, int final_vertices) {
     constexpr int kLeast = 4000, kMost = 10000;
+    if (!is_calm(task)) return kLeast;
     return std::min(std::max(8 * final_vertices - 6000, kLeast), kMost);
 }
 
 /// Whether the fit reduces by volume. Not with very many outliers, because some of them are left beside the
-/// surface; up to a tenth of the points, the most measured, was fine. Nor to few vertices from few points:
-/// with 4 points for each learned vertex, sharp edges are doubled and corners cut off, and small faces stay
+/// surface; up to a tenth of the points, the most measured, was fine. Calm points must be many for few
+/// vertices: with 4 for each learned one, sharp edges are doubled and corners cut off, and small faces stay
 /// as long as there is anything flat to collapse. 5 of 16 cubes of 400 and 600 vertices then have more than
-/// 12 crease lines, and 2 by costs; from 100,000 points none has.
+/// 12 crease lines, and 2 by costs; from 100,000 points none has. With noise, 5,000 vertices gain nothing in
+/// 1.4 times the time, and 1,000 may have twice the error where it is 2 % of the diagonal.
 bool reduces_by_volume(const LearningTask& task, int final_vertices) {
-    constexpr double kMostOutliers = 0.2;
-    constexpr int kFew = 1000, kPointsPerVertex = 10;
+    constexpr double kMostOutliers = 0.2, kMostNoise = 0.15;
+    constexpr int kFew = 1000, kFewNoisy = 3000, kPointsPerVertex = 10;
     const auto points = static_cast<double>(task.target().positions().size());
-    const int learned = final_vertices + surplus_for_volume(final_vertices);
-    return is_calm(task) && task.outliers < kMostOutliers * points &&
-           (final_vertices >= kFew || points >= kPointsPerVertex * learned);
+    const int learned = final_vertices + surplus_for_volume(task, final_vertices);
+    if (!is_closed(task) || task.outliers >= kMostOutliers * points) return false;
+    if (is_calm(task) && final_vertices >= kFew) return true;
+    return task.noise < kMostNoise && final_vertices < kFewNoisy && points >= kPointsPerVertex * learned;
 }
 
-/// With calm points.
-int calm_surplus(int final_vertices, bool by_volume) {
+int calm_surplus(int final_vertices) {
     constexpr int kMost = 10000;
-    return by_volume ? surplus_for_volume(final_vertices) : std::min(3 * final_vertices - 1000, kMost);
+    return std::min(3 * final_vertices - 1000, kMost);
 }
 
 /// Number of vertices that the network grows to; see learn_and_fit(). There is a surplus only if the fit may
@@ -86,12 +91,14 @@ int vertices_to_grow(const LearningTask& task, const Settings& settings, int fin
     const int start = task.network.vertex_count();
     const int least = start > final_vertices ? start + start / 4 : start;
     int surplus = surplus_vertices(settings, final_vertices);
-    const bool calm = is_calm(task);
-    if (calm)
-        surplus = std::max(surplus, calm_surplus(final_vertices, reduces_by_volume(task, final_vertices)));
+    const bool by_volume = reduces_by_volume(task, final_vertices);
+    if (by_volume)
+        surplus = std::max(surplus, surplus_for_volume(task, final_vertices));
+    else if (is_calm(task))
+        surplus = std::max(surplus, calm_surplus(final_vertices));
     const int grow_to = std::max(least, final_vertices + surplus);
     if (task.target().has_faces()) return grow_to;
-    const std::size_t points_per_vertex = calm ? 3 : 10;
+    const std::size_t points_per_vertex = by_volume || is_calm(task) ? 3 : 10;
     const std::size_t supported = task.target().positions().size() / points_per_vertex;
     return std::max(
         {final_vertices, least, static_cast<int>(std::min(supported, static_cast<std::size_t>(grow_to)))});
@@ -103,10 +110,11 @@ LearnerOptions learner_options(const LearningTask& task, const Settings& setting
     // Most of the vertices will go, and the fit places them: half the signals do for a preview. Of 2,000
     // vertices and more accuracy is wanted: they would have 1.02 times the error.
     constexpr int kPreview = 2000;
-    if (reduces_by_volume(task, carried) && grow_to > carried && carried < kPreview)
+    const bool by_volume = reduces_by_volume(task, carried) && grow_to > carried;
+    if (by_volume && carried < kPreview)
         options.signals_per_split = std::max(1, options.signals_per_split / 2);
     // As many signals as for those that stay settle them well enough.
-    if (is_calm(task))
+    if (by_volume || is_calm(task))
         options.settling_signals_per_vertex = static_cast<int>(
             static_cast<std::int64_t>(options.settling_signals_per_vertex) * carried / grow_to);
     // Each layer of a sheet wins the signals of both by turns: that says nothing of membranes. The topology
@@ -125,8 +133,8 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
     FitOptions options;
     options.expect_strays = task.outliers > 0;
     options.reduce_to = carried;
-    options.calm = is_calm(task);
-    options.by_volume = reduces_by_volume(task, carried);
+    options.by_volume = network.vertex_count() > carried && reduces_by_volume(task, carried);
+    options.calm = options.by_volume || is_calm(task);
     options.refine_to = carried < settings.target_vertices ? settings.target_vertices : 0;
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
     // error is largest at the rim, and vertices inserted there stick out.

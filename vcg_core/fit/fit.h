@@ -24,11 +24,11 @@ struct FitOptions {
     /// Reduce the network to this number of vertices first, removing those whose removal costs least. 0, or
     /// at least the present number: keep it.
     int reduce_to = 0;
-    /// Whether the noise is small beside the edges. Then the reduction makes do with fewer points, and its
-    /// rounds remove all vertices whose costs do not depend on each other.
+    /// Whether the noise is small beside the edges, or the shape tells what goes. Then the reduction makes do
+    /// with fewer points, and its rounds remove all vertices whose costs do not depend on each other.
     bool calm = false;
     /// Reduce by the shape of the fitted mesh (volume_collapse.h), if a third of the vertices or more are to
-    /// go, and end the fit with rounds that gain little. For calm points.
+    /// go, and end the fit with rounds that gain little. For points whose noise is at most .15 edges.
     bool by_volume = false;
     /// Leave out stray points (stray_points.h). For clouds that had outliers: those close to the surface are
     /// still there.
