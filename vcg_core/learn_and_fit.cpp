@@ -43,9 +43,10 @@ int carried_vertices(const LearningTask& task, const Settings& settings) {
 bool is_closed(const LearningTask& task) { return task.network.boundary_loop_count() == 0; }
 
 /// Whether the noise is small beside the edges. Then the network learns many more vertices than are asked
-/// for, and the fit keeps those that matter. With more noise the additional vertices would follow it. Not
-/// with boundaries: open clouds take longer than closed ones as it is. Cut models of 2,000 vertices would
-/// have .93 of the error. Chosen by tests/experiments/accuracy/accuracy_table.py and open_table.py.
+/// for, and the fit keeps those that matter. With more noise large meshes would follow it with them; small
+/// ones may learn more, see reduces_by_volume(). Not with boundaries: open clouds take longer than closed
+/// ones as it is. Cut models of 2,000 vertices would have .93 of the error. Chosen by
+/// tests/experiments/accuracy/accuracy_table.py and open_table.py.
 bool is_calm(const LearningTask& task) {
     constexpr double kCalmNoise = 0.05;  // in edges
     return task.noise < kCalmNoise && is_closed(task);
@@ -61,8 +62,8 @@ int surplus_for_volume(const LearningTask& task, int final_vertices) {
 }
 
 /// Whether the fit reduces by volume. Not with very many outliers, because some of them are left beside the
-/// surface; up to a tenth of the points, the most measured, was fine. Calm points must be many for few
-/// vertices: with 4 for each learned one, sharp edges are doubled and corners cut off, and small faces stay
+/// surface; up to a tenth of the points, the most measured, was fine. For few vertices there must be many
+/// points: with 4 for each learned vertex, sharp edges are doubled and corners cut off, and small faces stay
 /// as long as there is anything flat to collapse. 5 of 16 cubes of 400 and 600 vertices then have more than
 /// 12 crease lines, and 2 by costs; from 100,000 points none has. With noise, 5,000 vertices gain nothing in
 /// 1.4 times the time, and 1,000 may have twice the error where it is 2 % of the diagonal.
@@ -76,6 +77,7 @@ bool reduces_by_volume(const LearningTask& task, int final_vertices) {
     return task.noise < kMostNoise && final_vertices < kFewNoisy && points >= kPointsPerVertex * learned;
 }
 
+/// The same for calm points if the fit reduces by costs.
 int calm_surplus(int final_vertices) {
     constexpr int kMost = 10000;
     return std::min(3 * final_vertices - 1000, kMost);
