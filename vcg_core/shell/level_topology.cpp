@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <vector>
 
@@ -67,6 +69,61 @@ PerLevel<int> euler_changes(const Lattice& lattice, const PerNode<SquaredRadius>
         add_simplices(corners, changes);
     });
     return changes;
+}
+
+/// The nodes of a solid as bits, 64 to a word, row by row along x. Beyond the lattice there is none.
+class SolidBits {
+public:
+    using Word = std::uint64_t;
+    static constexpr int kBits = 64;
+
+    SolidBits(const Lattice& lattice, const NodeSet& solid)
+        : rows_(lattice.ny),
+          slices_(lattice.nz),
+          words_(lattice.nx / kBits + 1),
+          bits_((rows_ + 1) * (slices_ + 1) * (words_ + 1), 0) {
+        for_each_node(lattice, [&](int x, int y, int z) {
+            if (solid[lattice.index(x, y, z)] != 0)
+                bits_[index(x / kBits, y, z)] |= Word{1} << static_cast<unsigned>(x % kBits);
+        });
+    }
+    int words_per_row() const { return words_; }
+    /// Corner by corner, those of the 64 cubes whose lowest corners are the nodes of word \p w of row (y, z).
+    std::array<Word, 8> corners(int w, int y, int z) const {
+        std::array<Word, 8> result{};
+        for (int k = 0; k < 8; k += 2) {
+            const int low = index(w, y + ((k >> 1) & 1), z + (k >> 2));
+            result[static_cast<std::size_t>(k)] = bits_[low];
+            result[static_cast<std::size_t>(k + 1)] = bits_[low] >> 1 | bits_[low + 1] << (kBits - 1);
+        }
+        return result;
+    }
+
+private:
+    int index(int w, int y, int z) const { return (z * (rows_ + 1) + y) * (words_ + 1) + w; }
+
+    int rows_, slices_, words_;
+    Indexed<Word> bits_;  ///< with an empty word, row and slice at the ends
+};
+
+int count_bits(SolidBits::Word word) { return static_cast<int>(std::bitset<SolidBits::kBits>(word).count()); }
+
+/// The signs of the simplices whose lowest corner is the corner 0 of their cube, for 64 cubes at once; see
+/// add_simplices().
+int sum_of_signs(const std::array<SolidBits::Word, 8>& corners) {
+    const auto corner = [&](int k) { return corners[static_cast<std::size_t>(k)]; };
+    int sum = count_bits(corner(0));
+    for (int a = 1; a < 8; ++a) {
+        const SolidBits::Word edges = corner(0) & corner(a);
+        sum -= count_bits(edges);
+        for (int b = a + 1; b < 8; ++b) {
+            if ((a & b) != a) continue;
+            const SolidBits::Word triangles = edges & corner(b);
+            sum += count_bits(triangles);
+            if (b != 7) sum -= count_bits(triangles & corner(7));
+        }
+    }
+    return sum;
 }
 
 /// The nodes of all levels, those of level l from first[l] to first[l + 1] in rising order.
@@ -171,9 +228,15 @@ PerLevel<LevelTopology> topology_of_levels(const Lattice& lattice, const PerNode
 }
 
 int euler_characteristic(const Lattice& lattice, const NodeSet& solid) {
-    PerNode<SquaredRadius> level(solid.size());
-    for (NodeId i = 0; i < solid.size(); ++i) level[i] = solid[i] != 0 ? 0 : 1;
-    return euler_changes(lattice, level, 1)[0];
+    const SolidBits bits(lattice, solid);
+    int sum = 0;
+    for (int z = 0; z < lattice.nz; ++z)
+        for (int y = 0; y < lattice.ny; ++y)
+            for (int w = 0; w < bits.words_per_row(); ++w) {
+                const std::array<SolidBits::Word, 8> corners = bits.corners(w, y, z);
+                if (corners[0] != 0) sum += sum_of_signs(corners);
+            }
+    return sum;
 }
 
 }  // namespace neuralmesh

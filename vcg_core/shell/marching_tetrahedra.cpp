@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -30,6 +31,42 @@ constexpr std::array<std::array<int, 4>, 6> kPairFirst = {
 
 /// A lattice edge: 8 * its lower end + the corner bits from there to its upper end.
 using EdgeKey = std::uint64_t;
+
+/// A set of lattice edges, each with the number of those with smaller keys.
+class RankedEdges {
+public:
+    /// \p keys: below 8 * \p nodes
+    RankedEdges(const std::vector<EdgeKey>& keys, NodeId nodes)
+        : words_(nodes / (kBits / kKeysPerNode) + 1, 0), first_(words_.size()) {
+        for (const EdgeKey key : keys) words_[word_of(key)] |= std::uint64_t{1} << (key % kBits);
+        for (int w = 0; w < words_.size(); ++w) {
+            first_[w] = count_;
+            if (words_[w] != 0) count_ += count(words_[w]);
+        }
+    }
+    int size() const { return count_; }
+    int rank(EdgeKey key) const {
+        const std::uint64_t smaller = (std::uint64_t{1} << (key % kBits)) - 1;
+        return first_[word_of(key)] + count(words_[word_of(key)] & smaller);
+    }
+    /// Calls visit(key) in rising order.
+    template <class Visit>
+    void for_each(const Visit& visit) const {
+        for (int w = 0; w < words_.size(); ++w)
+            if (words_[w] != 0)
+                for (int bit = 0; bit < kBits; ++bit)
+                    if ((words_[w] >> bit & 1U) != 0) visit(static_cast<EdgeKey>(w) * kBits + bit);
+    }
+
+private:
+    static constexpr int kBits = 64, kKeysPerNode = 8;
+    static int word_of(EdgeKey key) { return static_cast<int>(key / kBits); }
+    static int count(std::uint64_t word) { return static_cast<int>(std::bitset<kBits>(word).count()); }
+
+    Indexed<std::uint64_t> words_;
+    Indexed<int> first_;  ///< number of the keys in the words before
+    int count_ = 0;
+};
 
 /// Collects triangles whose vertices lie on lattice edges.
 class EdgeTriangles {
@@ -106,19 +143,16 @@ Point3f EdgeTriangles::point_on(EdgeKey key) const {
 }
 
 IndexedMesh<float> EdgeTriangles::mesh(std::vector<NodeId>& nodes) const {
-    std::vector<EdgeKey> unique = keys_;
-    std::sort(unique.begin(), unique.end());
-    unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
+    const RankedEdges edges(keys_, lattice_.size());
     IndexedMesh<float> result;
-    for (const EdgeKey key : unique) {
+    result.positions.reserve(static_cast<std::size_t>(edges.size()));
+    edges.for_each([&](EdgeKey key) {
         result.positions.push_back(point_on(key));
         nodes.push_back(static_cast<NodeId>(key / 8));
-    }
-    const auto id = [&](EdgeKey key) {
-        return static_cast<int>(std::lower_bound(unique.begin(), unique.end(), key) - unique.begin());
-    };
+    });
+    result.faces.reserve(keys_.size() / 3);
     for (std::size_t i = 0; i < keys_.size(); i += 3)
-        result.faces.push_back({id(keys_[i]), id(keys_[i + 1]), id(keys_[i + 2])});
+        result.faces.push_back({edges.rank(keys_[i]), edges.rank(keys_[i + 1]), edges.rank(keys_[i + 2])});
     return result;
 }
 

@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <random>
+
 #include "tests/unit/support/small_lattice.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/shell/marching_tetrahedra.h"
@@ -87,6 +90,37 @@ TEST(LevelTopology, EulerCharacteristicOfKnownSolids) {
     EXPECT_EQ(euler([&](int x, int y, int z) { return in_cube(x, y, z) && (x != 5 || y != 5); }), 0);
     EXPECT_EQ(euler([&](int x, int y, int z) { return in_cube(x, y, z) && (x != 5 || y != 5 || z != 5); }),
               2);  // a cavity
+}
+
+/// The simplices all of whose nodes are in \p solid, one by one: those of odd dimension count -1.
+int sum_over_simplices(const Lattice& lattice, const NodeSet& solid) {
+    int sum = 0;
+    for_each_node(lattice, [&](int x, int y, int z) {
+        const auto in = [&](int corner) {
+            const int cx = x + (corner & 1), cy = y + ((corner >> 1) & 1), cz = z + (corner >> 2);
+            return lattice.contains(cx, cy, cz) && solid[lattice.index(cx, cy, cz)] != 0;
+        };
+        const std::function<void(int, int)> add = [&](int last, int sign) {
+            sum += sign;
+            for (int next = last + 1; next < 8; ++next)
+                if ((last & next) == last && in(next)) add(next, -sign);
+        };
+        if (in(0)) add(0, 1);
+    });
+    return sum;
+}
+
+TEST(LevelTopology, EulerCharacteristicIsTheSumOverTheSimplices) {
+    std::mt19937 random(1);
+    for (const int nx : {1, 5, 62, 63, 64, 65, 127, 128, 129})
+        for (const unsigned in_eight : {1U, 4U, 7U, 8U}) {
+            Lattice lattice = small_lattice();
+            lattice.nx = nx;
+            NodeSet solid(lattice.size());
+            for (NodeId i = 0; i < solid.size(); ++i) solid[i] = random() % 8 < in_eight ? 1 : 0;
+            EXPECT_EQ(euler_characteristic(lattice, solid), sum_over_simplices(lattice, solid))
+                << nx << " nodes along x, " << in_eight << " of 8 in the solid";
+        }
 }
 
 }  // namespace
