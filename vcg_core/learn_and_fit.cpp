@@ -83,42 +83,56 @@ int calm_surplus(int final_vertices) {
     return std::min(3 * final_vertices - 1000, kMost);
 }
 
-/// Number of vertices that the network grows to; see learn_and_fit(). There is a surplus only if the fit may
-/// redistribute vertices and only the number of vertices ends growth. With too few points per vertex,
-/// learning cannot place the vertices. Chosen by tests/experiments/accuracy/accuracy_table.py.
-int vertices_to_grow(const LearningTask& task, const Settings& settings, int final_vertices) {
-    if (!settings.redistributes_vertices() || !task.encloses_space)
-        return std::max(final_vertices, task.network.vertex_count());
+/// How many vertices the network learns and keeps, and how the fit removes the others; see learn_and_fit().
+struct Plan {
+    int carried = 0;         ///< vertices that learning and fit place by the points
+    int grow_to = 0;         ///< at least
+    bool calm = false;       ///< see is_calm()
+    bool by_volume = false;  ///< see reduces_by_volume()
+};
+
+/// Number of vertices that the network grows to. There is a surplus only if the fit may redistribute vertices
+/// and only the number of vertices ends growth. With too few points per vertex, learning cannot place the
+/// vertices. Chosen by tests/experiments/accuracy/accuracy_table.py.
+int vertices_to_grow(const LearningTask& task, const Settings& settings, const Plan& plan) {
+    const int start = task.network.vertex_count(), carried = plan.carried;
+    if (!settings.redistributes_vertices() || !task.encloses_space) return std::max(carried, start);
     // Growth removes the vertices that the landing leaves without signals, far off.
-    const int start = task.network.vertex_count();
-    const int least = start > final_vertices ? start + start / 4 : start;
-    int surplus = surplus_vertices(settings, final_vertices);
-    const bool by_volume = reduces_by_volume(task, final_vertices);
-    if (by_volume)
-        surplus = std::max(surplus, surplus_for_volume(task, final_vertices));
-    else if (is_calm(task))
-        surplus = std::max(surplus, calm_surplus(final_vertices));
-    const int grow_to = std::max(least, final_vertices + surplus);
+    const int least = start > carried ? start + start / 4 : start;
+    int surplus = surplus_vertices(settings, carried);
+    if (plan.by_volume)
+        surplus = std::max(surplus, surplus_for_volume(task, carried));
+    else if (plan.calm)
+        surplus = std::max(surplus, calm_surplus(carried));
+    const int grow_to = std::max(least, carried + surplus);
     if (task.target().has_faces()) return grow_to;
-    const std::size_t points_per_vertex = by_volume || is_calm(task) ? 3 : 10;
+    const std::size_t points_per_vertex = plan.by_volume || plan.calm ? 3 : 10;
     const std::size_t supported = task.target().positions().size() / points_per_vertex;
     return std::max(
-        {final_vertices, least, static_cast<int>(std::min(supported, static_cast<std::size_t>(grow_to)))});
+        {carried, least, static_cast<int>(std::min(supported, static_cast<std::size_t>(grow_to)))});
 }
 
-LearnerOptions learner_options(const LearningTask& task, const Settings& settings, int grow_to, int carried) {
+Plan plan_for(const LearningTask& task, const Settings& settings) {
+    Plan plan;
+    plan.carried = carried_vertices(task, settings);
+    plan.calm = is_calm(task);
+    plan.by_volume = reduces_by_volume(task, plan.carried);
+    plan.grow_to = vertices_to_grow(task, settings, plan);
+    return plan;
+}
+
+LearnerOptions learner_options(const LearningTask& task, const Settings& settings, const Plan& plan) {
     LearnerOptions options = learner_options_from(settings);
-    options.grow_to = grow_to;
+    options.grow_to = plan.grow_to;
     // Most of the vertices will go, and the fit places them: half the signals do for a preview. Of 2,000
     // vertices and more accuracy is wanted: they would have 1.02 times the error.
     constexpr int kPreview = 2000;
-    const bool by_volume = reduces_by_volume(task, carried) && grow_to > carried;
-    if (by_volume && carried < kPreview)
+    if (plan.by_volume && plan.grow_to > plan.carried && plan.carried < kPreview)
         options.signals_per_split = std::max(1, options.signals_per_split / 2);
     // As many signals as for those that stay settle them well enough.
-    if (by_volume || is_calm(task))
+    if (plan.calm || (plan.by_volume && plan.grow_to > plan.carried))
         options.settling_signals_per_vertex = static_cast<int>(
-            static_cast<std::int64_t>(options.settling_signals_per_vertex) * carried / grow_to);
+            static_cast<std::int64_t>(options.settling_signals_per_vertex) * plan.carried / plan.grow_to);
     // Each layer of a sheet wins the signals of both by turns: that says nothing of membranes. The topology
     // of a given mesh is what somebody asked for.
     options.learn_topology =
@@ -130,14 +144,14 @@ LearnerOptions learner_options(const LearningTask& task, const Settings& setting
     return options;
 }
 
-FitReport fit(Network& network, const LearningTask& task, const Settings& settings, int carried,
+FitReport fit(Network& network, const LearningTask& task, const Settings& settings, const Plan& plan,
               Progress& progress) {
     FitOptions options;
     options.expect_strays = task.outliers > 0;
-    options.reduce_to = carried;
-    options.by_volume = network.vertex_count() > carried && reduces_by_volume(task, carried);
-    options.calm = options.by_volume || is_calm(task);
-    options.refine_to = carried < settings.target_vertices ? settings.target_vertices : 0;
+    options.reduce_to = plan.carried;
+    options.by_volume = plan.by_volume && network.vertex_count() > plan.carried;
+    options.calm = plan.calm || options.by_volume;
+    options.refine_to = plan.carried < settings.target_vertices ? settings.target_vertices : 0;
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
     // error is largest at the rim, and vertices inserted there stick out.
     options.redistribute = settings.utility_counter == kNormalVariation && task.encloses_space;
@@ -159,21 +173,20 @@ LearnedNetwork learned_by(const Learner& learner, StopReason reason) {
 }
 
 /// \param last no other run follows, so this one must come down to the vertices asked for
-LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, int grow_to, int carried,
-                            bool last, MonotoneProgress& progress) {
+LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, const Plan& plan, bool last,
+                            MonotoneProgress& progress) {
     PartOf learning(progress, kPrepared, settings.fit_to_points ? kLearned : 1);
     PartOf fitting(progress, kLearned, 1);
     const Thickening thickening(task);
     ThreadTeam team(thread_count(settings.threads));
     const std::optional<TargetSpace> thicker = thickening.thicker(task, team);
-    Learner learner(thicker ? *thicker : task.target(), learner_options(task, settings, grow_to, carried),
-                    task.network);
+    Learner learner(thicker ? *thicker : task.target(), learner_options(task, settings, plan), task.network);
     const StopReason reason = learner.run(task.landing_signals, learning);
     LearnedNetwork result = learned_by(learner, reason);
     thickening.take_back(result.network, team);
     FitReport report;
     if (settings.fit_to_points && !progress.stopped())
-        report = fit(result.network, task, settings, carried, fitting);
+        report = fit(result.network, task, settings, plan, fitting);
     if (progress.stopped()) result.stop_reason = StopReason::cancelled;
     // The fit stops where the topology leaves only collapses that spoil the shape.
     if ((last || progress.stopped()) && result.network.vertex_count() > settings.target_vertices)
@@ -183,7 +196,7 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
     // If the rounds of the fit were discarded, no vertex has moved to the place of another.
     result.measures = measures_of(learner, learner.crease_measure(), result.network,
                                   moved ? report.sources : PerVertex<VertexId>(), settings);
-    if (carried < settings.target_vertices)
+    if (plan.carried < settings.target_vertices)
         result.carried = static_cast<int>(task.target().positions().size() / kPointsPerCarried);
     return result;
 }
@@ -191,14 +204,14 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
 }  // namespace
 
 LearnedNetwork learn_and_fit(const LearningTask& task, const Settings& settings, MonotoneProgress& progress) {
-    const int carried = carried_vertices(task, settings);
-    const int grow_to = vertices_to_grow(task, settings, carried);
-    const int least = std::max(carried, task.network.vertex_count());
-    LearnedNetwork first = grow_and_fit(task, settings, grow_to, carried, grow_to == least, progress);
+    Plan plan = plan_for(task, settings);
+    const int least = std::max(plan.carried, task.network.vertex_count());
+    LearnedNetwork first = grow_and_fit(task, settings, plan, plan.grow_to == least, progress);
     const bool stalled = first.forced || first.network.vertex_count() > settings.target_vertices;
-    if (!stalled || grow_to == least || progress.stopped()) return first;
+    if (!stalled || plan.grow_to == least || progress.stopped()) return first;
 
-    LearnedNetwork second = grow_and_fit(task, settings, least, carried, true, progress);
+    plan.grow_to = least;
+    LearnedNetwork second = grow_and_fit(task, settings, plan, true, progress);
     second.signals += first.signals;
     second.splits += first.splits;
     second.collapses += first.collapses;

@@ -126,7 +126,7 @@ bool Fitter::untangle_surface(Progress& progress) {
     return left.has_value();
 }
 
-PointsByFace Fitter::locate_points(const Surface& surface) {
+PointsByFace Fitter::locate_points(const Surface& surface, bool lags) {
     const std::vector<Hit> hits = nearest_by_tree(surface, fitted_, team_);
     if (!(outlier_distance_ > 0)) outlier_distance_ = outlier_distance(surface, hits);
     PointsByFace points = assign(surface, hits);
@@ -135,7 +135,7 @@ PointsByFace Fitter::locate_points(const Surface& surface) {
                                    ? kCalmHeldOutPerVertex * static_cast<std::size_t>(final_vertices_)
                                    : kCalmHeldOut);
     held_out_.locate(surface, team_);
-    examine_layers(surface, points);
+    examine_layers(surface, points, lags);
     return points;
 }
 
@@ -158,7 +158,7 @@ double Fitter::with_bending(double error, const Surface& surface) const {
     return std::sqrt(error * error + bending_error_ * mean_squared_gap(surface));
 }
 
-void Fitter::examine_layers(const Surface& surface, const PointsByFace& points) {
+void Fitter::examine_layers(const Surface& surface, const PointsByFace& points, bool lags) {
     layered_ = false;
     layering_ = 0;
     bending_error_ = 0;
@@ -170,7 +170,7 @@ void Fitter::examine_layers(const Surface& surface, const PointsByFace& points) 
     layering_ = layering(network_, surface, widest_variances_);
     const PerVertex<float> local = local_layering(network_, surface, widest_variances_);
     const float places = std::accumulate(local.begin(), local.end(), 0.0F);
-    const float least_share = lags_ ? kLayeredShareOfLagging : kLayeredShare;
+    const float least_share = lags ? kLayeredShareOfLagging : kLayeredShare;
     // Fewer vertices spread the points more widely, at bends as well: what the first surface, which has the
     // most, does not show is no layer. On scans of buildings, which are open, niches look like layers.
     layered_places_ = layered_places_ && !surface.has_boundary() &&

@@ -54,7 +54,8 @@ public:
     bool reduce_to(int vertices, const FitOptions& options, Progress& progress);
 
     /// Assigns the fitted points to their nearest faces and finds the held-out points, all by exact search.
-    PointsByFace locate_points(const Surface& surface);
+    /// \param lags the surface is behind the points, as learning with few signals leaves it
+    PointsByFace locate_points(const Surface& surface, bool lags = false);
     /// Assigns the fitted points to their nearest faces by walks from the last ones.
     PointsByFace assign_faces(const Surface& surface);
     /// From now on measures the error along the smoothed normals of \p surface.
@@ -104,7 +105,7 @@ private:
     void silence_strays(const Surface& surface, PointsByFace& points);
     /// \p error, if there are layers with how much \p surface bends.
     double with_bending(double error, const Surface& surface) const;
-    void examine_layers(const Surface& surface, const PointsByFace& points);
+    void examine_layers(const Surface& surface, const PointsByFace& points, bool lags);
     PerVertex<float> examine_variances(const Surface& surface, const PointsByFace& points);
     PerVertex<float> stiffness_by(const PerVertex<float>& variances, const Surface& surface,
                                   const PointsByFace& points) const;
@@ -136,7 +137,6 @@ private:
     float noise_variance_ = 0;           ///< from the last assignment
     PerVertex<float> widest_variances_;  ///< of the points across the surface, so far
     bool layered_places_ = true;         ///< until a search shows none
-    bool lags_ = false;                  ///< the surface, behind the points: it is as learned
     bool excludes_layers_ = false;       ///< a surface of many more vertices has shown none
     bool layered_ = false;               ///< somewhere; from the last exact search, as the next
     float layering_ = 0;                 ///< over most of the surface, see layering()

@@ -44,9 +44,7 @@ bool Fitter::reduce_to(int vertices, const FitOptions& options, Progress& progre
     const bool by_volume = options.by_volume && network_.vertex_count() >= kByVolumeFrom * vertices;
     set_points_aside(options.calm ? kCalmReducingPointsPerVertex : kReducingPointsPerVertex);
     Surface surface(network_);
-    lags_ = by_volume;
-    PointsByFace points = locate_points(surface);
-    lags_ = false;
+    PointsByFace points = locate_points(surface, by_volume);
     set_directions(surface);
     solve(points, surface);
     const bool reduced = by_volume
