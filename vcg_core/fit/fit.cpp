@@ -150,8 +150,9 @@ private:
             report_.sources = fitter_.sources();
             report_.rounds = round + 1;
         }
-        const int first_rounds = options_.by_volume ? kFirstAfterVolume : kFirstRounds;
-        const double least_progress = options_.by_volume ? kLeastAfterVolume : kLeastProgress;
+        const bool by_volume = fitter_.reduced_by_volume();
+        const int first_rounds = by_volume ? kFirstAfterVolume : kFirstRounds;
+        const double least_progress = by_volume ? kLeastAfterVolume : kLeastProgress;
         if (round >= first_rounds && error > (1 - least_progress) * error_before_last_) return true;
         error_before_last_ = last_error_;
         last_error_ = error;

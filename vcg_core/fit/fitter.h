@@ -52,6 +52,8 @@ public:
     /// collapse_by_volume(), after a few such solutions. \return false if \p progress asks to stop or no more
     /// vertices can go \pre the network has more than \p vertices vertices
     bool reduce_to(int vertices, const FitOptions& options, Progress& progress);
+    /// Whether reduce_to() went by FitOptions::by_volume, for which there must be many more vertices.
+    bool reduced_by_volume() const { return reduced_by_volume_; }
 
     /// Assigns the fitted points to their nearest faces and finds the held-out points, all by exact search.
     /// \param lags the surface is behind the points, as learning with few signals leaves it
@@ -143,6 +145,7 @@ private:
     double bending_error_ = 0;           ///< of layers: weight of the mean squared gap in squared errors
     int stiff_rounds_ = 0;  ///< still to come: their bending weight lets the surface follow no layer
     bool expects_strays_ = false;
+    bool reduced_by_volume_ = false;
     bool solved_ = false;  ///< vertices have moved
     BendingSearch bending_;
     PerVertex<VertexId> origins_;

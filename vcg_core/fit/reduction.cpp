@@ -41,13 +41,13 @@ bool Fitter::reduce_to(int vertices, const FitOptions& options, Progress& progre
     PartOf untangling(progress, 0.9, 1);
     if (!wants_reduction(vertices, network_.vertex_count(), reducing)) return false;
     final_vertices_ = vertices;
-    const bool by_volume = options.by_volume && network_.vertex_count() >= kByVolumeFrom * vertices;
+    reduced_by_volume_ = options.by_volume && network_.vertex_count() >= kByVolumeFrom * vertices;
     set_points_aside(options.calm ? kCalmReducingPointsPerVertex : kReducingPointsPerVertex);
     Surface surface(network_);
-    PointsByFace points = locate_points(surface, by_volume);
+    PointsByFace points = locate_points(surface, reduced_by_volume_);
     set_directions(surface);
     solve(points, surface);
-    const bool reduced = by_volume
+    const bool reduced = reduced_by_volume_
                              ? reduce_by_volume(vertices, surface, std::move(points), reducing)
                              : reduce_by_costs(vertices, options.calm, surface, std::move(points), reducing);
     if (!reduced) return false;
