@@ -127,10 +127,11 @@ LearnerOptions learner_options(const LearningTask& task, const Settings& setting
     // Most of the vertices will go, and the fit places them: half the signals do for a preview. Of 2,000
     // vertices and more accuracy is wanted: they would have 1.02 times the error.
     constexpr int kPreview = 2000;
-    if (plan.by_volume && plan.grow_to > plan.carried && plan.carried < kPreview)
+    const bool by_volume = plan.by_volume && plan.grow_to > plan.carried;
+    if (by_volume && plan.carried < kPreview)
         options.signals_per_split = std::max(1, options.signals_per_split / 2);
     // As many signals as for those that stay settle them well enough.
-    if (plan.calm || (plan.by_volume && plan.grow_to > plan.carried))
+    if (plan.calm || by_volume)
         options.settling_signals_per_vertex = static_cast<int>(
             static_cast<std::int64_t>(options.settling_signals_per_vertex) * plan.carried / plan.grow_to);
     // Each layer of a sheet wins the signals of both by turns: that says nothing of membranes. The topology

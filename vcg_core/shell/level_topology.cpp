@@ -7,11 +7,12 @@
 
 #include <algorithm>
 #include <array>
-#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <vector>
+
+#include "vcg_core/base/platform.h"
 
 namespace neuralmesh {
 namespace {
@@ -106,21 +107,19 @@ private:
     Indexed<Word> bits_;  ///< with an empty word, row and slice at the ends
 };
 
-int count_bits(SolidBits::Word word) { return static_cast<int>(std::bitset<SolidBits::kBits>(word).count()); }
-
 /// The signs of the simplices whose lowest corner is the corner 0 of their cube, for 64 cubes at once; see
 /// add_simplices().
 int sum_of_signs(const std::array<SolidBits::Word, 8>& corners) {
     const auto corner = [&](int k) { return corners[static_cast<std::size_t>(k)]; };
-    int sum = count_bits(corner(0));
+    int sum = bit_count(corner(0));
     for (int a = 1; a < 8; ++a) {
         const SolidBits::Word edges = corner(0) & corner(a);
-        sum -= count_bits(edges);
+        sum -= bit_count(edges);
         for (int b = a + 1; b < 8; ++b) {
             if ((a & b) != a) continue;
             const SolidBits::Word triangles = edges & corner(b);
-            sum += count_bits(triangles);
-            if (b != 7) sum -= count_bits(triangles & corner(7));
+            sum += bit_count(triangles);
+            if (b != 7) sum -= bit_count(triangles & corner(7));
         }
     }
     return sum;

@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "vcg_core/base/platform.h"
 
 namespace neuralmesh {
 namespace {
@@ -41,27 +42,25 @@ public:
         for (const EdgeKey key : keys) words_[word_of(key)] |= std::uint64_t{1} << (key % kBits);
         for (int w = 0; w < words_.size(); ++w) {
             first_[w] = count_;
-            if (words_[w] != 0) count_ += count(words_[w]);
+            count_ += bit_count(words_[w]);
         }
     }
     int size() const { return count_; }
     int rank(EdgeKey key) const {
         const std::uint64_t smaller = (std::uint64_t{1} << (key % kBits)) - 1;
-        return first_[word_of(key)] + count(words_[word_of(key)] & smaller);
+        return first_[word_of(key)] + bit_count(words_[word_of(key)] & smaller);
     }
     /// Calls visit(key) in rising order.
     template <class Visit>
     void for_each(const Visit& visit) const {
         for (int w = 0; w < words_.size(); ++w)
-            if (words_[w] != 0)
-                for (int bit = 0; bit < kBits; ++bit)
-                    if ((words_[w] >> bit & 1U) != 0) visit(static_cast<EdgeKey>(w) * kBits + bit);
+            for (std::uint64_t left = words_[w]; left != 0; left &= left - 1)
+                visit(static_cast<EdgeKey>(w) * kBits + static_cast<EdgeKey>(lowest_bit(left)));
     }
 
 private:
     static constexpr int kBits = 64, kKeysPerNode = 8;
     static int word_of(EdgeKey key) { return static_cast<int>(key / kBits); }
-    static int count(std::uint64_t word) { return static_cast<int>(std::bitset<kBits>(word).count()); }
 
     Indexed<std::uint64_t> words_;
     Indexed<int> first_;  ///< number of the keys in the words before
