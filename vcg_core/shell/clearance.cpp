@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "vcg_core/shell/lattice_rows.h"
+
 namespace neuralmesh {
 namespace {
 
@@ -33,26 +35,6 @@ void distances_along_rows(const Lattice& lattice, const PerNode<std::uint32_t>& 
     }
 }
 
-/// Replaces row i by the minimum over |k| <= max_radius of row i + k plus k^2, for \p count rows of \p width
-/// values, \p stride apart from \p first on. \p scratch is for a copy of the rows.
-void lower_envelope(SquaredRadius* first, int count, std::ptrdiff_t stride, int width, int max_radius,
-                    std::vector<SquaredRadius>& scratch) {
-    const std::ptrdiff_t w = width;
-    scratch.resize(static_cast<std::size_t>(count * w));
-    for (int i = 0; i < count; ++i) std::copy_n(first + i * stride, w, scratch.data() + i * w);
-    for (int i = 0; i < count; ++i) {
-        SquaredRadius* out = first + i * stride;
-        for (int j = std::max(0, i - max_radius); j <= std::min(count - 1, i + max_radius); ++j) {
-            const SquaredRadius* in = scratch.data() + j * w;
-            const SquaredRadius add = static_cast<SquaredRadius>((i - j) * (i - j));
-            for (std::ptrdiff_t x = 0; x < w; ++x) {
-                const SquaredRadius sum = static_cast<SquaredRadius>(in[x] + add);
-                out[x] = sum < out[x] ? sum : out[x];
-            }
-        }
-    }
-}
-
 /// Calls visit(i) for the nodes on the walls of the lattice, in the order of their ids.
 template <class Visit>
 void for_each_wall_node(const Lattice& l, const Visit& visit) {
@@ -68,13 +50,12 @@ void for_each_wall_node(const Lattice& l, const Visit& visit) {
 PerNode<SquaredRadius> squared_distances(const Lattice& lattice, const PerNode<std::uint32_t>& occupied,
                                          int max_radius) {
     PerNode<SquaredRadius> out(lattice.size());
-    std::vector<SquaredRadius> scratch;
     distances_along_rows(lattice, occupied, max_radius, out);
-    const std::ptrdiff_t row = lattice.nx, slice = row * lattice.ny;
-    for (int z = 0; z < lattice.nz; ++z)
-        lower_envelope(out.data() + z * slice, lattice.ny, row, lattice.nx, max_radius, scratch);
-    for (int y = 0; y < lattice.ny; ++y)
-        lower_envelope(out.data() + y * row, lattice.nz, slice, lattice.nx, max_radius, scratch);
+    const auto nearer = [](SquaredRadius here, SquaredRadius there, int rows) {
+        const SquaredRadius sum = static_cast<SquaredRadius>(there + rows * rows);
+        return sum < here ? sum : here;
+    };
+    combine_across_rows(lattice, max_radius, nearer, out);
     for (SquaredRadius& d : out) d = std::min(d, beyond(max_radius));
     return out;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "vcg_core/shell/hollows.h"
+#include "vcg_core/shell/lattice_rows.h"
 
 namespace neuralmesh {
 namespace {
@@ -31,49 +32,27 @@ constexpr double kFringeShare = 0.2;
 // ... where that is at least this many points in 3 x 3 x 3 nodes: fewer may differ so much by chance.
 constexpr std::uint32_t kFringeMinPoints = 40;
 
-/// Replaces row i by combine() of the rows i - reach to i + reach, for \p count rows of \p width values,
-/// \p stride apart from \p first on. \p scratch is for a copy of the rows.
-template <class Combine>
-void combine_rows(std::uint32_t* first, int count, std::ptrdiff_t stride, int width, int reach,
-                  const Combine& combine, std::vector<std::uint32_t>& scratch) {
-    const std::ptrdiff_t w = width;
-    scratch.resize(static_cast<std::size_t>(count * w));
-    for (int i = 0; i < count; ++i) std::copy_n(first + i * stride, w, scratch.data() + i * w);
-    for (int i = 0; i < count; ++i) {
-        std::uint32_t* out = first + i * stride;
-        for (int j = std::max(0, i - reach); j <= std::min(count - 1, i + reach); ++j) {
-            if (j == i) continue;
-            const std::uint32_t* in = scratch.data() + j * w;
-            for (std::ptrdiff_t x = 0; x < w; ++x) out[x] = combine(out[x], in[x]);
-        }
-    }
-}
-
 /// For every node combine() of the values in a cube of 2 * reach + 1 nodes per side around it, axis by axis.
-/// \p combine must not depend on the order.
 template <class Combine>
 PerNode<std::uint32_t> combine_boxes(const Lattice& l, const PerNode<std::uint32_t>& values, int reach,
                                      const Combine& combine) {
     PerNode<std::uint32_t> out = values;
     std::vector<std::uint32_t> scratch;
-    const std::ptrdiff_t row = l.nx, slice = row * l.ny;
     for (NodeId first = 0; first < l.size(); first += l.nx)
         combine_rows(out.data() + first, l.nx, 1, 1, reach, combine, scratch);
-    for (int z = 0; z < l.nz; ++z)
-        combine_rows(out.data() + z * slice, l.ny, row, l.nx, reach, combine, scratch);
-    for (int y = 0; y < l.ny; ++y)
-        combine_rows(out.data() + y * row, l.nz, slice, l.nx, reach, combine, scratch);
+    combine_across_rows(l, reach, combine, out);
     return out;
 }
 
 /// Points in the 3 x 3 x 3 nodes around every node.
 PerNode<std::uint32_t> box_sums(const Lattice& lattice, const PerNode<std::uint32_t>& counts) {
-    return combine_boxes(lattice, counts, 1, [](std::uint32_t a, std::uint32_t b) { return a + b; });
+    return combine_boxes(lattice, counts, 1, [](std::uint32_t a, std::uint32_t b, int) { return a + b; });
 }
 
 /// The largest value in the 5 x 5 x 5 nodes around every node.
 PerNode<std::uint32_t> box_maxima(const Lattice& lattice, const PerNode<std::uint32_t>& values) {
-    return combine_boxes(lattice, values, 2, [](std::uint32_t a, std::uint32_t b) { return a < b ? b : a; });
+    return combine_boxes(lattice, values, 2,
+                         [](std::uint32_t a, std::uint32_t b, int) { return a < b ? b : a; });
 }
 
 /// 0 instead of the counts of fringe nodes.
