@@ -12,7 +12,7 @@
 #include "vcg_core/base/platform.h"
 #include "vcg_core/engine/basic_step_batch.h"
 #include "vcg_core/engine/batch_limit.h"
-#include "vcg_core/mesh/ring.h"
+#include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
 
@@ -22,8 +22,9 @@ public:
     void resize(int slots) { last_active_.resize(slots, 0); }
 
     /// Records the winners of a batch that starts after \p begin signals, and lets \p limit know which of
-    /// them won repeatedly. O(1) per step.
-    void record(const std::vector<StepResult>& steps, std::int64_t begin, BatchLimit& limit) {
+    /// them won repeatedly. O(1) per step, O(valence) per repeated winner.
+    void record(const std::vector<StepResult>& steps, std::int64_t begin, const Network& network,
+                BatchLimit& limit) {
         const auto count = static_cast<int>(steps.size());
         const auto winner = [&](int i) { return steps[static_cast<std::size_t>(i)].winner; };
         for (int i = 0; i < count; ++i) {
@@ -32,7 +33,11 @@ public:
             if (last_active > begin) limit.repeated(winner(i));
             last_active = begin + i + 1;
         }
-        limit.end_batch(count);
+        const std::vector<VertexId>& repeated = limit.repeated_winners();
+        const auto is_crowded = [&](VertexId v) {
+            return active_neighbours(network, v, begin) >= BatchLimit::kCrowd;
+        };
+        limit.end_batch(count, static_cast<int>(std::count_if(repeated.begin(), repeated.end(), is_crowded)));
     }
     void set(VertexId v, std::int64_t signal) { last_active_[v] = signal; }
     bool active_since(VertexId v, std::int64_t signal) const { return last_active_[v] > signal; }
@@ -42,6 +47,12 @@ public:
     }
 
 private:
+    int active_neighbours(const Network& network, VertexId v, std::int64_t signal) const {
+        const Ring& ring = network.ring(v);
+        return static_cast<int>(
+            std::count_if(ring.begin(), ring.end(), [&](VertexId u) { return active_since(u, signal); }));
+    }
+
     static constexpr int kAhead = 8;  ///< steps between the prefetch and the use of an entry
 
     PerVertex<std::int64_t> last_active_;

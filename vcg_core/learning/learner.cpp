@@ -129,7 +129,7 @@ void Learner::learn_batch(int count, const AfterSignal& after_signal) {
 
 const std::vector<StepResult>& Learner::basic_steps(const vcg::Point3f* signals, int count) {
     const std::vector<StepResult>& steps = batch_.take(signals, count, rates_, state_.network, state_.search);
-    state_.activity.record(steps, state_.signals, batch_limit_);
+    state_.activity.record(steps, state_.signals, state_.network, batch_limit_);
     return steps;
 }
 

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "tests/unit/support/shapes.h"
@@ -47,7 +48,7 @@ TEST(BatchLimit, KeepsVerticesInPlaceWhereManySignalsCrowd) {
 void take_batch(BatchLimit& limit, int count, int vertices, int wins) {
     for (VertexId v = 0; v < vertices; ++v)
         for (int i = 1; i < wins; ++i) limit.repeated(v);
-    limit.end_batch(count);
+    limit.end_batch(count, 0);
 }
 
 TEST(BatchLimit, HalvesUntilHardlyAnyVertexWinsOften) {
@@ -65,6 +66,15 @@ TEST(BatchLimit, HalvesUntilHardlyAnyVertexWinsOften) {
     EXPECT_EQ(limit.limit(), 5);
     take_batch(limit, 1, 0, 0);
     EXPECT_EQ(limit.limit(), 5);
+}
+
+TEST(BatchLimit, HalvesWhereRepeatedWinnersCrowd) {
+    BatchLimit limit;
+    const int unlimited = limit.limit();
+    limit.end_batch(400, 1);
+    EXPECT_EQ(limit.limit(), unlimited);
+    limit.end_batch(400, 2);
+    EXPECT_EQ(limit.limit(), 200);
 }
 
 TEST(BatchLimit, GrowsAgainWhenTheWinsHaveSpread) {
@@ -122,6 +132,42 @@ void expect_in_place(const Cloud& cloud, const shapes::Shape& start) {
             }
         }
     }
+}
+
+/// The patch of a fine sphere of radius 1/sqrt(12) on which \p share of the signals falls is so large that
+/// each of its vertices wins about \p wins signals of an unlimited batch. \return how far out vertices come
+float farthest_beside_a_patch(double share, double wins) {
+    constexpr int kPoints = 50000, kParts = 600;
+    const shapes::Shape sphere = shapes::icosphere(5);
+    const double rim = 1 - 2 * share / (wins * Learner::kVerticesPerSignal);  // height of a cap of that area
+    Random random(1);
+    Cloud cloud;
+    while (cloud.size() < kPoints) {
+        vcg::Point3d p = shapes::in_cube(random);
+        if (!(p.Norm() > 0.1 && p.Norm() < 1)) continue;
+        p.Normalize();
+        if (p[2] > rim || static_cast<double>(cloud.size()) >= share * kPoints) cloud.push_back(p);
+    }
+    const TargetSpace target = targets::target_of(cloud);
+    LearnerOptions options;
+    options.grow_to = static_cast<int>(sphere.positions.size());
+    Learner learner(target, options, targets::network_in_frame(target, sphere));
+    NoProgress progress;
+    float farthest = 0;
+    for (int part = 0; part < kParts; ++part) {
+        EXPECT_TRUE(learner.learn_at_rest(1000, progress, false));
+        for (const VertexId v : learner.network().vertices())
+            farthest = std::max(farthest, learner.network().position(v).Norm());
+    }
+    return farthest;
+}
+
+/// Two wins of a vertex do no harm, but where its neighbours win, too, the vertices got as far as .39 and
+/// .49.
+TEST(BatchLimit, KeepsAPatchInPlaceWhoseVerticesAllWin) {
+    for (const double share : {0.04, 0.06})
+        for (const double wins : {1.6, 1.8, 2.0})
+            EXPECT_LT(farthest_beside_a_patch(share, wins), 0.3F) << share << ", " << wins << " wins";
 }
 
 /// Weak smoothing is left to the limit; with strong smoothing there are no batches.
