@@ -15,10 +15,10 @@ namespace neuralmesh {
 ///
 /// Displacements computed from one state of the network add up. With alpha_w = 0.06 a vertex that wins 17
 /// (1 / alpha_w) signals of a batch overshoots their mean, and its neighbours overshoot at 5 wins; from twice
-/// as many wins on, both oscillate with growing amplitude. So do vertices side by side that win twice each:
-/// those of a few large faces on a plane, where other parts of the mesh are fine. So batches are halved until
-/// hardly any vertex wins more than twice in one, and hardly any that wins twice has many neighbours that
-/// win. They are doubled after 64 such batches in a row. Evenly spread signals are never limited.
+/// as many wins on, both oscillate with growing amplitude. Vertices side by side do so from two wins each on:
+/// those of large faces, beside finer parts of the mesh. So batches are halved until hardly any vertex wins
+/// more than twice in one, and hardly any that wins twice has many neighbours that win. They are doubled
+/// after 64 such batches in a row. Evenly spread signals are never limited.
 class BatchLimit {
 public:
     /// Most signals that the next batch should have, at least 1.
@@ -26,14 +26,14 @@ public:
     /// Reports a win of \p winner, which has won in the present batch before. O(repeated wins of the batch)
     /// at worst.
     void repeated(VertexId winner);
-    /// The vertices that have won twice or more in the present batch. Some may lack once the wins suffice for
-    /// a shorter batch.
+    /// The vertices that have won twice or more in the present batch. Once the batch is too long for the wins
+    /// of single vertices, no more are added.
     const std::vector<VertexId>& repeated_winners() const { return repeated_; }
     /// Reports the end of a batch of \p count signals. \p crowded: how many of the repeated winners have
     /// kCrowd neighbours or more that have won, too.
     void end_batch(int count, int crowded);
 
-    static constexpr int kCrowd = 4;
+    static constexpr int kCrowd = 4;  ///< of a vertex's neighbours
 
 private:
     static constexpr int kUnlimited = 1 << 20;
@@ -41,7 +41,7 @@ private:
     /// kSignalsPerTolerated signals up to kMostTolerated. Long batches of evenly spread signals have a few,
     /// all over the network, which do no harm.
     static constexpr int kTolerated = 2, kMostTolerated = 6, kSignalsPerTolerated = 64;
-    static constexpr int kToleratedCrowded = 1;
+    static constexpr int kToleratedCrowded = 1;  ///< by chance
     static constexpr int kCalm = 64;  ///< batches in a row without a limit reached before the limit doubles
 
     std::vector<VertexId> repeated_;  ///< vertices with two wins or more in the present batch
