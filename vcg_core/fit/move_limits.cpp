@@ -3,6 +3,8 @@
 
 #include "vcg_core/fit/move_limits.h"
 
+#include <utility>
+
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/face_rules.h"
 
@@ -13,12 +15,6 @@ namespace {
 constexpr float kMaxMove = 0.25F;  ///< in mean lengths of the vertex's edges
 constexpr int kChunk = 512;
 constexpr int kHalvings = 5;  ///< of a displacement before it is set to 0
-
-PerFace<Vector3> normals_of(const Surface& surface, const PerVertex<Vector3>& positions) {
-    PerFace<Vector3> result(surface.face_count(), Vector3::Zero());
-    for (int f = 0; f < result.size(); ++f) result[f] = area_vector(surface.faces[f], positions).normalized();
-    return result;
-}
 
 float quality_of(const Surface& surface, int f, const PerVertex<Vector3>& positions) {
     const Triangle& face = surface.faces[f];
@@ -65,7 +61,12 @@ void MoveLimits::look_across_edges(int face, std::vector<Neighbours>& found) {
 class MoveLimits::Moves {
 public:
     Moves(const MoveLimits& limits, const PerVertex<Vector3>& displacements)
-        : limits_(limits), surface_(limits.surface_), move_(displacements), moved_(surface_.positions) {
+        : limits_(limits),
+          surface_(limits.surface_),
+          move_(displacements),
+          moved_(surface_.positions),
+          normals_(surface_.face_count(), Vector3::Zero()),
+          is_new_(moved_.size(), 1) {
         for (VertexId v = 0; v < moved_.size(); ++v) {
             const float bound = limits.max_move_[v];
             const float length = move_[v].norm();
@@ -82,20 +83,22 @@ public:
             if (!shorten(find_offending(), pass)) return std::move(moved_);
     }
 
-    PerVertex<Vector3> shorten_to_limits(CrossingGuard& guard, ThreadTeam& team) {
-        // Every pass but the first shortens the moves of few vertices, so it is compared with the one before.
-        Surface now = surface_;
-        Surface last = surface_;
-        std::vector<SelfCrossing> crossings = guard.accepted();
+    /// \param last with the same faces, most of them in the same place; its \p crossings are known
+    PerVertex<Vector3> shorten_to_limits(Surface last, std::vector<SelfCrossing> crossings,
+                                         CrossingGuard& guard, ThreadTeam& team) {
+        Surface now = last;
         int crossed = 0;
         for (int pass = 0;; ++pass) {
             if (shorten(find_offending(), pass)) continue;
-            now.positions = moved_;
-            crossings = update_self_crossings(now, last, crossings, team);
+            // Every pass but the first shortens the moves of few vertices.
+            if (moved_ != last.positions) {
+                now.positions = moved_;
+                crossings = update_self_crossings(now, last, crossings, team);
+                last.positions = moved_;
+            }
             PerVertex<char> offending(moved_.size(), 0);
             for (VertexId v : guard.objections(crossings)) offending[v] = 1;
             if (!shorten(offending, crossed++)) return std::move(moved_);
-            last.positions = now.positions;
         }
     }
 
@@ -112,30 +115,41 @@ private:
                 move_[v].setZero();
             }
             moved_[v] = surface_.positions[v] + move_[v];
+            is_new_[v] = 1;
         }
         return any;
     }
 
-    bool is_spoiled(int face, const PerFace<Vector3>& normals) const {
-        if (kMoveRules.turns_over(limits_.normals_[face], normals[face]) && limits_.folded_[face] == 0)
+    Vector3 normal_of(int face) const { return area_vector(surface_.faces[face], moved_).normalized(); }
+
+    bool is_spoiled(int face) const {
+        if (kMoveRules.turns_over(limits_.normals_[face], normals_[face]) && limits_.folded_[face] == 0)
             return true;
         return kMoveRules.is_sliver(limits_.qualities_[face], quality_of(surface_, face, moved_));
     }
 
-    /// Vertices of faces that turn over, become slivers, or fold onto a neighbour.
-    PerVertex<char> find_offending() const {
-        const PerFace<Vector3> normals = normals_of(surface_, moved_);
+    /// Vertices of faces that turn over, become slivers, or fold onto a neighbour. Faces whose corners are
+    /// where they were at the last call are not examined: the moves of their vertices were shortened then.
+    PerVertex<char> find_offending() {
+        PerFace<char> is_new(normals_.size(), 0);
+        for (int f = 0; f < normals_.size(); ++f) {
+            const Triangle& face = surface_.faces[f];
+            is_new[f] = is_new_[face[0]] | is_new_[face[1]] | is_new_[face[2]];
+            if (is_new[f] != 0) normals_[f] = normal_of(f);
+        }
+        is_new_.assign(moved_.size(), 0);
         PerVertex<char> offending(moved_.size(), 0);
         const auto mark = [&](int face) {
             for (VertexId v : surface_.faces[face]) offending[v] = 1;
         };
-        for (int f = 0; f < normals.size(); ++f)
-            if (is_spoiled(f, normals)) mark(f);
-        for (const Neighbours& n : limits_.neighbours_)
-            if (kMoveRules.folds(n.cosine, normals[n.face].dot(normals[n.other]))) {
-                mark(n.face);
-                mark(n.other);
-            }
+        for (int f = 0; f < normals_.size(); ++f)
+            if (is_new[f] != 0 && is_spoiled(f)) mark(f);
+        for (const Neighbours& n : limits_.neighbours_) {
+            if ((is_new[n.face] | is_new[n.other]) == 0) continue;
+            if (!kMoveRules.folds(n.cosine, normals_[n.face].dot(normals_[n.other]))) continue;
+            mark(n.face);
+            mark(n.other);
+        }
         return offending;
     }
 
@@ -143,6 +157,8 @@ private:
     const Surface& surface_;
     PerVertex<Vector3> move_;
     PerVertex<Vector3> moved_;
+    PerFace<Vector3> normals_;  ///< after the moves that find_offending() has seen
+    PerVertex<char> is_new_;    ///< 1: find_offending() has not seen the vertex where it is
 };
 
 PerVertex<Vector3> MoveLimits::bounded(const PerVertex<Vector3>& displacements) const {
@@ -151,7 +167,13 @@ PerVertex<Vector3> MoveLimits::bounded(const PerVertex<Vector3>& displacements) 
 
 PerVertex<Vector3> MoveLimits::without_crossings(const PerVertex<Vector3>& displacements,
                                                  CrossingGuard& guard, ThreadTeam& team) const {
-    return Moves(*this, displacements).shorten_to_limits(guard, team);
+    return Moves(*this, displacements).shorten_to_limits(surface_, guard.accepted(), guard, team);
+}
+
+PerVertex<Vector3> MoveLimits::without_crossings(const PerVertex<Vector3>& displacements,
+                                                 const Surface& moved, std::vector<SelfCrossing> crossings,
+                                                 CrossingGuard& guard, ThreadTeam& team) const {
+    return Moves(*this, displacements).shorten_to_limits(moved, std::move(crossings), guard, team);
 }
 
 }  // namespace neuralmesh

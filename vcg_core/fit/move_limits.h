@@ -24,6 +24,11 @@ public:
     /// The same, shortened further until \p guard, which has accepted the surface, accepts the result.
     PerVertex<Vector3> without_crossings(const PerVertex<Vector3>& displacements, CrossingGuard& guard,
                                          ThreadTeam& team) const;
+    /// The same, sooner: \p moved is the surface after the displacements, with the same faces, and \p
+    /// crossings are those of \p moved.
+    PerVertex<Vector3> without_crossings(const PerVertex<Vector3>& displacements, const Surface& moved,
+                                         std::vector<SelfCrossing> crossings, CrossingGuard& guard,
+                                         ThreadTeam& team) const;
 
 private:
     class Moves;

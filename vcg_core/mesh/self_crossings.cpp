@@ -119,12 +119,23 @@ bool has_face(const Surface& surface, const Triangle& face) {
     });
 }
 
-/// Whether both surfaces have the face, at the same position.
-bool have_same_face(const Surface& a, const Surface& b, const Triangle& face) {
-    return has_face(a, face) && has_face(b, face) && std::all_of(face.begin(), face.end(), [&](VertexId v) {
-               return a.positions[v] == b.positions[v];
-           });
-}
+/// Tells which faces two surfaces have in common, at the same position.
+class CommonFaces {
+public:
+    CommonFaces(const Surface& a, const Surface& b) : a_(a), b_(b), same_faces_(a.faces == b.faces) {}
+
+    /// \param face of either surface
+    bool contain(const Triangle& face) const {
+        return (same_faces_ || (has_face(a_, face) && has_face(b_, face))) &&
+               std::all_of(face.begin(), face.end(),
+                           [&](VertexId v) { return a_.positions[v] == b_.positions[v]; });
+    }
+
+private:
+    const Surface& a_;
+    const Surface& b_;
+    bool same_faces_;  ///< only vertices have moved
+};
 
 }  // namespace
 
@@ -152,9 +163,10 @@ std::vector<SelfCrossing> self_crossings(const Surface& surface, ThreadTeam& tea
 
 std::vector<SelfCrossing> update_self_crossings(const Surface& surface, const Surface& before,
                                                 const std::vector<SelfCrossing>& known, ThreadTeam& team) {
+    const CommonFaces common(surface, before);
     PerFace<char> is_changed(surface.face_count(), 0);
     const auto examine = [&](int f, std::vector<int>& changed) {
-        if (have_same_face(surface, before, surface.faces[f])) return;
+        if (common.contain(surface.faces[f])) return;
         is_changed[f] = 1;
         if (has_area(surface, f)) changed.push_back(f);
     };
@@ -171,9 +183,7 @@ std::vector<SelfCrossing> update_self_crossings(const Surface& surface, const Su
     std::sort(all.begin(), all.end());
     const auto found = static_cast<std::ptrdiff_t>(all.size());
     for (const SelfCrossing& c : known)
-        if (have_same_face(surface, before, {c[0], c[1], c[2]}) &&
-            have_same_face(surface, before, {c[3], c[4], c[5]}))
-            all.push_back(c);
+        if (common.contain({c[0], c[1], c[2]}) && common.contain({c[3], c[4], c[5]})) all.push_back(c);
     std::inplace_merge(all.begin(), all.begin() + found, all.end());
     return all;
 }

@@ -115,6 +115,8 @@ TEST(Crossings, AreKnownAfterAChangeFromThoseBefore) {
         const std::vector<SelfCrossing> known = crossings(before, 1);
         const VertexId v = some();
         if (network.alive(v)) network.set_position(v, network.position(v) * 0.9F);
+        const Surface moved(network);
+        EXPECT_EQ(after(moved, before, known, 2), crossings(moved, 1)) << change;
         for (int i = 0; i < 5; ++i) {
             const VertexId a = some();
             const VertexId b = network.ring(a).valence > 0 ? network.ring(a)[0] : some();
