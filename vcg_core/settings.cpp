@@ -221,7 +221,8 @@ std::vector<SettingInfo> growth_rows() {
         row(&S::settling_signals_per_vertex, "settling_signals_per_vertex", "Settling signals per vertex", 0,
             1e5,
             "Signals per vertex that are learned after the last split (at least 60,000 in all), so that "
-            "positions and counters describe the final mesh. 0: none."),
+            "positions and counters describe the final mesh. Half as many or fewer where the noise is small "
+            "beside the edges, because the fit then removes vertices and places the others. 0: none."),
         row(&S::stop_below_mean_counter, "stop_below_mean_counter", "Stop below mean counter", 0, 1e6,
             "α_t of the paper (eq 8), as an angle in degrees: growth stops before the target is reached when "
             "a signal turns the winner's normal by less than this (root mean square over the last ten "

@@ -203,6 +203,19 @@ TEST(Reconstruct, EdgesFollowCreases) {
     EXPECT_LT(mesh.report.rms_error, 0.008);
 }
 
+// With it, where the points have no noise, half of the signals or fewer settle the network.
+TEST(Reconstruct, SettlesWithAllSignalsWithoutTheFit) {
+    constexpr int kVertices = 1000, kSignalsPerVertex = 200;
+    const Cloud sphere = shapes::sphere_cloud(10000);
+    const auto signals_with = [&](int settling_signals_per_vertex) {
+        Settings settings = with_target(kVertices);
+        settings.fit_to_points = false;
+        settings.settling_signals_per_vertex = settling_signals_per_vertex;
+        return learn(sphere, settings).report.signals;
+    };
+    EXPECT_EQ(signals_with(kSignalsPerVertex) - signals_with(0), kVertices * kSignalsPerVertex);
+}
+
 TEST(Reconstruct, RefusesSettingsOutOfRange) {
     Settings settings = with_target(3);
     EXPECT_THROW(learn(shapes::sphere_cloud(100), settings), SettingError);
