@@ -127,12 +127,12 @@ LearnerOptions learner_options(const LearningTask& task, const Settings& setting
     // Most of the vertices will go, and the fit places them: half the signals do for a preview. Of 2,000
     // vertices and more accuracy is wanted: they would have 1.02 times the error.
     constexpr int kPreview = 2000;
-    const bool by_volume = plan.by_volume && plan.grow_to > plan.carried;
-    if (by_volume && plan.carried < kPreview)
+    const bool has_surplus = plan.grow_to > plan.carried;
+    if (has_surplus && plan.by_volume && plan.carried < kPreview)
         options.signals_per_split = std::max(1, options.signals_per_split / 2);
-    // As many signals as for those that stay settle them well enough, and half of them settle large meshes:
-    // 50,000 and 100,000 vertices have .99 and .98 of the error.
-    if (plan.grow_to > plan.carried && settings.redistributes_vertices() && (plan.calm || plan.by_volume))
+    // As many signals as for those that stay settle them well enough; half as many where most of them stay:
+    // 50,000 and 100,000 vertices then have .99 and .98 of the error.
+    if (has_surplus && settings.redistributes_vertices() && (plan.calm || plan.by_volume))
         options.settling_signals_per_vertex =
             static_cast<int>(static_cast<std::int64_t>(options.settling_signals_per_vertex) * plan.carried /
                              std::max(plan.grow_to, 2 * plan.carried));

@@ -83,7 +83,7 @@ public:
             if (!shorten(find_offending(), pass)) return std::move(moved_);
     }
 
-    /// \param last with the same faces, most of them in the same place; its \p crossings are known
+    /// \param last a surface with the same faces, before or after the move; its \p crossings are known
     PerVertex<Vector3> shorten_to_limits(Surface last, std::vector<SelfCrossing> crossings,
                                          CrossingGuard& guard, ThreadTeam& team) {
         Surface now = last;
@@ -120,8 +120,6 @@ private:
         return any;
     }
 
-    Vector3 normal_of(int face) const { return area_vector(surface_.faces[face], moved_).normalized(); }
-
     bool is_spoiled(int face) const {
         if (kMoveRules.turns_over(limits_.normals_[face], normals_[face]) && limits_.folded_[face] == 0)
             return true;
@@ -131,19 +129,19 @@ private:
     /// Vertices of faces that turn over, become slivers, or fold onto a neighbour. Faces whose corners are
     /// where they were at the last call are not examined: the moves of their vertices were shortened then.
     PerVertex<char> find_offending() {
-        PerFace<char> is_new(normals_.size(), 0);
-        for (int f = 0; f < normals_.size(); ++f) {
-            const Triangle& face = surface_.faces[f];
-            is_new[f] = is_new_[face[0]] | is_new_[face[1]] | is_new_[face[2]];
-            if (is_new[f] != 0) normals_[f] = normal_of(f);
-        }
-        is_new_.assign(moved_.size(), 0);
         PerVertex<char> offending(moved_.size(), 0);
         const auto mark = [&](int face) {
             for (VertexId v : surface_.faces[face]) offending[v] = 1;
         };
-        for (int f = 0; f < normals_.size(); ++f)
-            if (is_new[f] != 0 && is_spoiled(f)) mark(f);
+        PerFace<char> is_new(normals_.size(), 0);
+        for (int f = 0; f < normals_.size(); ++f) {
+            const Triangle& face = surface_.faces[f];
+            is_new[f] = is_new_[face[0]] | is_new_[face[1]] | is_new_[face[2]];
+            if (is_new[f] == 0) continue;
+            normals_[f] = area_vector(face, moved_).normalized();
+            if (is_spoiled(f)) mark(f);
+        }
+        is_new_.assign(moved_.size(), 0);
         for (const Neighbours& n : limits_.neighbours_) {
             if ((is_new[n.face] | is_new[n.other]) == 0) continue;
             if (!kMoveRules.folds(n.cosine, normals_[n.face].dot(normals_[n.other]))) continue;
@@ -167,13 +165,13 @@ PerVertex<Vector3> MoveLimits::bounded(const PerVertex<Vector3>& displacements) 
 
 PerVertex<Vector3> MoveLimits::without_crossings(const PerVertex<Vector3>& displacements,
                                                  CrossingGuard& guard, ThreadTeam& team) const {
-    return Moves(*this, displacements).shorten_to_limits(surface_, guard.accepted(), guard, team);
+    return without_crossings(displacements, surface_, guard.accepted(), guard, team);
 }
 
 PerVertex<Vector3> MoveLimits::without_crossings(const PerVertex<Vector3>& displacements,
-                                                 const Surface& moved, std::vector<SelfCrossing> crossings,
+                                                 const Surface& known, std::vector<SelfCrossing> crossings,
                                                  CrossingGuard& guard, ThreadTeam& team) const {
-    return Moves(*this, displacements).shorten_to_limits(moved, std::move(crossings), guard, team);
+    return Moves(*this, displacements).shorten_to_limits(known, std::move(crossings), guard, team);
 }
 
 }  // namespace neuralmesh

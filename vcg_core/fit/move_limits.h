@@ -24,9 +24,9 @@ public:
     /// The same, shortened further until \p guard, which has accepted the surface, accepts the result.
     PerVertex<Vector3> without_crossings(const PerVertex<Vector3>& displacements, CrossingGuard& guard,
                                          ThreadTeam& team) const;
-    /// The same, sooner: \p moved is the surface after the displacements, with the same faces, and \p
-    /// crossings are those of \p moved.
-    PerVertex<Vector3> without_crossings(const PerVertex<Vector3>& displacements, const Surface& moved,
+    /// The same, sooner if \p known, a surface with the same faces, is closer to the result; \p crossings are
+    /// those of \p known.
+    PerVertex<Vector3> without_crossings(const PerVertex<Vector3>& displacements, const Surface& known,
                                          std::vector<SelfCrossing> crossings, CrossingGuard& guard,
                                          ThreadTeam& team) const;
 
