@@ -20,7 +20,9 @@ PerVertex<float> local_variances(const Network& network, const Surface& surface,
 
 /// How surely the points lie in layers over most of the surface, in [0, 1], by the \p variances of
 /// local_variances(): 0 if they are close to the surface, spread evenly, or fill a space. O(vertices).
-float layering(const Network& network, const Surface& surface, const PerVertex<float>& variances);
+/// \param points_per_vertex the variances of few points differ by chance
+float layering(const Network& network, const Surface& surface, const PerVertex<float>& variances,
+               float points_per_vertex);
 
 /// The same for the places around each vertex: a few views may overlap where most of the surface is seen by
 /// one. 0 where the points are spread widely everywhere: in layers, or because they fill a space.

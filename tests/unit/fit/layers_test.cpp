@@ -37,10 +37,14 @@ Cloud views(double shift, double noise) {
     return cloud;
 }
 
+float points_per_vertex(const FitScene& scene) {
+    return static_cast<float>(scene.points.all().size()) / static_cast<float>(scene.network.vertex_count());
+}
+
 float layering_of(const Cloud& cloud) {
     const FitScene scene(referee::network_of(shapes::icosphere(3)), cloud);
     const PerVertex<float> variances = local_variances(scene.network, scene.surface, scene.points);
-    return layering(scene.network, scene.surface, variances);
+    return layering(scene.network, scene.surface, variances, points_per_vertex(scene));
 }
 
 TEST(Layers, AreTheViewsThatDoNotMeet) {
@@ -54,6 +58,12 @@ TEST(Layers, AreNeitherNoiseNorCleanPoints) {
         EXPECT_EQ(layering_of(views(0, noise * kEdge)), 0) << noise;
     }
     EXPECT_EQ(layering_of(views(0.05 * kEdge, 0)), 0) << "close to the surface";
+}
+
+TEST(Layers, AreNotTheChanceOfFewPoints) {
+    constexpr int kFew = 6000;  // for 642 vertices
+    for (const double noise : {0.3, 0.4, 0.5})
+        EXPECT_EQ(layering_of(shapes::sphere_cloud(kFew, noise * kEdge)), 0) << noise;
 }
 
 // As points throughout a body do.
@@ -81,7 +91,8 @@ TEST(Layers, AreFoundWhereTheyAre) {
     const FitScene scene(referee::network_of(shapes::icosphere(3)),
                          two_views_on_top(0.8 * kEdge, 0.05 * kEdge));
     const PerVertex<float> variances = local_variances(scene.network, scene.surface, scene.points);
-    EXPECT_EQ(layering(scene.network, scene.surface, variances), 0) << "not over most of the surface";
+    EXPECT_EQ(layering(scene.network, scene.surface, variances, points_per_vertex(scene)), 0)
+        << "not over most of the surface";
     const PerVertex<float> local = local_layering(scene.network, scene.surface, variances);
     for (const VertexId v : scene.network.vertices()) {
         const float height = scene.network.position(v)[2];
