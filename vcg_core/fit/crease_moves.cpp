@@ -26,6 +26,7 @@ constexpr float kNoiseShare = 1.2F;   ///< ... besides this share of the varianc
 constexpr float kNoisiest = 0.15F;    ///< with more noise nothing moves: planes follow it off the points
 constexpr float kBetter = 0.3F;       ///< largest share of the squared error of a quadratic height field ...
 constexpr float kMuchBetter = 0.04F;  ///< ... and of what noise leaves unexplained of it
+constexpr float kSure = 0.25F;        ///< and of that of the faces, for sure moves
 constexpr int kFewestPoints = 10;     ///< of a plane
 /// About as many points of the two-ring are used: with more the error is no smaller, and a fit of few
 /// vertices longer (tests/experiments/accuracy/compare_accuracy.py).
@@ -47,8 +48,8 @@ public:
 
     /// Keeps references. \p all_sides: of all faces; those without area have no normal.
     PlanesOfPoints(const Network& network, const Surface& surface, const PerFace<Side>& all_sides,
-                   const PointsByFace& points)
-        : network_(network), surface_(surface), all_sides_(all_sides), points_(points) {}
+                   const PointsByFace& points, CreaseMoves which)
+        : network_(network), surface_(surface), all_sides_(all_sides), points_(points), which_(which) {}
 
     /// The way from \p v to the line of its two planes; 0 if there are none, or if the line is far.
     Vector3 way_to_crease(VertexId v, float noise_variance) {
@@ -61,6 +62,7 @@ public:
         for (int i = 0; i < kRefinements; ++i)
             if (!refine() || error_ > kHopeless * largest_error(edge, noise)) return Vector3::Zero();
         if (!are_better_than_smooth(edge, noise)) return Vector3::Zero();
+        if (which_ == CreaseMoves::sure && !are_better_than_faces()) return Vector3::Zero();
         const Vector3 way = way_to_line();
         return way.norm() < kFarthest * edge ? way : Vector3::Zero();
     }
@@ -70,6 +72,7 @@ private:
     struct Sample {
         Vector3 place;
         float weight;
+        float height;  ///< above the plane of its face
     };
     struct Plane {
         Vector3 normal, point;
@@ -130,10 +133,12 @@ private:
         int next = 0;
         for (const int f : faces_) {
             const Span<const PointsByFace::Assignment> of_face = points_.of(f);
+            const Plane plane = plane_of(all_sides_[f]);
             for (; next < of_face.size(); next += step) {
                 const Vector3 place = of_face[next].point - vertex;
                 const float x = 1 + place.squaredNorm() / (reach * reach);
-                samples_.push_back({place, of_face[next].influence / (x * x)});
+                const float height = plane.normal.dot(of_face[next].point - plane.point);
+                samples_.push_back({place, of_face[next].influence / (x * x), height});
             }
             next -= of_face.size();
         }
@@ -185,16 +190,26 @@ private:
     /// Of the points from the two planes of a crease, squared.
     static float largest_error(float edge, float noise) { return kTight * kTight * edge * edge + noise; }
 
-    /// Mean squared distance of the points from the nearer plane.
-    float squared_error() const {
+    /// Mean square of \p height_of(sample).
+    template <class HeightOf>
+    float mean_square(const HeightOf& height_of) const {
         double sum = 0;
         double weight = 0;
         for (const Sample& s : samples_) {
-            const float h = height(s, nearer_plane(s));
+            const float h = height_of(s);
             sum += static_cast<double>(s.weight * h * h);
             weight += static_cast<double>(s.weight);
         }
         return static_cast<float>(sum / weight);
+    }
+
+    /// Mean squared distance of the points from the nearer plane.
+    float squared_error() const {
+        return mean_square([&](const Sample& s) { return height(s, nearer_plane(s)); });
+    }
+
+    bool are_better_than_faces() const {
+        return squared_error() < kSure * mean_square([](const Sample& s) { return s.height; });
     }
 
     /// Whether the points lie on the planes, and not on a smooth surface. \p noise: the squared error that
@@ -248,6 +263,7 @@ private:
     const Surface& surface_;
     const PerFace<Side>& all_sides_;
     const PointsByFace& points_;
+    const CreaseMoves which_;
     std::vector<int> faces_;
     std::vector<Side> sides_;  ///< of the two-ring
     std::vector<Sample> samples_;
@@ -266,7 +282,8 @@ bool is_near_boundary(const Network& network, VertexId v) {
 }  // namespace
 
 PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surface,
-                                    const PointsByFace& points, float noise_variance, ThreadTeam& team) {
+                                    const PointsByFace& points, float noise_variance, ThreadTeam& team,
+                                    CreaseMoves which) {
     PerVertex<Vector3> moves(network.slot_count(), Vector3::Zero());
     PerFace<PlanesOfPoints::Side> sides(surface.face_count());
     parallel_for(sides.size(), kFacesAtATime, team, [&](int f) {
@@ -276,7 +293,7 @@ PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surfa
     });
     const auto slots = static_cast<std::size_t>(network.slot_count());
     for_chunks(slots, kVerticesAtATime, team, [&](std::size_t, std::size_t begin, std::size_t end) {
-        PlanesOfPoints planes(network, surface, sides, points);
+        PlanesOfPoints planes(network, surface, sides, points, which);
         for (auto v = static_cast<VertexId>(begin); v < static_cast<VertexId>(end); ++v)
             if (network.alive(v) && !is_near_boundary(network, v))
                 moves[v] = planes.way_to_crease(v, noise_variance);

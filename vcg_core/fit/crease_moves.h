@@ -10,6 +10,11 @@
 
 namespace neuralmesh {
 
+/// Which vertices move to creases: all whose points lie on two planes, or of these only those whose planes
+/// leave at most a quarter of the squared distance that their points have from the faces. Where faces are
+/// large beside the bend of a crease, planes lie farther from the points than the faces do.
+enum class CreaseMoves { likely, sure };
+
 /// For every vertex the way to the line where two planes meet, if the points of the faces of its two-ring lie
 /// on two planes and the line is nearer than a third of its edges; else 0, as on boundaries and one edge from
 /// them. \p noise_variance is that of the points; if its root exceeds .15 edges, nothing moves.
@@ -21,6 +26,7 @@ namespace neuralmesh {
 /// "k-Plane Clustering", 2000). O(points of all two-rings). The result does not depend on the number of
 /// threads.
 PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surface,
-                                    const PointsByFace& points, float noise_variance, ThreadTeam& team);
+                                    const PointsByFace& points, float noise_variance, ThreadTeam& team,
+                                    CreaseMoves which = CreaseMoves::likely);
 
 }  // namespace neuralmesh

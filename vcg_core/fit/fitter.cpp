@@ -11,7 +11,6 @@
 
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
-#include "vcg_core/fit/crease_moves.h"
 #include "vcg_core/fit/edge_flips.h"
 #include "vcg_core/fit/layers.h"
 #include "vcg_core/fit/move_limits.h"
@@ -297,8 +296,9 @@ void Fitter::place_vertices(const Surface& surface) {
     for (VertexId v : network_.vertices()) network_.set_position(v, to_vcg(surface.positions[v]));
 }
 
-void Fitter::move_to_creases(Surface& surface, const PointsByFace& points) {
-    const PerVertex<Vector3> moves = moves_to_creases(network_, surface, points, noise_variance_, team_);
+void Fitter::move_to_creases(Surface& surface, const PointsByFace& points, CreaseMoves which) {
+    const PerVertex<Vector3> moves =
+        moves_to_creases(network_, surface, points, noise_variance_, team_, which);
     if (std::all_of(moves.begin(), moves.end(), [](const Vector3& way) { return way.isZero(0); })) return;
     const Surface start = surface;
     const MoveLimits limits(network_, start, team_);

@@ -9,6 +9,7 @@
 
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/thread_team.h"
+#include "vcg_core/fit/crease_moves.h"
 #include "vcg_core/fit/crossing_guard.h"
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/fit/held_out.h"
@@ -87,7 +88,8 @@ public:
     /// Moves the vertices beside creases onto them, so that flip_edges() gives the creases edges. Moves \p
     /// surface, that of the network, with them. \pre \p points were assigned to \p surface before it moved
     /// last
-    void move_to_creases(Surface& surface, const PointsByFace& points);
+    void move_to_creases(Surface& surface, const PointsByFace& points,
+                         CreaseMoves which = CreaseMoves::likely);
     /// Fills the notches of the boundary that hold points, and opens the faces there that hold none. \return
     /// the number of faces filled and opened
     int mend_boundary(const Surface& surface, const PointsByFace& points);
