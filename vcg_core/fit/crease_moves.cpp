@@ -62,7 +62,7 @@ public:
         for (int i = 0; i < kRefinements; ++i)
             if (!refine() || error_ > kHopeless * largest_error(edge, noise)) return Vector3::Zero();
         if (!are_better_than_smooth(edge, noise)) return Vector3::Zero();
-        if (which_ == CreaseMoves::sure && !are_better_than_faces()) return Vector3::Zero();
+        if (which_ == CreaseMoves::sure && !are_better_than_faces(v)) return Vector3::Zero();
         const Vector3 way = way_to_line();
         return way.norm() < kFarthest * edge ? way : Vector3::Zero();
     }
@@ -72,7 +72,7 @@ private:
     struct Sample {
         Vector3 place;
         float weight;
-        float height;  ///< above the plane of its face
+        int face;  ///< to which the point is assigned
     };
     struct Plane {
         Vector3 normal, point;
@@ -133,12 +133,10 @@ private:
         int next = 0;
         for (const int f : faces_) {
             const Span<const PointsByFace::Assignment> of_face = points_.of(f);
-            const Plane plane = plane_of(all_sides_[f]);
             for (; next < of_face.size(); next += step) {
                 const Vector3 place = of_face[next].point - vertex;
                 const float x = 1 + place.squaredNorm() / (reach * reach);
-                const float height = plane.normal.dot(of_face[next].point - plane.point);
-                samples_.push_back({place, of_face[next].influence / (x * x), height});
+                samples_.push_back({place, of_face[next].influence / (x * x), f});
             }
             next -= of_face.size();
         }
@@ -208,8 +206,12 @@ private:
         return mean_square([&](const Sample& s) { return height(s, nearer_plane(s)); });
     }
 
-    bool are_better_than_faces() const {
-        return squared_error() < kSure * mean_square([](const Sample& s) { return s.height; });
+    bool are_better_than_faces(VertexId v) const {
+        const auto above_face = [&](const Sample& s) {
+            return all_sides_[s.face].normal.dot(surface_.positions[v] + s.place -
+                                                 surface_.corner(s.face, 0));
+        };
+        return squared_error() < kSure * mean_square(above_face);
     }
 
     /// Whether the points lie on the planes, and not on a smooth surface. \p noise: the squared error that

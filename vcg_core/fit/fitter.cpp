@@ -95,10 +95,6 @@ float outlier_distance(const Surface& surface, const std::vector<Hit>& hits) {
     return std::max(kOutlierDeviations * deviation, kOutlierEdges * mean_edge_length(surface));
 }
 
-float points_for_each_vertex(const PointsByFace& points, const Network& network) {
-    return static_cast<float>(points.all().size()) / static_cast<float>(network.vertex_count());
-}
-
 }  // namespace
 
 std::vector<float> BendingSearch::next_weights(float least) {
@@ -167,7 +163,7 @@ void Fitter::examine_layers(const Surface& surface, const PointsByFace& points, 
     bending_error_ = 0;
     stiff_rounds_ = 0;
     if (excludes_layers_) return;
-    const float points_per_vertex = points_for_each_vertex(points, network_);
+    const float points_per_vertex = points.per_vertex(network_.vertex_count());
     if (points_per_vertex < kFewPoints) return;
     const PerVertex<float> variances = examine_variances(surface, points);
     layering_ = layering(network_, surface, widest_variances_, points_per_vertex);
@@ -199,7 +195,7 @@ PerVertex<float> Fitter::examine_variances(const Surface& surface, const PointsB
 PerVertex<float> Fitter::stiffness_by(const PerVertex<float>& variances, const Surface& surface,
                                       const PointsByFace& points) const {
     const float gap = kLikelyGap * mean_edge_length(surface);
-    const float points_per_vertex = points_for_each_vertex(points, network_);
+    const float points_per_vertex = points.per_vertex(network_.vertex_count());
     const float per_variance = kLayerStiffness / (gap * gap * points_per_vertex);
     const bool stiff_by_places = stiff_rounds_ > 0 && !(layering_ > 0);
     PerVertex<float> stiffness = local_layering(network_, surface, widest_variances_);
@@ -244,7 +240,7 @@ void Fitter::silence_strays(const Surface& surface, PointsByFace& points) {
 }
 
 std::vector<float> Fitter::choose_weights(const Surface& surface, const PointsByFace& points) {
-    const float points_per_vertex = points_for_each_vertex(points, network_);
+    const float points_per_vertex = points.per_vertex(network_.vertex_count());
     const float gap =
         (points_per_vertex < kFewPoints ? kLikelyGapOfFew : kLikelyGap) * mean_edge_length(surface);
     std::vector<float> weights = bending_.next_weights(noise_variance_ / (gap * gap * points_per_vertex));

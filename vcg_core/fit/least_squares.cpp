@@ -74,8 +74,7 @@ PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& su
                                        const PointsByFace& points, ThreadTeam& team,
                                        const PerVertex<float>& stiffness, float hold)
     : network_(network),
-      points_per_vertex_(static_cast<float>(points.all().size()) /
-                         static_cast<float>(network.vertex_count())),
+      points_per_vertex_(points.per_vertex(network.vertex_count())),
       row_(network.slot_count() + 1, 0),
       diagonal_(network.slot_count()),
       force_(network.slot_count(), Vector3::Zero()) {

@@ -47,6 +47,10 @@ public:
     /// The points of all faces, face by face.
     std::vector<Assignment>& all() { return assignments_; }
     const std::vector<Assignment>& all() const { return assignments_; }
+    /// Number of points for each of \p vertices vertices.
+    float per_vertex(int vertices) const {
+        return static_cast<float>(assignments_.size()) / static_cast<float>(vertices);
+    }
 
     /// The sum of the influences of the points of \p face, or their number if the points have no weights.
     float weight(int face) const;

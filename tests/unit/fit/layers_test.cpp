@@ -38,7 +38,7 @@ Cloud views(double shift, double noise) {
 }
 
 float points_per_vertex(const FitScene& scene) {
-    return static_cast<float>(scene.points.all().size()) / static_cast<float>(scene.network.vertex_count());
+    return scene.points.per_vertex(scene.network.vertex_count());
 }
 
 float layering_of(const Cloud& cloud) {
