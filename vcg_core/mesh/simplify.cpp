@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <iterator>
-#include <queue>
 #include <utility>
 
+#include "vcg_core/mesh/half_edge_queue.h"
 #include "vcg_core/mesh/triangle.h"
 #include "vcg_core/mesh/valence_flips.h"
 
@@ -49,20 +49,6 @@ bool folds(const Network& net, VertexId v, const Point3f& where, VertexId except
     }
     return false;
 }
-
-/// A half-edge collapse in the queue.
-struct QueuedCollapse {
-    float squared_length;
-    VertexId gone, kept;
-
-    /// Shorter edges first. Ties are ordered by ids, so the result does not depend on the queue.
-    bool operator<(const QueuedCollapse& other) const {
-        if (squared_length != other.squared_length) return squared_length > other.squared_length;
-        return std::pair(gone, kept) > std::pair(other.gone, other.kept);
-    }
-};
-
-using Queue = std::priority_queue<QueuedCollapse>;
 
 bool result_valence_fits(const Network& net, VertexId gone, VertexId kept) {
     return net.ring(gone).valence + net.ring(kept).valence - 4 <= kMaxValence - kSpareValence;
@@ -109,19 +95,11 @@ float mean_squared_length(const Scaled& scaled) {
 /// Collapses edges in the order of their lengths. \p careful: none that would fold the surface.
 void collapse_to(const Scaled& scaled, int vertices, bool careful) {
     Network& net = scaled.net;
-    Queue queue;
-    for (const VertexId v : net.vertices())
-        for (const VertexId w : net.ring(v)) queue.push({scaled.squared_length(v, w), v, w});
+    HalfEdgeQueue queue(net, [&](VertexId a, VertexId b) { return scaled.squared_length(a, b); });
     while (net.vertex_count() > vertices && !queue.empty()) {
-        const auto [length, gone, kept] = queue.top();
-        queue.pop();
-        if (!net.alive(gone) || !net.adjacent(gone, kept)) continue;
-        if (!may_collapse(net, gone, kept, careful)) continue;
-        net.collapse(gone, kept);
-        for (const VertexId w : net.ring(kept)) {
-            queue.push({scaled.squared_length(kept, w), kept, w});
-            queue.push({scaled.squared_length(kept, w), w, kept});
-        }
+        const auto [length, gone, kept] = queue.take();
+        if (net.alive(gone) && net.adjacent(gone, kept) && may_collapse(net, gone, kept, careful))
+            queue.collapse(gone, kept);
     }
 }
 

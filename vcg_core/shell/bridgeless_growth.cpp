@@ -58,11 +58,9 @@ private:
     std::vector<std::uint8_t> connected_;
 };
 
-NeighbourSet solid_neighbours(const Lattice& lattice, NodeId i, const NodeSet& solid) {
+NeighbourSet solid_neighbours(const Neighbours& neighbours, NodeId i, const NodeSet& solid) {
     NeighbourSet set = 0;
-    for_each_neighbour_offset(lattice, i, [&](NodeId j, int k) {
-        if (solid[j] != 0) set |= NeighbourSet{1} << k;
-    });
+    neighbours.for_each(i, [&](NodeId j, int k) { set |= NeighbourSet{solid[j]} << k; });
     return set;
 }
 
@@ -76,6 +74,7 @@ bool on_wall(const Lattice& l, NodeId i) {
 void fill_cavities(const Lattice& lattice, const std::vector<NodeId>& left_out,
                    const PerNode<SquaredRadius>& clearance, int level, NodeSet& solid) {
     constexpr std::uint8_t kVisited = 2;  // in solid: visited, but not in it
+    const Neighbours neighbours(lattice);
     std::vector<NodeId> component;
     for (const NodeId seed : left_out) {
         if (solid[seed] != 0) continue;
@@ -87,7 +86,7 @@ void fill_cavities(const Lattice& lattice, const std::vector<NodeId>& left_out,
             solid[j] = kVisited;
             return true;
         };
-        flood(lattice, seed, enter, component);
+        flood(neighbours, seed, enter, component);
         for (const NodeId i : component) open = open || on_wall(lattice, i);
         if (open) continue;
         for (const NodeId i : component) solid[i] = 1;
@@ -100,6 +99,7 @@ void fill_cavities(const Lattice& lattice, const std::vector<NodeId>& left_out,
 void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
                           NodeSet& solid) {
     static const LinkConnected link_connected;
+    const Neighbours neighbours(lattice);
     Indexed<std::vector<NodeId>> waiting(level + 1);
     std::vector<NodeId> outside;
     for (NodeId i = 0; i < solid.size(); ++i)
@@ -111,10 +111,10 @@ void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& 
         std::vector<NodeId>& front = waiting[l];
         for (std::size_t k = 0; k < front.size(); ++k) {
             const NodeId i = front[k];
-            if (solid[i] != 0 || !link_connected(solid_neighbours(lattice, i, solid))) continue;
+            if (solid[i] != 0 || !link_connected(solid_neighbours(neighbours, i, solid))) continue;
             solid[i] = 1;
             // Neighbours that were left out may be connected to the solid in another way now.
-            for_each_neighbour(lattice, i, [&](NodeId j) {
+            neighbours.for_each(i, [&](NodeId j, int) {
                 if (solid[j] == 0 && clearance[j] <= l) front.push_back(j);
             });
         }

@@ -78,13 +78,13 @@ PerNode<SquaredRadius> clearances(const Lattice& lattice, const PerNode<SquaredR
     for_each_wall_node(lattice, [&](NodeId i) {
         if (out[i] == kUnknown) wait(i, far, false);
     });
+    const Neighbours neighbours(lattice);
+    const auto is_unknown = [&](NodeId i) { return out[i] == kUnknown; };
     for (int level = far; level > 0; --level) {
         std::vector<NodeId>& front = waiting[level];
         for (std::size_t k = 0; k < front.size(); ++k) {
             const bool in = out[front[k]] == kInside;
-            for_each_neighbour(lattice, front[k], [&](NodeId j) {
-                if (out[j] == kUnknown) wait(j, level, in);
-            });
+            for (const NodeId j : neighbours.of(front[k], is_unknown)) wait(j, level, in);
         }
         std::vector<NodeId>().swap(front);
     }

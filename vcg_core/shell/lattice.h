@@ -70,29 +70,56 @@ inline constexpr std::array<NodeOffset, kNeighbourCount> kNeighbourOffsets = {
     NodeOffset{1, 0, 0}, {-1, 0, 0}, {0, 1, 0},   {0, -1, 0}, {0, 0, 1},   {0, 0, -1}, {1, 1, 0},
     {-1, -1, 0},         {1, 0, 1},  {-1, 0, -1}, {0, 1, 1},  {0, -1, -1}, {1, 1, 1},  {-1, -1, -1}};
 
-/// Calls visit(j, k) for the neighbours j of node \p i, where k is j's place in kNeighbourOffsets.
-template <class Visit>
-void for_each_neighbour_offset(const Lattice& l, NodeId i, const Visit& visit) {
-    const auto [x, y, z] = l.coordinates(i);
-    const auto visit_if = [&](const auto& is_inside) {
-        for (int k = 0; k < kNeighbourCount; ++k) {
-            const auto& [dx, dy, dz] = kNeighbourOffsets[static_cast<std::size_t>(k)];
-            if (is_inside(x + dx, y + dy, z + dz)) visit(i + l.index(dx, dy, dz), k);
-        }
-    };
-    const bool on_side = x == 0 || y == 0 || z == 0 || x + 1 == l.nx || y + 1 == l.ny || z + 1 == l.nz;
-    if (on_side) {
-        visit_if([&l](int u, int v, int w) { return l.contains(u, v, w); });
-    } else {
-        visit_if([](int, int, int) { return true; });
-    }
-}
+/// Some of the neighbours of a node.
+struct NodeList {
+    std::array<NodeId, kNeighbourCount + 1> nodes{};  ///< the last place is written, but never counted
+    std::size_t size = 0;
 
-/// Calls visit(j) for the neighbours j of node \p i, in a fixed order.
-template <class Visit>
-void for_each_neighbour(const Lattice& l, NodeId i, const Visit& visit) {
-    for_each_neighbour_offset(l, i, [&](NodeId j, int) { visit(j); });
-}
+    const NodeId* begin() const { return nodes.data(); }
+    const NodeId* end() const { return nodes.data() + size; }
+};
+
+/// The neighbours of nodes. For loops over many nodes: the differences of the ids are computed once.
+class Neighbours {
+public:
+    explicit Neighbours(const Lattice& lattice) : lattice_(lattice) {
+        for (std::size_t k = 0; k < kNeighbourCount; ++k) {
+            const auto& [dx, dy, dz] = kNeighbourOffsets[k];
+            differences_[k] = lattice.index(dx, dy, dz);
+        }
+    }
+    /// Calls visit(j, k) for the neighbours j of node \p i, where k is j's place in kNeighbourOffsets.
+    template <class Visit>
+    void for_each(NodeId i, const Visit& visit) const {
+        const Lattice& l = lattice_;
+        const auto [x, y, z] = l.coordinates(i);
+        if (x == 0 || y == 0 || z == 0 || x + 1 == l.nx || y + 1 == l.ny || z + 1 == l.nz) {
+            for (int k = 0; k < kNeighbourCount; ++k) {
+                const auto& [dx, dy, dz] = kNeighbourOffsets[static_cast<std::size_t>(k)];
+                if (l.contains(x + dx, y + dy, z + dz)) visit(i + difference(k), k);
+            }
+        } else {
+            for (int k = 0; k < kNeighbourCount; ++k) visit(i + difference(k), k);
+        }
+    }
+    /// The neighbours j of node \p i with member(j), in the order of kNeighbourOffsets. Without a branch for
+    /// each, which would be hard to predict.
+    template <class Member>
+    NodeList of(NodeId i, const Member& member) const {
+        NodeList result;
+        for_each(i, [&](NodeId j, int) {
+            result.nodes[result.size] = j;
+            result.size += member(j) ? 1 : 0;
+        });
+        return result;
+    }
+
+private:
+    NodeId difference(int k) const { return differences_[static_cast<std::size_t>(k)]; }
+
+    Lattice lattice_;  // a copy, so that the compiler need not reload its numbers after each store of an id
+    std::array<NodeId, kNeighbourCount> differences_{};
+};
 
 /// Calls visit(x, y, z) for all nodes in the order of their ids.
 template <class Visit>
@@ -105,10 +132,10 @@ void for_each_node(const Lattice& l, const Visit& visit) {
 /// Flood fill: puts \p seed into \p nodes and then, breadth first, each neighbour j of a node in it for which
 /// enter(j) is true. enter() must be true at most once per node, so it marks the nodes it lets in.
 template <class Enter>
-void flood(const Lattice& lattice, NodeId seed, const Enter& enter, std::vector<NodeId>& nodes) {
+void flood(const Neighbours& neighbours, NodeId seed, const Enter& enter, std::vector<NodeId>& nodes) {
     nodes.assign(1, seed);
     for (std::size_t k = 0; k < nodes.size(); ++k)
-        for_each_neighbour(lattice, nodes[k], [&](NodeId j) {
+        neighbours.for_each(nodes[k], [&](NodeId j, int) {
             if (enter(j)) nodes.push_back(j);
         });
 }
@@ -123,10 +150,11 @@ void for_each_component(const Lattice& lattice, const Member& member, const Visi
         seen[i] = 1;
         return true;
     };
+    const Neighbours neighbours(lattice);
     std::vector<NodeId> nodes;
     for (NodeId seed = 0; seed < lattice.size(); ++seed) {
         if (!enter(seed)) continue;
-        flood(lattice, seed, enter, nodes);
+        flood(neighbours, seed, enter, nodes);
         visit(nodes);
     }
 }

@@ -174,19 +174,20 @@ private:
 class ComponentCount {
 public:
     ComponentCount(const Lattice& lattice, const PerNode<std::uint32_t>& counts, long long min_points)
-        : lattice_(lattice), sets_(counts), min_points_(min_points) {}
+        : neighbours_(lattice), sets_(counts), min_points_(min_points) {}
 
     void add(NodeId i) {
         sets_.add(i);
-        count(i, 1);
-        for_each_neighbour(lattice_, i, [&](NodeId j) {
-            if (!sets_.contains(j)) return;
-            const NodeId a = sets_.find(i), b = sets_.find(j);
-            if (a == b) return;
-            count(a, -1);
-            count(b, -1);
-            count(sets_.join(a, b), 1);
-        });
+        NodeId root = i;
+        count(root, 1);
+        for (const NodeId j : neighbours_.of(i, [&](NodeId n) { return sets_.contains(n); })) {
+            const NodeId other = sets_.find(j);
+            if (other == root) continue;
+            count(root, -1);
+            count(other, -1);
+            root = sets_.join(root, other);
+            count(root, 1);
+        }
     }
     /// All but the genus.
     const LevelTopology& topology() const { return topology_; }
@@ -198,7 +199,7 @@ private:
         if (points < min_points_) topology_.speck_points += sign * points;
     }
 
-    const Lattice& lattice_;
+    Neighbours neighbours_;
     DisjointSets sets_;
     long long min_points_;
     LevelTopology topology_;

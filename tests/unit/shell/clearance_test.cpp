@@ -35,6 +35,7 @@ TEST(Clearance, DistancesAreThoseOfBruteForce) {
 
 /// The definition as a fixed point: starts from 0 and raises clearances until none can be raised.
 PerNode<SquaredRadius> relaxed_clearances(const Lattice& lattice, const PerNode<SquaredRadius>& distances) {
+    const Neighbours neighbours(lattice);
     PerNode<SquaredRadius> result(lattice.size(), 0);
     for (bool changed = true; changed;) {
         changed = false;
@@ -43,8 +44,8 @@ PerNode<SquaredRadius> relaxed_clearances(const Lattice& lattice, const PerNode<
                               z == lattice.nz - 1;
             const NodeId i = lattice.index(x, y, z);
             SquaredRadius best = wall ? distances[i] : SquaredRadius{0};
-            for_each_neighbour(lattice, i,
-                               [&](NodeId j) { best = std::max(best, std::min(result[j], distances[i])); });
+            neighbours.for_each(
+                i, [&](NodeId j, int) { best = std::max(best, std::min(result[j], distances[i])); });
             changed = changed || best > result[i];
             result[i] = std::max(result[i], best);
         });

@@ -67,6 +67,7 @@ TEST(Lattice, NodeOfAPointIsTheNearestOne) {
 
 TEST(Lattice, AdjacencyIsThatOfTheFreudenthalSubdivision) {
     const Lattice lattice = small_lattice();
+    const Neighbours neighbours(lattice);
     for (NodeId i = 0; i < lattice.size(); ++i) {
         std::multiset<NodeId> expected, found;
         const auto a = lattice.coordinates(i);
@@ -77,7 +78,7 @@ TEST(Lattice, AdjacencyIsThatOfTheFreudenthalSubdivision) {
             const bool diagonal = *low == *high && std::abs(*low) == 1;
             if (ahead || behind || diagonal) expected.insert(lattice.index(x, y, z));
         });
-        for_each_neighbour_offset(lattice, i, [&](NodeId j, int k) {
+        neighbours.for_each(i, [&](NodeId j, int k) {
             found.insert(j);
             const auto b = lattice.coordinates(j);
             const auto& offset = kNeighbourOffsets[static_cast<std::size_t>(k)];
@@ -87,14 +88,33 @@ TEST(Lattice, AdjacencyIsThatOfTheFreudenthalSubdivision) {
     }
 }
 
+TEST(Lattice, ListsTheNeighboursThatAreMembers) {
+    const Lattice lattice = small_lattice();
+    const Neighbours neighbours(lattice);
+    const PerNode<std::uint32_t> members = random_counts(lattice, 7, 2);
+    const auto is_member = [&](NodeId i) { return members[i] != 0; };
+    for (NodeId i = 0; i < lattice.size(); ++i) {
+        std::vector<NodeId> expected, all;
+        neighbours.for_each(i, [&](NodeId j, int) {
+            all.push_back(j);
+            if (is_member(j)) expected.push_back(j);
+        });
+        const NodeList some = neighbours.of(i, is_member);
+        ASSERT_EQ(std::vector<NodeId>(some.begin(), some.end()), expected) << i;
+        const NodeList every = neighbours.of(i, [](NodeId) { return true; });
+        ASSERT_EQ(std::vector<NodeId>(every.begin(), every.end()), all) << i;
+    }
+}
+
 /// Labels by repeated minima: every member takes the smallest label among its neighbours.
 PerNode<NodeId> labels_of(const Lattice& lattice, const PerNode<std::uint32_t>& members) {
+    const Neighbours neighbours(lattice);
     PerNode<NodeId> labels(lattice.size());
     for (NodeId i = 0; i < lattice.size(); ++i) labels[i] = i;
     for (bool changed = true; changed;) {
         changed = false;
         for (NodeId i = 0; i < lattice.size(); ++i)
-            for_each_neighbour(lattice, i, [&](NodeId j) {
+            neighbours.for_each(i, [&](NodeId j, int) {
                 if (members[i] == 0 || members[j] == 0 || labels[j] >= labels[i]) return;
                 labels[i] = labels[j];
                 changed = true;
