@@ -121,15 +121,18 @@ Plan plan_for(const LearningTask& task, const Settings& settings) {
     return plan;
 }
 
+/// Whether half the signals do for growth: most of the vertices will go, and the fit places them. Of 2,000
+/// vertices and more accuracy is wanted: they would have 1.02 times the error.
+bool learns_briefly(const Plan& plan) {
+    constexpr int kPreview = 2000;
+    return plan.by_volume && plan.grow_to > plan.carried && plan.carried < kPreview;
+}
+
 LearnerOptions learner_options(const LearningTask& task, const Settings& settings, const Plan& plan) {
     LearnerOptions options = learner_options_from(settings);
     options.grow_to = plan.grow_to;
-    // Most of the vertices will go, and the fit places them: half the signals do for a preview. Of 2,000
-    // vertices and more accuracy is wanted: they would have 1.02 times the error.
-    constexpr int kPreview = 2000;
     const bool has_surplus = plan.grow_to > plan.carried;
-    if (has_surplus && plan.by_volume && plan.carried < kPreview)
-        options.signals_per_split = std::max(1, options.signals_per_split / 2);
+    if (learns_briefly(plan)) options.signals_per_split = std::max(1, options.signals_per_split / 2);
     // As many signals as for those that stay settle them well enough; half as many where most of them stay:
     // 50,000 and 100,000 vertices then have .99 and .98 of the error.
     if (has_surplus && settings.redistributes_vertices() && (plan.calm || plan.by_volume))
@@ -153,6 +156,7 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
     options.expect_strays = task.outliers > 0;
     options.reduce_to = plan.carried;
     options.by_volume = plan.by_volume && network.vertex_count() > plan.carried;
+    options.learned_briefly = learns_briefly(plan);
     options.calm = plan.calm || options.by_volume;
     options.refine_to = plan.carried < settings.target_vertices ? settings.target_vertices : 0;
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the

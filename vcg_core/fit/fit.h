@@ -30,6 +30,9 @@ struct FitOptions {
     /// Reduce by the shape of the fitted mesh (volume_collapse.h), if a third of the vertices or more are to
     /// go, and end the fit with rounds that gain little. For points whose noise is at most .15 edges.
     bool by_volume = false;
+    /// The network has learned with fewer signals than usual, and lags more behind the points. A reduction by
+    /// volume then begins with one more solution.
+    bool learned_briefly = false;
     /// Leave out stray points (stray_points.h). For clouds that had outliers: those close to the surface are
     /// still there.
     bool expect_strays = false;
@@ -74,9 +77,8 @@ struct FitReport {
 ///   less. No face turns over, folds onto a neighbour or becomes a sliver.
 /// - Self-crossings are smoothed out first where possible; the fit adds none. If there is a boundary, faces
 ///   that still cut others are removed, the topology with them where it must be; see sound_start.h.
-/// - Outliers: the influence of a far point falls with its squared distance; with options.expect_strays,
-/// points
-///   that are far for their surroundings have none.
+/// - Outliers: the influence of a far point falls with its squared distance. With options.expect_strays
+///   points that are far for their surroundings have none.
 /// - The result of the rounds is kept only if its error at the held-out points is smaller, allowing for the
 ///   noise that learning has followed (see rms_unfitted). Else the mesh stays as it was before them.
 /// - The reduction falls short of options.reduce_to if it was stopped, if no more vertices can go without

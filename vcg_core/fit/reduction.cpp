@@ -31,10 +31,9 @@ constexpr int kDenseFrom = 2;
 constexpr double kByVolumeFrom = 1.5;
 /// Solutions before that, with edge flips between them. The learned mesh lags behind the points and has its
 /// vertices beside sharp edges, and the collapses keep what it shows. With three, 500 and 2,000 vertices have
-/// 1.02 and 1.01 times the error. Fewer than kFew vertices learn with half the signals, so their mesh lags
-/// more: with four, 500 and 1,000 have 1.01 times the error. 2,000 gain nothing from a fifth.
-constexpr int kSolutionsBefore = 4, kSolutionsBeforeFew = 5;
-constexpr int kFew = 2000;
+/// 1.02 and 1.01 times the error. Meshes of 500 and 1,000, which have learned briefly, have 1.01 times with
+/// four; 2,000 gain nothing from a fifth.
+constexpr int kSolutionsBefore = 4, kSolutionsAfterBriefLearning = 5;
 
 }  // namespace
 
@@ -50,7 +49,7 @@ bool Fitter::reduce_to(int vertices, const FitOptions& options, Progress& progre
     set_directions(surface);
     solve(points, surface);
     const bool reduced = reduced_by_volume_
-                             ? reduce_by_volume(vertices, surface, std::move(points), reducing)
+                             ? reduce_by_volume(vertices, options, surface, std::move(points), reducing)
                              : reduce_by_costs(vertices, options.calm, surface, std::move(points), reducing);
     if (!reduced) return false;
     fitted_.points.insert(fitted_.points.end(), set_aside_.points.begin(), set_aside_.points.end());
@@ -61,13 +60,14 @@ bool Fitter::reduce_to(int vertices, const FitOptions& options, Progress& progre
     return true;
 }
 
-bool Fitter::reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress) {
+bool Fitter::reduce_by_volume(int vertices, const FitOptions& options, Surface& surface, PointsByFace points,
+                              Progress& progress) {
     excludes_layers_ = !layered_;
     PartOf fitting(progress, 0, 0.9);
     PartOf rest(progress, 0.9, 1);
-    const int wanted = vertices < kFew ? kSolutionsBeforeFew : kSolutionsBefore;
-    for (int solutions = 1; solutions < wanted; ++solutions) {
-        if (!fitting(static_cast<double>(solutions) / wanted, "Fitting to the points, before the reduction"))
+    const int solutions = options.learned_briefly ? kSolutionsAfterBriefLearning : kSolutionsBefore;
+    for (int found = 1; found < solutions; ++found) {
+        if (!fitting(static_cast<double>(found) / solutions, "Fitting to the points, before the reduction"))
             return false;
         flip_edges(surface, points);
         surface = Surface(network_);
