@@ -25,7 +25,8 @@ float layering(const Network& network, const Surface& surface, const PerVertex<f
                float points_per_vertex);
 
 /// The same for the places around each vertex: a few views may overlap where most of the surface is seen by
-/// one. 0 where the points are spread widely everywhere: in layers, or because they fill a space.
+/// one. 0 where the points are spread widely everywhere, in layers or because they fill a space; and where
+/// most of the rest is spread unevenly, too, because the mesh is too coarse for the shape.
 PerVertex<float> local_layering(const Network& network, const Surface& surface,
                                 const PerVertex<float>& variances);
 

@@ -124,6 +124,16 @@ TEST(Layers, AreNotOfAPartWhereMostIsSpreadWidely) {
     EXPECT_EQ(most_local_layering_of(cloud), 0);
 }
 
+// Ripples that are narrower than the edges, and higher towards the top.
+TEST(Layers, AreNotRipplesThatTheMeshDoesNotFollow) {
+    Cloud cloud = shapes::sphere_cloud(kPoints);
+    for (vcg::Point3d& p : cloud) {
+        const double height = 0.5 * kEdge * (1 + p[2]) / 2;
+        p *= 1 + height * std::sin(40 * p[0]) * std::sin(40 * p[1]);
+    }
+    EXPECT_EQ(most_local_layering_of(cloud), 0);
+}
+
 TEST(Layers, LocalVariancesAreThatOfTheNoise) {
     constexpr double kNoise = 0.04;
     const double deviation = kNoise / std::sqrt(5.0);  // along one axis, of noise that fills a ball
