@@ -127,8 +127,8 @@ PerVertex<float> local_layering(const Network& network, const Surface& surface,
     constexpr float kEven = 1.35F, kUneven = 1.8F;
     // Of the narrowest tenth, in mean edges: .13 to .18 on those scans, .24 to .27 where points fill a space.
     constexpr float kRest = 0.2F;
-    // Of the median and the narrowest tenth: 1.2 to 1.53 on scans of levels 1 and 2. On folds that a mesh is
-    // too coarse to follow, 1.77 to 1.94 (a brain's), 1.66 to 1.8 (armadillo) and 2.1 to 2.5 (feline).
+    // Ratio of the median to the narrowest tenth: 1.2 to 1.53 on scans of levels 1 and 2. On folds that a
+    // mesh is too coarse to follow, 1.77 to 1.94 (a brain), 1.66 to 1.8 (armadillo) and 2.1 to 2.5 (feline).
     constexpr float kEvenRest = 1.55F, kUnevenRest = 1.75F;
     PerVertex<float> result(variances.size(), 0);
     const Spreads spreads = spreads_of(network, surface, variances);

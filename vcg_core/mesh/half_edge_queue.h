@@ -55,6 +55,7 @@ public:
         network_.collapse(gone, kept);
         for (const VertexId w : network_.ring(kept)) {
             const float length = length_(kept, w);
+            // Nothing as long was taken yet.
             const bool waits = neighbour_of_[w] == kept && length > longest_taken_;
             if (waits) continue;
             again_.push({length, kept, w});

@@ -72,8 +72,8 @@ inline constexpr std::array<NodeOffset, kNeighbourCount> kNeighbourOffsets = {
 
 /// Some of the neighbours of a node.
 struct NodeList {
-    std::array<NodeId, kNeighbourCount + 1> nodes{};  ///< the last place is written, but never counted
-    std::size_t size = 0;
+    std::array<NodeId, kNeighbourCount> nodes{};
+    std::size_t size = 0;  ///< what is behind counts for nothing
 
     const NodeId* begin() const { return nodes.data(); }
     const NodeId* end() const { return nodes.data() + size; }
