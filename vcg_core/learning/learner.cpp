@@ -174,7 +174,7 @@ int Learner::learn_topology(bool last) {
     auto now = evidence();
     for (int round = 0; now && round < kMostRounds; ++round) {
         const int before = changes;
-        for (const Reconnection& change : neuralmesh::topology_changes(network(), target_, *now, rules))
+        for (const Reconnection& change : neuralmesh::topology_changes(network(), target_, *now, rules, team))
             changes += state_.exchange_faces(change.gone, change.added) ? 1 : 0;
         if (changes == before) break;
         now = evidence();

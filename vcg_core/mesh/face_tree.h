@@ -46,7 +46,12 @@ public:
     /// surface.
     template <class Visit>
     void for_overlapping(const Surface& surface, int face, const Visit& visit) const {
-        for_overlapping(box_of(surface, face), 0, visit);
+        for_overlapping(box_of(surface, face), visit);
+    }
+    /// The same for a given \p box.
+    template <class Visit>
+    void for_overlapping(const Eigen::AlignedBox3f& box, const Visit& visit) const {
+        for_overlapping(box, 0, visit);
     }
 
 private:

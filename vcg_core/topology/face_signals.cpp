@@ -23,9 +23,12 @@ void assign(const Surface& surface, const std::vector<Vector3>& signals, ThreadT
     std::partial_sum(support.wins.begin(), support.wins.end(), support.first.begin() + 1);
     PerFace<int> next = support.first;
     support.signals.resize(signals.size());
-    for (std::size_t i = 0; i < signals.size(); ++i)
-        support.signals[static_cast<std::size_t>(next[hits[i].face]++)] = {signals[i],
-                                                                           hits[i].foot.squared_distance};
+    support.farthest.assign(surface.face_count(), 0);
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+        const auto& [face, foot] = hits[i];
+        support.signals[static_cast<std::size_t>(next[face]++)] = {signals[i], foot.squared_distance};
+        support.farthest[face] = std::max(support.farthest[face], foot.squared_distance);
+    }
 }
 
 /// Signals and the area that they fell on.

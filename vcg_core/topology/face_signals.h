@@ -29,6 +29,7 @@ struct FaceSignals {
     std::vector<Assigned> signals;  ///< face by face
     PerFace<int> first;             ///< where those of a face begin; one more entry at the end
     PerFace<int> wins;              ///< their number
+    PerFace<float> farthest;        ///< the greatest squared distance of those of a face, 0 if there is none
     PerFace<float> expected;  ///< signals that its area would win at the density of the surface around it
     PerFace<float> area;
     PerVertex<float> density;  ///< signals per area around the vertex

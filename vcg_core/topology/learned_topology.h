@@ -64,9 +64,10 @@ std::optional<TopologyEvidence> topology_evidence(const Network& network, const 
                                                   Random& random, ThreadTeam& team);
 
 /// Exchanges of faces by which \p network loses membranes of few points: see reconnection.h. No membrane is
-/// in two of them.
+/// in two of them. They do not depend on the number of threads.
 std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target,
-                                           const TopologyEvidence& now, const TopologyRules& rules);
+                                           const TopologyEvidence& now, const TopologyRules& rules,
+                                           ThreadTeam& team);
 
 /// The faces of each certain membrane with one rim that is wide enough to become a hole, and faces no other.
 std::vector<std::vector<Triangle>> membranes_to_open(const TopologyEvidence& now, const TopologyRules& rules);

@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <set>
+#include <mutex>
+#include <optional>
 #include <utility>
 
+#include "vcg_core/base/parallel_for.h"
+#include "vcg_core/mesh/face_tree.h"
 #include "vcg_core/topology/corridors.h"
 #include "vcg_core/topology/membrane_groups.h"
 #include "vcg_core/topology/necks.h"
@@ -39,12 +42,14 @@ constexpr float kLeastRadius = 2.4F;
 /// A membrane, and the same one and more rings wider.
 using Wide = std::vector<Membrane>;
 
+/// Several threads may search at the same time.
 class Search {
 public:
     Search(const Network& network, const Surface& surface, const FaceSignals& support,
-           const std::vector<vcg::Point3f>& points)
+           const std::vector<vcg::Point3f>& points, ThreadTeam& team)
         : network_(network),
           surface_(surface),
+          tree_(surface, team),
           support_(support),
           points_(points),
           edge_(mean_edge_length(surface)) {}
@@ -72,15 +77,19 @@ private:
 
     const Network& network_;
     const Surface& surface_;
+    FaceTree tree_;
     const FaceSignals& support_;
     const std::vector<vcg::Point3f>& points_;
     float edge_;
+    mutable std::once_flag asked_for_corridors_;
     mutable std::unique_ptr<const Corridors> corridors_;  ///< made when they are first asked for
 };
 
 bool Search::knows_handle(const std::vector<const Membrane*>& membranes, const std::vector<Rim>& rims,
                           const RimParts& parts, const PerFace<char>& out) const {
-    if (!corridors_) corridors_ = std::make_unique<const Corridors>(surface_, support_, points_, edge_);
+    std::call_once(asked_for_corridors_, [&] {
+        corridors_ = std::make_unique<const Corridors>(surface_, support_, points_, edge_);
+    });
     float width = 0;
     for (const Membrane* membrane : membranes) width += corridors_->widest(membrane->faces);
     if (width < kLeastRadius * static_cast<float>(membranes.size())) return false;
@@ -111,8 +120,7 @@ Reconnection Search::best(const std::vector<const Membrane*>& membranes) const {
         found.gone.push_back(surface_.faces[f]);
     }
     const Edges edges(network_, surface_, out);
-    const Surroundings around(surface_, support_, faces, edge_);
-    const float before = around.cost(found.gone);
+    std::optional<const Surroundings> around;  // for many membranes no patch can be made
     const int euler = euler_characteristic(found.gone, rims);
     for (const RimParts& parts : partitions(rims.size())) {
         if (!connect_all(parts, membrane_of)) continue;
@@ -120,7 +128,8 @@ Reconnection Search::best(const std::vector<const Membrane*>& membranes) const {
         if (handle && points_.empty()) continue;
         std::vector<Triangle> added = patches_of(parts, rims, surface_.positions, edges);
         if (added.empty() || !network_.can_exchange_faces(found.gone, added)) continue;
-        const float gain = before - around.cost(added);
+        if (!around) around.emplace(surface_, tree_, support_, faces, edge_);
+        const float gain = around->gain(added);
         if (gain <= found.gain) continue;
         if (handle && gain >= kLeastGain && !knows_handle(membranes, rims, parts, out)) continue;
         found.gain = gain;
@@ -170,6 +179,7 @@ Reconnection Search::of_pair(const Wide& a, const Wide& b) const {
     if (found.gain < kHopeless) return {};
     for (const Membrane& wide_a : a)
         for (const Membrane& wide_b : b) {
+            if (&wide_a == &a.front() && &wide_b == &b.front()) continue;
             Reconnection next = best({&wide_a, &wide_b});
             if (next.gain > found.gain) found = std::move(next);
         }
@@ -226,48 +236,60 @@ bool Search::may_join(const Membrane& a, const Membrane& b) const {
     return a.rims.size() + b.rims.size() <= kMostRims && face_each_other(surface_, a, b, edge_);
 }
 
+void keep(Reconnection change, const std::vector<int>& of, std::vector<Reconnection>& found) {
+    if (change.added.empty()) return;
+    change.membranes = of;
+    found.push_back(std::move(change));
+}
+
+/// Of the membrane \p a alone, and with each of those after it.
+void search_from(int a, const Search& search, const Indexed<Wide>& wide, std::vector<Reconnection>& found) {
+    if (wide[a].front().certain) keep(search.of_one(wide[a]), {a}, found);
+    for (int b = a + 1; b < wide.size(); ++b) {
+        if (!search.may_join(wide[a].front(), wide[b].front())) continue;
+        Reconnection change = search.of_pair(wide[a], wide[b]);
+        if (change.added.empty()) change = search.of_web(wide[a], wide[b]);
+        keep(std::move(change), {a, b}, found);
+    }
+}
+
+/// Without those that lack the least signals, as long as the others gain too little with them.
+void search_group(std::vector<int> group, const Search& search, const Indexed<Wide>& wide,
+                  std::vector<Reconnection>& found) {
+    for (const std::size_t before = found.size(); group.size() >= 3 && found.size() == before;
+         group.pop_back()) {
+        std::vector<const Wide*> of;
+        for (const int i : group) of.push_back(&wide[i]);
+        keep(search.of_group(of), group, found);
+    }
+}
+
 }  // namespace
 
 std::vector<Reconnection> find_reconnections(const Network& network, const Surface& surface,
                                              const FaceSignals& support,
                                              const std::vector<Membrane>& membranes,
-                                             const std::vector<vcg::Point3f>& points, bool in_groups) {
-    const Search search(network, surface, support, points);
+                                             const std::vector<vcg::Point3f>& points, bool in_groups,
+                                             ThreadTeam& team) {
+    const std::vector<Membrane> necks = find_necks(network, surface, support);
     std::vector<Reconnection> found;
-    const auto keep = [&](Reconnection change, const std::vector<int>& of) {
-        if (change.added.empty()) return;
-        change.membranes = of;
-        found.push_back(std::move(change));
+    if (membranes.empty() && necks.empty()) return found;
+    const Search search(network, surface, support, points, team);
+    const auto collect = [&](std::size_t count, const auto& find) {
+        for (Reconnection& change : parallel_collect<Reconnection>(static_cast<int>(count), 1, team, find))
+            found.push_back(std::move(change));
     };
-    const auto membrane = [&](int i) -> const Membrane& { return membranes[static_cast<std::size_t>(i)]; };
-    const int count = static_cast<int>(membranes.size());
-    Indexed<Wide> wide(count);
-    const auto widened = [&](int i) -> const Wide& {
-        if (wide[i].empty()) wide[i] = search.widened(membrane(i));
-        return wide[i];
-    };
-    for (int a = 0; a < count; ++a) {
-        if (membrane(a).certain) keep(search.of_one(widened(a)), {a});
-        for (int b = a + 1; b < count; ++b) {
-            if (!search.may_join(membrane(a), membrane(b))) continue;
-            Reconnection change = search.of_pair(widened(a), widened(b));
-            if (change.added.empty()) change = search.of_web(widened(a), widened(b));
-            keep(std::move(change), {a, b});
-        }
-    }
-    for (const Membrane& neck : find_necks(network, surface, support))
-        keep(search.of_one(search.widened(neck)), {});
+    Indexed<Wide> wide(static_cast<int>(membranes.size()));
+    parallel_for(wide.size(), 1, team,
+                 [&](int i) { wide[i] = search.widened(membranes[static_cast<std::size_t>(i)]); });
+    collect(membranes.size(), [&](int i, auto& all) { search_from(i, search, wide, all); });
+    collect(necks.size(), [&](int i, auto& all) {
+        keep(search.of_one(search.widened(necks[static_cast<std::size_t>(i)])), {}, all);
+    });
     std::vector<std::vector<int>> groups;
     if (in_groups) groups = membrane_groups(surface, membranes, search.edge(), kMostOfGroup);
-    for (std::vector<int>& group : groups) {
-        // Without those that lack the least signals, as long as the others gain too little with them.
-        for (std::size_t before = found.size(); group.size() >= 3 && found.size() == before;
-             group.pop_back()) {
-            std::vector<const Wide*> of;
-            for (const int i : group) of.push_back(&widened(i));
-            keep(search.of_group(of), group);
-        }
-    }
+    collect(groups.size(),
+            [&](int i, auto& all) { search_group(groups[static_cast<std::size_t>(i)], search, wide, all); });
     std::stable_sort(found.begin(), found.end(),
                      [](const Reconnection& a, const Reconnection& b) { return a.gain > b.gain; });
     return found;

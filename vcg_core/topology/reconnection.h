@@ -28,10 +28,12 @@ struct Reconnection {
 /// points, and points wherever one can go around the handle: see corridors.h. If there are no \p points, none
 /// is made. If \p in_groups, three and more membranes may be joined, too, see membrane_groups.h: the openings
 /// of one hollow, where every joint of two leaves a tube that spans the others. Each of them alone leaves \p
-/// network a manifold. O(membranes x (faces + signals around a membrane))
+/// network a manifold. The result does not depend on the number of threads.
+/// O(faces log faces + membranes x (faces + signals around a membrane))
 std::vector<Reconnection> find_reconnections(const Network& network, const Surface& surface,
                                              const FaceSignals& support,
                                              const std::vector<Membrane>& membranes,
-                                             const std::vector<vcg::Point3f>& points, bool in_groups);
+                                             const std::vector<vcg::Point3f>& points, bool in_groups,
+                                             ThreadTeam& team);
 
 }  // namespace neuralmesh

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 
-#include "vcg_core/mesh/face_tree.h"
-
 namespace neuralmesh {
 namespace {
 
@@ -22,13 +20,17 @@ Box grown(const Box& box, float by) {
     return {box.min() - margin, box.max() + margin};
 }
 
-Box box_of(const Surface& surface, int face) {
-    Box box(surface.corner(face, 0));
-    return box.extend(surface.corner(face, 1)).extend(surface.corner(face, 2));
+Box box_of(const Surface& surface, const std::vector<int>& faces) {
+    Box box;
+    for (const int f : faces)
+        for (const VertexId v : surface.faces[f]) box.extend(surface.positions[v]);
+    return box;
 }
 
+}  // namespace
+
 /// The bounding boxes of the faces of a patch, of every few of them, which are near each other, and of all.
-class PatchBoxes {
+class Surroundings::PatchBoxes {
 public:
     PatchBoxes(const std::vector<Triangle>& patch, const PerVertex<Vector3>& positions)
         : of_face_(patch.size()), of_group_((patch.size() + kGroup - 1) / kGroup) {
@@ -37,6 +39,13 @@ public:
             of_group_[p / kGroup].extend(of_face_[p]);
             all_.extend(of_face_[p]);
         }
+    }
+    /// Whether a signal of a face may be nearer to the patch than to its face. \p farthest: the greatest
+    /// squared distance of its signals.
+    bool may_attract(const Box& face, float farthest) const {
+        // Such a signal goes at most that far to its face, and less to the patch: twice the way in all.
+        constexpr float kRounded = 1.01F;
+        return all_.squaredExteriorDistance(face) <= 4 * kRounded * farthest;
     }
     /// Calls \p visit for the faces whose boxes are nearer to \p signal than \p squared, which it may lower.
     template <class Visit>
@@ -57,69 +66,94 @@ private:
     Box all_;
 };
 
-}  // namespace
-
-Surroundings::Surroundings(const Surface& surface, const FaceSignals& support,
+Surroundings::Surroundings(const Surface& surface, const FaceTree& tree, const FaceSignals& support,
                            const std::vector<int>& left_out, float edge)
     : surface_(surface), support_(support), far_(kFar * edge * kFar * edge) {
-    Box box;
-    PerFace<char> out(surface.face_count(), 0);
-    for (const int f : left_out) {
-        out[f] = 1;
-        box.extend(box_of(surface, f));
-    }
-    const Box near = grown(box, kMargin * edge);
-    PerFace<int> place(surface.face_count(), -1);
-    for (int f = 0; f < surface.face_count(); ++f) {
-        if (out[f] != 0 || !box_of(surface, f).intersects(near)) continue;
-        place[f] = static_cast<int>(kept_.size());
-        kept_.push_back(f);
-        for (const FaceSignals::Assigned& s : support.of(f))
-            signals_.push_back({s.point, s.squared_distance, place[f]});
-    }
-    const FaceTree tree(surface, kept_);
+    std::vector<int> out = left_out;
+    std::sort(out.begin(), out.end());
+    tree.for_overlapping(grown(box_of(surface, left_out), kMargin * edge), [&](int f) {
+        if (!std::binary_search(out.begin(), out.end(), f)) kept_.push_back(f);
+    });
+    std::sort(kept_.begin(), kept_.end());
+    for (const int f : kept_) wins_.push_back(support.wins[f]);
+    std::vector<Vector3> points;
     for (const int f : left_out)
+        for (const FaceSignals::Assigned& s : support.of(f)) points.push_back(s.point);
+    ThreadTeam alone(1);
+    const std::vector<Hit> hits = FaceTree(surface, kept_).nearest(points, alone);
+    auto next = hits.begin();
+    for (const int f : left_out) {
+        int won = support.wins[f];
         for (const FaceSignals::Assigned& s : support.of(f)) {
-            const Hit hit = tree.nearest(s.point);
-            signals_.push_back({s.point, hit.foot.squared_distance, hit.face < 0 ? -1 : place[hit.face]});
+            const Hit& hit = *next++;
+            const auto place = std::lower_bound(kept_.begin(), kept_.end(), hit.face) - kept_.begin();
+            freed_.push_back({s.point, s.squared_distance, hit.foot.squared_distance,
+                              hit.face < 0 ? -1 : static_cast<int>(place)});
+            // At an edge that both share. A patch has it as well, and would lose the signal.
+            if (hit.face < 0 || hit.foot.squared_distance > s.squared_distance) continue;
+            --won;
+            ++wins_[static_cast<std::size_t>(place)];
         }
-}
-
-float Surroundings::squared_distance(const Vector3& signal, const Triangle& face) const {
-    const auto& p = surface_.positions;
-    return foot_on_triangle(signal, p[face[0]], p[face[1]], p[face[2]]).squared_distance;
-}
-
-float Surroundings::expected(const Triangle& face) const {
-    return support_.expected_on(face, area_vector(face, surface_.positions).norm() / 2);
-}
-
-float Surroundings::cost(const std::vector<Triangle>& patch) const {
-    const PatchBoxes boxes(patch, surface_.positions);
-    std::vector<float> wins(kept_.size(), 0.0F), patch_wins(patch.size(), 0.0F);
-    double cost = 0;
-    for (const Near& signal : signals_) {
-        float least = signal.squared_distance;
-        std::size_t winner = patch.size();
-        boxes.for_near(signal.point, least, [&](std::size_t p) {
-            const float squared = squared_distance(signal.point, patch[p]);
-            if (squared >= least) return;
-            least = squared;
-            winner = p;
-        });
-        if (winner < patch.size()) {
-            ++patch_wins[winner];
-        } else if (signal.kept >= 0) {
-            ++wins[static_cast<std::size_t>(signal.kept)];
-        }
-        cost += static_cast<double>(std::min(1.0F, least / far_));
+        lack_ += lack(support.expected[f], won);
     }
-    const auto lacks = [&](float expects, float won) {
-        cost += static_cast<double>(std::max(0.0F, expects - won));
-    };
-    for (std::size_t k = 0; k < kept_.size(); ++k) lacks(support_.expected[kept_[k]], wins[k]);
-    for (std::size_t p = 0; p < patch.size(); ++p) lacks(expected(patch[p]), patch_wins[p]);
-    return static_cast<float>(cost);
+}
+
+double Surroundings::misfit(float squared_distance) const {
+    return static_cast<double>(std::min(1.0F, squared_distance / far_));
+}
+
+double Surroundings::lack(float expected, int won) {
+    return static_cast<double>(std::max(0.0F, expected - static_cast<float>(won)));
+}
+
+std::size_t Surroundings::winner(const PatchBoxes& boxes, const std::vector<Triangle>& patch,
+                                 const Vector3& signal, float& least) const {
+    const auto& p = surface_.positions;
+    std::size_t winner = patch.size();
+    boxes.for_near(signal, least, [&](std::size_t i) {
+        const Triangle& face = patch[i];
+        const float squared = foot_on_triangle(signal, p[face[0]], p[face[1]], p[face[2]]).squared_distance;
+        if (squared >= least) return;
+        least = squared;
+        winner = i;
+    });
+    return winner;
+}
+
+float Surroundings::gain(const std::vector<Triangle>& patch) const {
+    const PatchBoxes boxes(patch, surface_.positions);
+    std::vector<int> won(patch.size(), 0), kept_won(kept_.size(), 0);
+    double gain = lack_;
+    for (std::size_t k = 0; k < kept_.size(); ++k) {
+        if (!boxes.may_attract(box_of(surface_, {kept_[k]}), support_.farthest[kept_[k]])) continue;
+        for (const FaceSignals::Assigned& s : support_.of(kept_[k])) {
+            float least = s.squared_distance;
+            const std::size_t face = winner(boxes, patch, s.point, least);
+            if (face == patch.size()) continue;
+            ++won[face];
+            --kept_won[k];
+            gain += misfit(s.squared_distance) - misfit(least);
+        }
+    }
+    for (const Freed& signal : freed_) {
+        float least = signal.squared_distance_of_kept;
+        const std::size_t face = winner(boxes, patch, signal.point, least);
+        if (face < patch.size()) {
+            ++won[face];
+        } else if (signal.kept >= 0) {
+            ++kept_won[static_cast<std::size_t>(signal.kept)];
+        }
+        gain += misfit(signal.squared_distance) - misfit(least);
+    }
+    for (std::size_t k = 0; k < kept_.size(); ++k) {
+        const float expected = support_.expected[kept_[k]];
+        gain += lack(expected, wins_[k]) - lack(expected, support_.wins[kept_[k]] + kept_won[k]);
+    }
+    for (std::size_t i = 0; i < patch.size(); ++i) {
+        const float area = area_vector(patch[i], surface_.positions).norm() / 2;
+        gain -= lack(support_.expected_on(patch[i], area), won[i]);
+    }
+    return static_cast<float>(gain);
 }
 
 }  // namespace neuralmesh

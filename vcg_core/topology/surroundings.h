@@ -6,39 +6,51 @@
 
 #include <vector>
 
+#include "vcg_core/mesh/face_tree.h"
 #include "vcg_core/topology/face_signals.h"
 
 namespace neuralmesh {
 
 /// The signals around some faces that may be exchanged, and their distances from the rest of the surface.
-/// Keeps references to the arguments.
+/// Keeps references to the surface and the signals.
 class Surroundings {
 public:
-    /// \param left_out the faces \param edge the mean edge. O(faces + signals around)
-    Surroundings(const Surface& surface, const FaceSignals& support, const std::vector<int>& left_out,
-                 float edge);
+    /// \param tree of all faces of \p surface \param left_out the faces \param edge the mean edge.
+    /// O(log faces + (faces around + signals of the faces) x log faces around)
+    Surroundings(const Surface& surface, const FaceTree& tree, const FaceSignals& support,
+                 const std::vector<int>& left_out, float edge);
 
-    /// What the surface costs with \p patch in the place of the faces left out, in signals: a signal costs up
-    /// to 1 by its squared distance, and a face costs the signals that it lacks. Only differences mean
-    /// something, and cost() of the faces left out is what the surface costs as it is.
-    /// O(signals around x faces of the patch)
-    float cost(const std::vector<Triangle>& patch) const;
+    /// How much less the surface costs with \p patch in the place of the faces left out, in signals: a signal
+    /// costs up to 1 by its squared distance, and a face costs the signals that it lacks.
+    /// O(faces around + signals near the patch x faces of the patch)
+    float gain(const std::vector<Triangle>& patch) const;
 
 private:
-    float squared_distance(const Vector3& signal, const Triangle& face) const;
-    float expected(const Triangle& face) const;
+    class PatchBoxes;
+
+    /// What a signal costs.
+    double misfit(float squared_distance) const;
+    /// What a face costs.
+    static double lack(float expected, int won);
+    /// The face of the patch that is nearest to a signal, if its squared distance is less than \p least,
+    /// which becomes that distance. Otherwise the size of the patch.
+    std::size_t winner(const PatchBoxes& boxes, const std::vector<Triangle>& patch, const Vector3& signal,
+                       float& least) const;
 
     const Surface& surface_;
     const FaceSignals& support_;
     float far_;              ///< squared distance from which on a signal costs 1
-    std::vector<int> kept_;  ///< the other faces around
-    /// A signal with its nearest face of those kept, by its place in kept_, -1 if there is none.
-    struct Near {
+    std::vector<int> kept_;  ///< the other faces around, rising
+    std::vector<int> wins_;  ///< their signals, and those that are as near to a face left out
+    double lack_ = 0;        ///< of the faces left out
+    /// A signal of the faces left out.
+    struct Freed {
         Vector3 point;
-        float squared_distance;
-        int kept;
+        float squared_distance;          ///< from its face
+        float squared_distance_of_kept;  ///< from the nearest face of those kept
+        int kept;                        ///< that face, by its place in kept_; -1 if there is none
     };
-    std::vector<Near> signals_;
+    std::vector<Freed> freed_;
 };
 
 }  // namespace neuralmesh

@@ -105,7 +105,8 @@ TEST(Necks, AreTubesWithFewPointsAndAreCut) {
         ASSERT_EQ(found.necks.size(), 1U);
         EXPECT_EQ(found.necks.front().faces.size(), 4U * static_cast<unsigned>(around));
         EXPECT_EQ(found.necks.front().rims.size(), 2U);
-        const auto changes = topology_changes(found.network, found.target, *found.evidence, {});
+        ThreadTeam team(1);
+        const auto changes = topology_changes(found.network, found.target, *found.evidence, {}, team);
         ASSERT_EQ(changes.size(), 1U);
         found.network.exchange_faces(changes.front().gone, changes.front().added);
         EXPECT_EQ(found.network.validate(), "");

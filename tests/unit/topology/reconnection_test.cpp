@@ -92,7 +92,7 @@ int learn(Network& network, const TargetSpace& target, int threads = 1, const To
     for (int round = 0; round < 10; ++round) {
         const auto now = topology_evidence(network, target, random, team);
         if (!now) return changes;
-        const auto found = topology_changes(network, target, *now, rules);
+        const auto found = topology_changes(network, target, *now, rules, team);
         if (found.empty()) return changes;
         for (const Reconnection& change : found) {
             if (!network.can_exchange_faces(change.gone, change.added)) continue;

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What patches cost, against the plain sum over all signals and all faces.
+// What patches gain, against the plain sum over all signals and all faces.
 #include "vcg_core/topology/surroundings.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <vector>
 
 #include "tests/unit/support/nearest_face.h"
 #include "tests/unit/support/shapes.h"
@@ -37,28 +39,53 @@ double plain_cost(const Surface& surface, const FaceSignals& support, const std:
     return cost;
 }
 
-TEST(Surroundings, TellTheDifferenceThatAPatchMakes) {
+/// The vertices so many edges away from \p centre.
+std::vector<VertexId> ring_at(const Network& network, VertexId centre, int edges) {
+    std::set<VertexId> seen{centre}, last{centre};
+    for (int i = 0; i < edges; ++i) {
+        std::set<VertexId> next;
+        for (const VertexId v : last)
+            for (const VertexId u : network.ring(v))
+                if (seen.insert(u).second) next.insert(u);
+        last = next;
+    }
+    return {last.begin(), last.end()};
+}
+
+/// None close to \p centre, and some deep inside the sphere, which are nearer to a patch of the two-ring than
+/// to their faces, some way off.
+std::vector<Vector3> with_deep_ones(std::vector<Vector3> signals, const Network& network, VertexId centre) {
+    const Surface surface(network);
+    Vector3 middle = Vector3::Zero();
+    for (const VertexId v : network.vertices())
+        middle += surface.positions[v] / static_cast<float>(network.vertex_count());
+    const float bare = 2.5F * mean_edge_length(surface);
+    const auto is_close = [&](const Vector3& p) { return (p - surface.positions[centre]).norm() < bare; };
+    signals.erase(std::remove_if(signals.begin(), signals.end(), is_close), signals.end());
+    for (const VertexId v : ring_at(network, centre, 5))
+        signals.push_back(middle + 0.15F * (surface.positions[v] - middle));
+    return signals;
+}
+
+void expect_the_plain_gain(bool deep) {
     const TargetSpace target = target_of(shapes::sphere_cloud(4000, 0.02));
     const Network network = network_in_frame(target, shapes::icosphere(3));
     const Surface surface(network);
     Random random(1);
     ThreadTeam team(1);
-    const FaceSignals support = face_signals(network, surface, fair_sample(target, 4000, random), team);
+    const std::vector<Vector3> sample = fair_sample(target, 4000, random);
     const float edge = mean_edge_length(surface);
     for (const VertexId centre : {100, 300, 500}) {
         SCOPED_TRACE(centre);
+        const std::vector<Vector3> signals = deep ? with_deep_ones(sample, network, centre) : sample;
+        const FaceSignals support = face_signals(network, surface, signals, team);
         Membrane membrane;  // the faces of two rings: the patch has more faces than one group of boxes
         for (const VertexId v : network.ring(centre))
             for (const int f : surface.faces_around(v)) membrane.faces.push_back(f);
-        std::sort(membrane.faces.begin(), membrane.faces.end());
-        membrane.faces.erase(std::unique(membrane.faces.begin(), membrane.faces.end()), membrane.faces.end());
         ASSERT_TRUE(complete(surface, support, membrane));
         PerFace<char> out(surface.face_count(), 0);
-        std::vector<Triangle> gone, patched;
-        for (const int f : membrane.faces) {
-            out[f] = 1;
-            gone.push_back(surface.faces[f]);
-        }
+        std::vector<Triangle> patched;
+        for (const int f : membrane.faces) out[f] = 1;
         const auto patch = closing_patch(membrane.rims.front(), surface.positions, {network, surface, out});
         ASSERT_GT(patch.size(), 8U);
         for (int f = 0; f < surface.face_count(); ++f)
@@ -66,13 +93,17 @@ TEST(Surroundings, TellTheDifferenceThatAPatchMakes) {
         patched.insert(patched.end(), patch.begin(), patch.end());
         std::vector<Triangle> whole;
         for (int f = 0; f < surface.face_count(); ++f) whole.push_back(surface.faces[f]);
-        const Surroundings around(surface, support, membrane.faces, edge);
+        const Surroundings around(surface, FaceTree(surface), support, membrane.faces, edge);
         const double plain =
-            plain_cost(surface, support, patched, edge) - plain_cost(surface, support, whole, edge);
+            plain_cost(surface, support, whole, edge) - plain_cost(surface, support, patched, edge);
         EXPECT_GT(std::abs(plain), 0.5);
-        EXPECT_NEAR(around.cost(patch) - around.cost(gone), plain, 1e-2);
+        EXPECT_NEAR(around.gain(patch), plain, 1e-2);
     }
 }
+
+TEST(Surroundings, TellTheDifferenceThatAPatchMakes) { expect_the_plain_gain(false); }
+
+TEST(Surroundings, CountSignalsThatAPatchWinsFromFacesSomeWayOff) { expect_the_plain_gain(true); }
 
 }  // namespace
 }  // namespace neuralmesh
