@@ -12,6 +12,7 @@
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/shell/node_groups.h"
+#include "vcg_core/shell/node_link.h"
 
 namespace neuralmesh {
 namespace {
@@ -21,53 +22,6 @@ constexpr int kRadiusFactor = 2;  // a handle has to persist over this range of 
 constexpr int kGrownLevelOfOccupied = 2;
 /// Dense for small radii, where gaps between points and narrow handles appear and vanish.
 constexpr std::array<int, 8> kGrownFromLevels = {0, 1, 2, 3, 4, 6, 9, 16};
-
-/// Some of the 14 neighbours of a node, as bits in the order of kNeighbourOffsets.
-using NeighbourSet = std::uint32_t;
-
-/// For every set of neighbours, whether it is connected. The neighbours of a node are the vertices of a
-/// triangulated sphere, the node's link.
-class LinkConnected {
-public:
-    LinkConnected() : connected_(std::size_t{1} << kNeighbourCount) {
-        for (std::size_t i = 0; i < kNeighbourCount; ++i)
-            for (std::size_t j = 0; j < kNeighbourCount; ++j)
-                if (adjacent(i, j)) adjacent_[i] |= NeighbourSet{1} << j;
-        for (NeighbourSet set = 1; set < connected_.size(); ++set) connected_[set] = connected(set) ? 1 : 0;
-    }
-    bool operator()(NeighbourSet set) const { return connected_[set] != 0; }
-
-private:
-    static bool adjacent(std::size_t i, std::size_t j) {
-        const auto &a = kNeighbourOffsets[i], &b = kNeighbourOffsets[j];
-        const std::array<int, 3> difference = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-        return std::find(kNeighbourOffsets.begin(), kNeighbourOffsets.end(), difference) !=
-               kNeighbourOffsets.end();
-    }
-    bool connected(NeighbourSet set) const {
-        NeighbourSet reached = set & (~set + 1), before = 0;
-        while (reached != before) {
-            before = reached;
-            for (std::size_t i = 0; i < kNeighbourCount; ++i)
-                if ((before >> i & 1U) != 0) reached |= adjacent_[i] & set;
-        }
-        return reached == set;
-    }
-
-    std::array<NeighbourSet, kNeighbourCount> adjacent_{};
-    std::vector<std::uint8_t> connected_;
-};
-
-NeighbourSet solid_neighbours(const Neighbours& neighbours, NodeId i, const NodeSet& solid) {
-    NeighbourSet set = 0;
-    neighbours.for_each(i, [&](NodeId j, int k) { set |= NeighbourSet{solid[j]} << k; });
-    return set;
-}
-
-bool on_wall(const Lattice& l, NodeId i) {
-    const auto [x, y, z] = l.coordinates(i);
-    return x == 0 || y == 0 || z == 0 || x == l.nx - 1 || y == l.ny - 1 || z == l.nz - 1;
-}
 
 /// Adds the components of the nodes left out of \p solid that touch no node with clearance > level.
 /// \p left_out holds all nodes of clearance <= level that were outside before growth.
@@ -87,7 +41,10 @@ void fill_cavities(const Lattice& lattice, const std::vector<NodeId>& left_out,
             return true;
         };
         flood(neighbours, seed, enter, component);
-        for (const NodeId i : component) open = open || on_wall(lattice, i);
+        for (const NodeId i : component) {
+            const auto [x, y, z] = lattice.coordinates(i);
+            open = open || lattice.is_on_side(x, y, z);
+        }
         if (open) continue;
         for (const NodeId i : component) solid[i] = 1;
     }
@@ -98,7 +55,7 @@ void fill_cavities(const Lattice& lattice, const std::vector<NodeId>& left_out,
 
 void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
                           NodeSet& solid) {
-    static const LinkConnected link_connected;
+    const LinkConnected& link_connected = LinkConnected::table();
     const Neighbours neighbours(lattice);
     Indexed<std::vector<NodeId>> waiting(level + 1);
     std::vector<NodeId> outside;
@@ -111,7 +68,9 @@ void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& 
         std::vector<NodeId>& front = waiting[l];
         for (std::size_t k = 0; k < front.size(); ++k) {
             const NodeId i = front[k];
-            if (solid[i] != 0 || !link_connected(solid_neighbours(neighbours, i, solid))) continue;
+            if (solid[i] != 0 ||
+                !link_connected(neighbours_in(neighbours, i, [&](NodeId j) { return solid[j] != 0; })))
+                continue;
             solid[i] = 1;
             // Neighbours that were left out may be connected to the solid in another way now.
             neighbours.for_each(i, [&](NodeId j, int) {

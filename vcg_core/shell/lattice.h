@@ -46,6 +46,10 @@ struct Lattice {
     bool contains(int x, int y, int z) const {
         return x >= 0 && x < nx && y >= 0 && y < ny && z >= 0 && z < nz;
     }
+    /// Whether a node is on a side of the box, and so has fewer neighbours than others.
+    bool is_on_side(int x, int y, int z) const {
+        return x == 0 || y == 0 || z == 0 || x + 1 == nx || y + 1 == ny || z + 1 == nz;
+    }
     vcg::Point3f position(int x, int y, int z) const {
         return corner +
                vcg::Point3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) * step;
@@ -88,18 +92,20 @@ public:
             differences_[k] = lattice.index(dx, dy, dz);
         }
     }
+    /// The neighbour of node \p i at the place \p k in kNeighbourOffsets, if it has one.
+    NodeId at(NodeId i, int k) const { return i + differences_[static_cast<std::size_t>(k)]; }
     /// Calls visit(j, k) for the neighbours j of node \p i, where k is j's place in kNeighbourOffsets.
     template <class Visit>
     void for_each(NodeId i, const Visit& visit) const {
         const Lattice& l = lattice_;
         const auto [x, y, z] = l.coordinates(i);
-        if (x == 0 || y == 0 || z == 0 || x + 1 == l.nx || y + 1 == l.ny || z + 1 == l.nz) {
+        if (l.is_on_side(x, y, z)) {
             for (int k = 0; k < kNeighbourCount; ++k) {
                 const auto& [dx, dy, dz] = kNeighbourOffsets[static_cast<std::size_t>(k)];
-                if (l.contains(x + dx, y + dy, z + dz)) visit(i + difference(k), k);
+                if (l.contains(x + dx, y + dy, z + dz)) visit(at(i, k), k);
             }
         } else {
-            for (int k = 0; k < kNeighbourCount; ++k) visit(i + difference(k), k);
+            for (int k = 0; k < kNeighbourCount; ++k) visit(at(i, k), k);
         }
     }
     /// The neighbours j of node \p i with member(j), in the order of kNeighbourOffsets. Without a branch for
@@ -115,8 +121,6 @@ public:
     }
 
 private:
-    NodeId difference(int k) const { return differences_[static_cast<std::size_t>(k)]; }
-
     Lattice lattice_;  // a copy, so that the compiler need not reload its numbers after each store of an id
     std::array<NodeId, kNeighbourCount> differences_{};
 };

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "vcg_core/base/platform.h"
+#include "vcg_core/shell/node_link.h"
 
 namespace neuralmesh {
 namespace {
@@ -178,21 +179,30 @@ public:
 
     void add(NodeId i) {
         sets_.add(i);
+        count(i, 1);
+        const NeighbourSet beside =
+            neighbours_in(neighbours_, i, [&](NodeId j) { return sets_.contains(j); });
+        const bool in_one_set = link_connected_(beside);
         NodeId root = i;
-        count(root, 1);
-        for (const NodeId j : neighbours_.of(i, [&](NodeId n) { return sets_.contains(n); })) {
-            const NodeId other = sets_.find(j);
-            if (other == root) continue;
-            count(root, -1);
-            count(other, -1);
-            root = sets_.join(root, other);
-            count(root, 1);
+        for (int k = 0; k < kNeighbourCount; ++k) {
+            if ((beside >> k & 1U) == 0) continue;
+            join(neighbours_.at(i, k), root);
+            if (in_one_set) return;
         }
     }
     /// All but the genus.
     const LevelTopology& topology() const { return topology_; }
 
 private:
+    /// Joins the set of node \p j, if it is another, with that of \p root, which becomes the root of both.
+    void join(NodeId j, NodeId& root) {
+        const NodeId other = sets_.find(j);
+        if (other == root) return;
+        count(root, -1);
+        count(other, -1);
+        root = sets_.join(root, other);
+        count(root, 1);
+    }
     void count(NodeId root, int sign) {
         const long long points = sets_.points(root);
         (points >= min_points_ ? topology_.components : topology_.specks) += sign;
@@ -200,6 +210,7 @@ private:
     }
 
     Neighbours neighbours_;
+    const LinkConnected& link_connected_ = LinkConnected::table();
     DisjointSets sets_;
     long long min_points_;
     LevelTopology topology_;

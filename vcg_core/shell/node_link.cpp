@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/shell/node_link.h"
+
+#include <algorithm>
+#include <array>
+
+namespace neuralmesh {
+namespace {
+
+bool adjacent(std::size_t i, std::size_t j) {
+    const auto &a = kNeighbourOffsets[i], &b = kNeighbourOffsets[j];
+    const NodeOffset difference = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    return std::find(kNeighbourOffsets.begin(), kNeighbourOffsets.end(), difference) !=
+           kNeighbourOffsets.end();
+}
+
+/// For every neighbour of a node those neighbours that are adjacent to it.
+std::array<NeighbourSet, kNeighbourCount> adjacent_sets() {
+    std::array<NeighbourSet, kNeighbourCount> sets{};
+    for (std::size_t i = 0; i < kNeighbourCount; ++i)
+        for (std::size_t j = 0; j < kNeighbourCount; ++j)
+            if (adjacent(i, j)) sets[i] |= NeighbourSet{1} << j;
+    return sets;
+}
+
+}  // namespace
+
+LinkConnected::LinkConnected() : connected_(std::size_t{1} << kNeighbourCount) {
+    const auto adjacent_to = adjacent_sets();
+    for (NeighbourSet set = 1; set < connected_.size(); ++set) {
+        NeighbourSet reached = set & (~set + 1), before = 0;
+        while (reached != before) {
+            before = reached;
+            for (std::size_t i = 0; i < kNeighbourCount; ++i)
+                if ((before >> i & 1U) != 0) reached |= adjacent_to[i] & set;
+        }
+        connected_[set] = reached == set ? 1 : 0;
+    }
+}
+
+const LinkConnected& LinkConnected::table() {
+    static const LinkConnected table;
+    return table;
+}
+
+}  // namespace neuralmesh
