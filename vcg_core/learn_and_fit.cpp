@@ -89,6 +89,8 @@ struct Plan {
     int grow_to = 0;         ///< at least
     bool calm = false;       ///< see is_calm()
     bool by_volume = false;  ///< see reduces_by_volume()
+
+    bool has_surplus() const { return grow_to > carried; }
 };
 
 /// Number of vertices that the network grows to. There is a surplus only if the fit may redistribute vertices
@@ -125,17 +127,16 @@ Plan plan_for(const LearningTask& task, const Settings& settings) {
 /// vertices and more accuracy is wanted: they would have 1.02 times the error.
 bool learns_briefly(const Plan& plan) {
     constexpr int kPreview = 2000;
-    return plan.by_volume && plan.grow_to > plan.carried && plan.carried < kPreview;
+    return plan.by_volume && plan.has_surplus() && plan.carried < kPreview;
 }
 
 LearnerOptions learner_options(const LearningTask& task, const Settings& settings, const Plan& plan) {
     LearnerOptions options = learner_options_from(settings);
     options.grow_to = plan.grow_to;
-    const bool has_surplus = plan.grow_to > plan.carried;
     if (learns_briefly(plan)) options.signals_per_split = std::max(1, options.signals_per_split / 2);
     // As many signals as for those that stay settle them well enough; half as many where most of them stay:
     // 50,000 and 100,000 vertices then have .99 and .98 of the error.
-    if (has_surplus && settings.redistributes_vertices() && (plan.calm || plan.by_volume))
+    if (plan.has_surplus() && settings.redistributes_vertices() && (plan.calm || plan.by_volume))
         options.settling_signals_per_vertex =
             static_cast<int>(static_cast<std::int64_t>(options.settling_signals_per_vertex) * plan.carried /
                              std::max(plan.grow_to, 2 * plan.carried));

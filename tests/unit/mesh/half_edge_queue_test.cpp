@@ -12,6 +12,7 @@
 
 #include "tests/unit/support/network_starts.h"
 #include "tests/unit/support/referee.h"
+#include "tests/unit/support/shapes.h"
 
 namespace neuralmesh {
 namespace {
