@@ -19,8 +19,8 @@ struct CloudSurvey {
     static constexpr int kNeighbour = 10;
     static constexpr std::size_t kRun = 32;
 
-    /// Keeps a reference to \p points, at least two. Does not depend on \p threads (0: all cores).
-    /// O(n log n): 0.015 s for 100,000 points on one thread. Memory: 10 bytes per point.
+    /// Of at least two points. Does not depend on \p threads (0: all cores).
+    /// O(n log n): 0.015 s for 100,000 points on one thread. Memory: 22 bytes per point.
     CloudSurvey(const std::vector<vcg::Point3f>& points, int threads);
 
     NearestPoints cloud;

@@ -21,25 +21,25 @@ std::uint64_t cell_along(float at, std::uint64_t cells) {
 
 }  // namespace
 
-NearestPoints::NearestPoints(const std::vector<vcg::Point3f>& points) : points_(points) {
-    place_cube();
-    sort_points();
+NearestPoints::NearestPoints(const std::vector<vcg::Point3f>& points) {
+    place_cube(points);
+    sort_points(points);
     build_boxes();
 }
 
 /// A few points very far away must not make all cells too large for the others. Where most points are is told
 /// by about a thousand of them.
-void NearestPoints::place_cube() {
+void NearestPoints::place_cube(const std::vector<vcg::Point3f>& points) {
     constexpr std::size_t kLooked = 1000;
     constexpr float kSmallPart = 1e-2F;
     constexpr float kMargin = 1.2F;  // leaves border cells empty, so that opposite borders do not touch
-    const std::size_t stride = points_.size() / kLooked + 1;
+    const std::size_t stride = points.size() / kLooked + 1;
     vcg::Box3f whole;
-    for (const vcg::Point3f& p : points_) whole.Add(p);
+    for (const vcg::Point3f& p : points) whole.Add(p);
     vcg::Box3f middle;
     for (int k = 0; k < 3; ++k) {
         std::vector<float> along;
-        for (std::size_t i = 0; i < points_.size(); i += stride) along.push_back(points_[i][k]);
+        for (std::size_t i = 0; i < points.size(); i += stride) along.push_back(points[i][k]);
         std::sort(along.begin(), along.end());
         const std::size_t end = along.size() / 20;
         middle.min[k] = along[end];
@@ -55,21 +55,23 @@ void NearestPoints::place_cube() {
     corner_ = centre - vcg::Point3f(side_, side_, side_) / 2;
 }
 
-void NearestPoints::sort_points() {
+void NearestPoints::sort_points(const std::vector<vcg::Point3f>& points) {
     int index_bits = 1;
-    while ((std::uint64_t{1} << index_bits) < points_.size()) ++index_bits;
+    while ((std::uint64_t{1} << index_bits) < points.size()) ++index_bits;
     levels_ = std::min(21, (64 - index_bits) / 3);
     index_mask_ = (std::uint64_t{1} << index_bits) - 1;
-    keys_.resize(points_.size());
-    for (std::size_t i = 0; i < points_.size(); ++i) {
+    keys_.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
         std::uint64_t code = 0;
         for (int k = 0; k < 3; ++k) {
-            const float at = (points_[i][k] - corner_[k]) / side_;
+            const float at = (points[i][k] - corner_[k]) / side_;
             code |= spread_bits(cell_along(at, std::uint64_t{1} << levels_)) << k;
         }
         keys_[i] = code << (64 - 3 * levels_) | i;
     }
     std::sort(keys_.begin(), keys_.end());
+    points_.reserve(points.size());
+    for (Place p = 0; p < size(); ++p) points_.push_back(points[index(p)]);
 }
 
 void NearestPoints::build_boxes() {
