@@ -71,6 +71,7 @@ private:
     /// Makes a membrane of \p faces. \return false if it cannot be completed.
     bool make(Membrane& membrane, std::vector<int> faces) const;
     bool widen(Membrane& membrane) const;
+    const Corridors& corridors() const;
     /// Whether the points know a handle, or one component, where the rims of the same part are joined.
     bool knows_handle(const std::vector<const Membrane*>& membranes, const std::vector<Rim>& rims,
                       const RimParts& parts, const PerFace<char>& out) const;
@@ -81,22 +82,26 @@ private:
     const FaceSignals& support_;
     const std::vector<vcg::Point3f>& points_;
     float edge_;
-    mutable std::once_flag asked_for_corridors_;
+    mutable std::mutex mutex_;  // std::call_once() needs a newer C library than hosts of 2022 bring
     mutable std::unique_ptr<const Corridors> corridors_;  ///< made when they are first asked for
 };
 
+const Corridors& Search::corridors() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!corridors_) corridors_ = std::make_unique<const Corridors>(surface_, support_, points_, edge_);
+    return *corridors_;
+}
+
 bool Search::knows_handle(const std::vector<const Membrane*>& membranes, const std::vector<Rim>& rims,
                           const RimParts& parts, const PerFace<char>& out) const {
-    std::call_once(asked_for_corridors_, [&] {
-        corridors_ = std::make_unique<const Corridors>(surface_, support_, points_, edge_);
-    });
+    const Corridors& corridors = this->corridors();
     float width = 0;
-    for (const Membrane* membrane : membranes) width += corridors_->widest(membrane->faces);
+    for (const Membrane* membrane : membranes) width += corridors.widest(membrane->faces);
     if (width < kLeastRadius * static_cast<float>(membranes.size())) return false;
     for (const std::vector<std::size_t>& part : parts)
         for (std::size_t i = 0; i < part.size(); ++i)
             for (std::size_t k = i + 1; k < part.size(); ++k)
-                if (corridors_->lead(rims[part[i]], rims[part[k]], out)) return false;
+                if (corridors.lead(rims[part[i]], rims[part[k]], out)) return false;
     return true;
 }
 
