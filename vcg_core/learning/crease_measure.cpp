@@ -72,6 +72,7 @@ void CreaseMeasure::observe(const Network& network) {
 }
 
 void CreaseMeasure::add(const CreaseMeasure& other) {
+    if (other.moments_ == 0) return;  // it has no sums either
     position_sums_.resize(other.position_sums_.size(), Point3f(0, 0, 0));
     spread_sums_.resize(other.spread_sums_.size(), 0);
     for (VertexId v = 0; v < other.position_sums_.size(); ++v) {

@@ -138,6 +138,18 @@ TEST(CreaseMeasure, IsIndifferentToScale) {
 
 /// If nothing was observed, the present positions are measured. A vertex of the result has the planes of its
 /// source, but its own distance from the line in which they meet.
+/// Of a round that somebody has stopped before its first moment.
+TEST(CreaseMeasure, IsTheSameWithOneOfNoMoments) {
+    const Network network = referee::network_of(shapes::icosphere(2));
+    CreaseMeasure moments;
+    moments.observe(network);
+    ThreadTeam team(1);
+    const PerVertex<float> before = moments.values(network, team);
+    moments.add(CreaseMeasure());
+    const PerVertex<float> after = moments.values(network, team);
+    EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin(), after.end()));
+}
+
 TEST(CreaseMeasure, MeasuresAMovedVertexWhereItLies) {
     const Learned run(shapes::box_cloud(40000), 1500);
     const CreaseMeasure none;
