@@ -136,8 +136,6 @@ TEST(CreaseMeasure, IsIndifferentToScale) {
     for (VertexId v = 0; v < a.size(); ++v) EXPECT_NEAR(a[v], b[v], 1e-4F);
 }
 
-/// If nothing was observed, the present positions are measured. A vertex of the result has the planes of its
-/// source, but its own distance from the line in which they meet.
 /// Of a round that somebody has stopped before its first moment.
 TEST(CreaseMeasure, IsTheSameWithOneOfNoMoments) {
     const Network network = referee::network_of(shapes::icosphere(2));
@@ -150,6 +148,8 @@ TEST(CreaseMeasure, IsTheSameWithOneOfNoMoments) {
     EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin(), after.end()));
 }
 
+/// If nothing was observed, the present positions are measured. A vertex of the result has the planes of its
+/// source, but its own distance from the line in which they meet.
 TEST(CreaseMeasure, MeasuresAMovedVertexWhereItLies) {
     const Learned run(shapes::box_cloud(40000), 1500);
     const CreaseMeasure none;
