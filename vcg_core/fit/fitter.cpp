@@ -255,10 +255,9 @@ double Fitter::solve(const PointsByFace& points, Surface& surface, float hold) {
     PerVertex<float> stiffness;
     if (layered_) stiffness = stiffness_by(examine_variances(surface, points), surface, points);
     const PointToPlaneSystem system(network_, surface, points, team_, stiffness, hold);
-    std::vector<PerVertex<Vector3>> solutions(weights.size());
-    for_chunks(weights.size(), 1, team_, [&](std::size_t i, std::size_t, std::size_t) {
-        solutions[i] = limits.bounded(system.solve(weights[i]));
-    });
+    std::vector<PerVertex<Vector3>> solutions = system.solve(weights, team_);
+    for_chunks(weights.size(), 1, team_,
+               [&](std::size_t i, std::size_t, std::size_t) { solutions[i] = limits.bounded(solutions[i]); });
     std::size_t best = 0;
     double best_error = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Normal equations in 3x3 blocks along the one-rings, and conjugate gradients on them.
+// Normal equations in 3x3 blocks along the one-rings. least_squares_solution.cpp solves them.
 #include "vcg_core/fit/least_squares.h"
 
 #include <algorithm>
@@ -31,12 +31,6 @@ constexpr float kBoundaryBending = 0.05F;
 constexpr float kCrease = 4.0F;
 
 constexpr int kChunk = 256;
-
-double dot(const PerVertex<Vector3>& a, const PerVertex<Vector3>& b) {
-    double sum = 0;
-    for (VertexId v = 0; v < a.size(); ++v) sum += static_cast<double>(a[v].dot(b[v]));
-    return sum;
-}
 
 }  // namespace
 
@@ -257,76 +251,6 @@ void PointToPlaneSystem::centre_along(const Vector3& direction, const Vector3& a
     const float centring = kCentring * points_per_vertex_;
     diagonal_[v].add(Symmetric3::outer(direction), centring);
     force_[v] += centring * away.dot(direction) * direction;
-}
-
-void PointToPlaneSystem::multiply(float lambda, const PerVertex<Vector3>& u,
-                                  PerVertex<Vector3>& result) const {
-    for (VertexId v = 0; v < network_.slot_count(); ++v) {
-        const Ring& ring = network_.ring(v);
-        Vector3 sum = diagonal_[v] * u[v];
-        const Symmetric3* block = row(v);
-        if (coupled_[v] != 0)
-            for (int i = 0; i < ring.valence; ++i) sum += block[i] * u[ring[i]];
-        result[v] = sum;
-    }
-    for (const BendingTerm& term : bending_terms_) {
-        const auto& c = term.coefficient;
-        Vector3 gap = c[0] * u[term.corner[0]] + c[1] * u[term.corner[1]] + c[2] * u[term.corner[2]] +
-                      c[3] * u[term.corner[3]];
-        gap *= (lambda + term.stiffness) * term.weight;
-        for (std::size_t k = 0; k < 4; ++k) result[term.corner[k]] += c[k] * gap;
-    }
-    for (const BendingTerm& term : boundary_terms_) {  // their squares are in the diagonal
-        const auto& c = term.coefficient;
-        const Vector3 gap = c[0] * u[term.corner[0]] + c[1] * u[term.corner[1]] + c[2] * u[term.corner[2]];
-        for (std::size_t k = 0; k < 3; ++k)
-            result[term.corner[k]] += term.weight * c[k] * (gap - c[k] * u[term.corner[k]]);
-    }
-}
-
-PerVertex<Vector3> PointToPlaneSystem::right_side(float lambda) const {
-    PerVertex<Vector3> result(force_.size(), Vector3::Zero());
-    for (VertexId v = 0; v < result.size(); ++v) result[v] = force_[v] + lambda * bending_force_[v];
-    return result;
-}
-
-PerVertex<Symmetric3> PointToPlaneSystem::preconditioner(float lambda) const {
-    PerVertex<Symmetric3> result(diagonal_.size());
-    for (VertexId v : network_.vertices()) {
-        Symmetric3 d = diagonal_[v];
-        d.add_identity(lambda * bending_diagonal_[v] + stiff_diagonal_[v]);
-        result[v] = d.inverse();
-    }
-    return result;
-}
-
-PerVertex<Vector3> PointToPlaneSystem::solve(float lambda, Accuracy accuracy) const {
-    const int n = diagonal_.size();
-    const PerVertex<Symmetric3> inverse = preconditioner(lambda);
-    PerVertex<Vector3> u(n, Vector3::Zero());
-    PerVertex<Vector3> residual = right_side(lambda);
-    PerVertex<Vector3> scaled(n, Vector3::Zero());
-    for (VertexId v = 0; v < n; ++v) scaled[v] = inverse[v] * residual[v];
-    PerVertex<Vector3> step = scaled;
-    PerVertex<Vector3> image(n, Vector3::Zero());
-    double energy = dot(residual, scaled);
-    const double enough = accuracy.tolerance * accuracy.tolerance * energy;
-    for (int i = 0; i < accuracy.iterations && energy > enough && energy > 0; ++i) {
-        multiply(lambda, step, image);
-        const double curvature = dot(step, image);
-        if (!(curvature > 0)) break;
-        const auto alpha = static_cast<float>(energy / curvature);
-        for (VertexId v = 0; v < n; ++v) {
-            u[v] += alpha * step[v];
-            residual[v] -= alpha * image[v];
-            scaled[v] = inverse[v] * residual[v];
-        }
-        const double last = energy;
-        energy = dot(residual, scaled);
-        const auto beta = static_cast<float>(energy / last);
-        for (VertexId v = 0; v < n; ++v) step[v] = scaled[v] + beta * step[v];
-    }
-    return u;
 }
 
 }  // namespace neuralmesh

@@ -68,13 +68,47 @@ TEST_F(LeastSquares, IsSolvedAsByDirectSolvers) {
         const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> simplicial(sparse_matrix);
         const Vector sparse = simplicial.solve(right_side);
         EXPECT_LT((dense - sparse).norm(), 1e-8 * dense.norm());
-        const Vector exact = flat(system.solve(lambda, {1e-6, 2000}));
+        const Vector exact = flat(system.solve({lambda}, team, {1e-6, 2000})[0]);
         EXPECT_LT((exact - dense).norm(), 1e-3 * dense.norm()) << lambda;
         // The fit needs an energy close to the minimum.
         const auto energy = [&](const Vector& u) { return (0.5 * u.dot(matrix * u) - u.dot(right_side)); };
-        const Vector solved = flat(system.solve(lambda));
+        const Vector solved = flat(system.solve({lambda}, team)[0]);
         EXPECT_LT(energy(solved) - energy(dense), 1e-2 * -energy(dense)) << lambda;
     }
+}
+
+/// Whether the weights have the same bits together, on one thread and on three, as each of them alone.
+void expect_bits_of_each_alone(const PointToPlaneSystem& system, const std::vector<float>& weights) {
+    ThreadTeam one(1), three(3);
+    const std::vector<PerVertex<Vector3>> together = system.solve(weights, one);
+    const std::vector<PerVertex<Vector3>> on_threads = system.solve(weights, three);
+    ASSERT_EQ(together.size(), weights.size());
+    ASSERT_EQ(on_threads.size(), weights.size());
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        const PerVertex<Vector3> alone = system.solve({weights[i]}, one)[0];
+        EXPECT_GT(flat(alone).norm(), 0);
+        EXPECT_EQ(together[i], alone) << weights[i];
+        EXPECT_EQ(on_threads[i], alone) << weights[i];
+    }
+}
+
+// They need different numbers of iterations: the stiffest some four times as many.
+TEST(BendingWeights, HaveTheirBitsOnAnyNumberOfThreads) {
+    const Network network = referee::network_of(shapes::icosphere(3), 0.02);
+    const Surface surface(network);
+    ThreadTeam team(2);
+    const PointToPlaneSystem system(network, surface, points_on(surface, 12, sine), team);
+    expect_bits_of_each_alone(system, {0.01F, 0.1F, 1, 8, 50});
+    expect_bits_of_each_alone(system, {1, 50});
+}
+
+TEST(BendingWeights, HaveTheirBitsWhereThereIsABoundary) {
+    const Network network = referee::network_of(shapes::grid(32, 32), 0.02);
+    const Surface surface(network);
+    ThreadTeam team(2);
+    const PerVertex<float> stiffness(network.slot_count(), 0.5F);
+    const PointToPlaneSystem system(network, surface, points_on(surface, 12, sine), team, stiffness);
+    expect_bits_of_each_alone(system, {0.01F, 1, 8});
 }
 
 // Most vertices have no points around them, so their rows couple by the bending alone.
@@ -94,7 +128,7 @@ TEST(FewerPointsThanVertices, AreSolvedForAsByDirectSolvers) {
     const Matrix matrix = matrix_of(system, network.slot_count(), 1);
     EXPECT_LT((matrix - matrix.transpose()).norm(), 1e-5 * matrix.norm());
     const Vector direct = Eigen::LDLT<Matrix>(matrix).solve(flat(system.right_side(1)));
-    EXPECT_LT((flat(system.solve(1, {1e-6, 5000})) - direct).norm(), 5e-3 * direct.norm());
+    EXPECT_LT((flat(system.solve({1}, team, {1e-6, 5000})[0]) - direct).norm(), 5e-3 * direct.norm());
     // Only the corners of faces with points are coupled without bending.
     PerVertex<char> near_points(network.slot_count(), 0);
     for (int f = 0; f < surface.face_count(); f += 16)
@@ -155,8 +189,10 @@ TEST_F(LeastSquares, TakesStiffnessForBendingWeight) {
     EXPECT_LT((flat(stiff.right_side(0.5F)) - flat(system.right_side(0.5F + kStiffness))).norm(),
               1e-4 * flat(system.right_side(0.5F + kStiffness)).norm());
     const PointToPlaneSystem::Accuracy exact{1e-6, 1000};
-    EXPECT_LT((flat(stiff.solve(0.5F, exact)) - flat(system.solve(0.5F + kStiffness, exact))).norm(),
-              1e-3 * flat(stiff.solve(0.5F, exact)).norm());
+    EXPECT_LT(
+        (flat(stiff.solve({0.5F}, team, exact)[0]) - flat(system.solve({0.5F + kStiffness}, team, exact)[0]))
+            .norm(),
+        1e-3 * flat(stiff.solve({0.5F}, team, exact)[0]).norm());
 }
 
 // All points lie at the same height above a plane: it moves to them, nearly without sliding sideways.
@@ -166,7 +202,8 @@ TEST(PointToPlaneSystem, LiftsAPlaneToItsPoints) {
     ThreadTeam team(1);
     const PointsByFace points = points_on(surface, 30, [](Random&) { return 0.05; });
     const PointToPlaneSystem system(plane, surface, points, team);
-    for (const Vector3& u : system.solve(1, {1e-5, 1000})) {
+    const PerVertex<Vector3> displacements = system.solve({1}, team, {1e-5, 1000})[0];
+    for (const Vector3& u : displacements) {
         EXPECT_NEAR(u[2], 0.05, 0.002);
         EXPECT_LT(u.head<2>().norm(), 0.02);
     }
