@@ -17,14 +17,16 @@ const vcg::Point3f* SignalStream::take(int count) {
 void SignalStream::draw_ahead(int count) noexcept {
     const std::size_t wanted = begin_ + static_cast<std::size_t>(count);
     if (wanted <= end_) return;
-    std::size_t more = wanted - end_;
+    const std::size_t more = wanted - end_;
     if (wanted > drawn_.size()) {
         const auto from = drawn_.begin();
         std::copy(from + static_cast<std::ptrdiff_t>(begin_), from + static_cast<std::ptrdiff_t>(end_), from);
         end_ -= begin_;
         begin_ = 0;
     }
-    for (; more > 0; --more) drawn_[end_++] = target_.sample(random_);
+    vcg::Point3f* const first = drawn_.data() + end_;
+    target_.sample_each(random_, {first, first + more});
+    end_ += more;
 }
 
 }  // namespace neuralmesh

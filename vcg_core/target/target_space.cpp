@@ -6,11 +6,13 @@
 #include <vcg/space/line3.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <tuple>
 #include <utility>
 
 #include "vcg_core/base/bits.h"
+#include "vcg_core/base/platform.h"
 
 namespace neuralmesh {
 
@@ -236,13 +238,32 @@ TargetSpace TargetSpace::moved_in_batches(const std::function<void(Span<vcg::Poi
 }
 
 vcg::Point3f TargetSpace::sample(Random& random) const {
-    if (is_weighted()) {
-        const std::size_t first = runs_.draw(random) * PointAreas::kRun;
-        const std::size_t points = std::min(PointAreas::kRun, positions_.size() - first);
-        return positions_[first + random.below(static_cast<std::uint32_t>(points))];
-    }
-    if (!is_exact()) return positions_[random.below(static_cast<std::uint32_t>(positions_.size()))];
+    if (!is_exact()) return positions_[draw_point(random)];
     return move_ ? move_(draw_exact(random)) : draw_exact(random);
+}
+
+void TargetSpace::sample_each(Random& random, Span<vcg::Point3f> samples) const {
+    if (is_exact()) {
+        for (vcg::Point3f& p : samples) p = sample(random);
+        return;
+    }
+    constexpr int kAtATime = 32;  // reads that the processor has under way
+    std::array<std::size_t, kAtATime> drawn;
+    for (int i = 0; i < samples.size(); i += kAtATime) {
+        const int count = std::min(kAtATime, samples.size() - i);
+        for (int k = 0; k < count; ++k) {
+            drawn[static_cast<std::size_t>(k)] = draw_point(random);
+            prefetch(&positions_[drawn[static_cast<std::size_t>(k)]]);
+        }
+        for (int k = 0; k < count; ++k) samples[i + k] = positions_[drawn[static_cast<std::size_t>(k)]];
+    }
+}
+
+std::size_t TargetSpace::draw_point(Random& random) const {
+    if (!is_weighted()) return random.below(static_cast<std::uint32_t>(positions_.size()));
+    const std::size_t first = runs_.draw(random) * PointAreas::kRun;
+    const std::size_t points = std::min(PointAreas::kRun, positions_.size() - first);
+    return first + random.below(static_cast<std::uint32_t>(points));
 }
 
 vcg::Point3f TargetSpace::draw_exact(Random& random) const {

@@ -6,12 +6,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "tests/unit/support/targets.h"
+#include "vcg_core/target/cloud_survey.h"
 
 namespace neuralmesh {
 namespace {
@@ -219,6 +221,20 @@ TEST(TargetSpace, DrawsUniformlyWithinATriangle) {
     }
     EXPECT_LT(chi_square(seen, std::vector<double>(seen.size(), n / double(cells * cells))),
               limit(cells * cells - 1));
+}
+
+TEST(TargetSpace, DrawsTheSameSamplesTogether) {
+    const TargetSpace cloud = target_of(shapes::uneven_sphere_cloud(3000, 20));
+    const std::optional<TargetSpace> weighted = cloud.evenly(CloudSurvey(cloud.positions(), 1));
+    ASSERT_TRUE(weighted.has_value());
+    for (const TargetSpace& target : {cloud, *weighted, target_of(shapes::cube())}) {
+        Random one_by_one(4), together(4);
+        for (const std::size_t count : {0, 1, 31, 32, 33, 100}) {
+            std::vector<vcg::Point3f> drawn(count);
+            target.sample_each(together, {drawn.data(), drawn.data() + count});
+            for (const vcg::Point3f& p : drawn) ASSERT_EQ(p, target.sample(one_by_one)) << count;
+        }
+    }
 }
 
 TEST(TargetSpace, MovesWhatItDraws) {
