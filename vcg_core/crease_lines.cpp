@@ -65,7 +65,8 @@ Point3f place_on_line(const Network& network, const Surface& surface, TwoPlanes&
 }  // namespace
 
 CreaseGraph crease_lines(const Network& network, const PerVertex<float>& measure) {
-    const FilteredFaces faces(network);
+    ThreadTeam alone(1);
+    const FilteredFaces faces(network, alone);
     CreaseEdges chosen(network, faces, measure);
     chosen.add_sharp_edges();
     chosen.open_triangles();

@@ -51,6 +51,9 @@ public:
         return schedule_.run_in_background(body);
     }
 
+    /// The threads that compute the batches. Not to be used while anything runs in the background.
+    ThreadTeam& team() { return schedule_.team(); }
+
 private:
     /// Step number index of a slab, which moves vertices of other slabs, too.
     struct BorderStep {

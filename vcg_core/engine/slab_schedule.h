@@ -28,6 +28,7 @@ public:
     SlabSchedule(int threads, const std::vector<vcg::Point3f>& typical_signals)
         : team_(thread_count(threads)), partition_(typical_signals) {}
 
+    ThreadTeam& team() { return team_; }
     int max_slabs() const { return team_.members(); }
     /// Number of slabs, and of threads, of the present batch.
     int slabs() const { return slabs_; }

@@ -61,13 +61,15 @@ PerVertex<float> crease_strengths(const Network& base, const FilteredFaces& face
 
 }  // namespace
 
-void CreaseMeasure::observe(const Network& network) {
+void CreaseMeasure::observe(const Network& network, ThreadTeam& team) {
+    constexpr int kChunk = 512;
     position_sums_.resize(network.slot_count(), Point3f(0, 0, 0));
     spread_sums_.resize(network.slot_count(), 0);
-    for (const VertexId v : network.vertices()) {
+    parallel_for(network.slot_count(), kChunk, team, [&](VertexId v) {
+        if (!network.alive(v)) return;
         position_sums_[v] += network.position(v);
         spread_sums_[v] += normal_spread(network, v);
-    }
+    });
     ++moments_;
 }
 
@@ -90,7 +92,7 @@ PerVertex<float> CreaseMeasure::values(const Network& learned, const Network& sh
                                        const PerVertex<VertexId>& source, ThreadTeam& team) const {
     if (moments_ == 0) {
         CreaseMeasure now;
-        now.observe(learned);
+        now.observe(learned, team);
         return now.values(learned, shown, source, team);
     }
     const auto moments = static_cast<float>(moments_);
@@ -99,9 +101,11 @@ PerVertex<float> CreaseMeasure::values(const Network& learned, const Network& sh
     PerVertex<float> spreads(shown.slot_count(), 0);
     for (const VertexId v : shown.vertices()) spreads[v] = spread_sums_[source_of(source, v)] / moments;
 
-    PerVertex<float> result = crease_strengths(learned, {learned, means}, shown, source, spreads, team);  // f
+    PerVertex<float> result =
+        crease_strengths(learned, {learned, means, team}, shown, source, spreads, team);  // f
     if (!source.empty()) {
-        const PerVertex<float> g = crease_strengths(shown, FilteredFaces(shown), shown, {}, spreads, team);
+        const PerVertex<float> g =
+            crease_strengths(shown, FilteredFaces(shown, team), shown, {}, spreads, team);
         for (VertexId v = 0; v < result.size(); ++v)
             result[v] = std::sqrt(result[v] * std::sqrt(result[v] * g[v]));
     }

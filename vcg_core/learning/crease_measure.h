@@ -36,7 +36,7 @@ class CreaseMeasure {
 public:
     /// Adds the present positions as one moment. All moments must have the same connectivity.
     /// O(vertices x valence), a tenth of the time of one signal per vertex.
-    void observe(const Network& network);
+    void observe(const Network& network, ThreadTeam& team);
     /// Adds the moments of \p other, of the same connectivity. O(vertices).
     void add(const CreaseMeasure& other);
     int moments() const { return moments_; }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vcg_core/base/median.h"
+#include "vcg_core/base/parallel_for.h"
 
 namespace neuralmesh {
 
@@ -21,6 +22,8 @@ constexpr int kIterations = 4;
 constexpr float kWidth = 6;   ///< of the filter, in medians of the squared difference of adjacent normals
 constexpr float kWidest = 1;  ///< bound on the width, for meshes most of whose edges are creases
 
+constexpr int kChunk = 512;  // faces
+
 PerVertex<Point3f> positions_of(const Network& network) {
     PerVertex<Point3f> positions(network.slot_count(), Point3f(0, 0, 0));
     for (const VertexId v : network.vertices()) positions[v] = network.position(v);
@@ -29,9 +32,10 @@ PerVertex<Point3f> positions_of(const Network& network) {
 
 }  // namespace
 
-FilteredFaces::FilteredFaces(const Network& network) : FilteredFaces(network, positions_of(network)) {}
+FilteredFaces::FilteredFaces(const Network& network, ThreadTeam& team)
+    : FilteredFaces(network, positions_of(network), team) {}
 
-FilteredFaces::FilteredFaces(const Network& network, const PerVertex<Point3f>& positions)
+FilteredFaces::FilteredFaces(const Network& network, const PerVertex<Point3f>& positions, ThreadTeam& team)
     : surface_(network) {
     normals_.reserve(count());
     centres_.reserve(count());
@@ -42,14 +46,14 @@ FilteredFaces::FilteredFaces(const Network& network, const PerVertex<Point3f>& p
         normals_.push_back(unit_or_zero(n));
         centres_.push_back((positions[a] + positions[b] + positions[c]) / 3);
     }
-    filter();
+    filter(team);
 }
 
-void FilteredFaces::filter() {
-    const float width = std::min(kWidest, kWidth * median_difference() + 1e-12F);
+void FilteredFaces::filter(ThreadTeam& team) {
+    const float width = std::min(kWidest, kWidth * median_difference(team) + 1e-12F);
     PerFace<Point3f> filtered(count(), Point3f(0, 0, 0));
     for (int iteration = 0; iteration < kIterations; ++iteration) {
-        for (int f = 0; f < count(); ++f) filtered[f] = filtered_normal(f, width);
+        parallel_for(count(), kChunk, team, [&](int f) { filtered[f] = filtered_normal(f, width); });
         std::swap(normals_, filtered);
     }
 }
@@ -67,16 +71,16 @@ Point3f FilteredFaces::filtered_normal(int f, float width) const {
 }
 
 /// Median over the inner edges of the squared difference of the normals on both sides.
-float FilteredFaces::median_difference() const {
-    std::vector<float> differences;
-    for (int f = 0; f < count(); ++f)
+float FilteredFaces::median_difference(ThreadTeam& team) const {
+    const auto find = [&](int f, std::vector<float>& found) {
         for (std::size_t k = 0; k < 3; ++k) {
             const VertexId a = surface_.faces[f][k];
             const VertexId b = surface_.faces[f][(k + 1) % 3];
             for (const int g : around(a))
-                if (g > f && has_corner(g, b))
-                    differences.push_back((normals_[g] - normals_[f]).SquaredNorm());
+                if (g > f && has_corner(g, b)) found.push_back((normals_[g] - normals_[f]).SquaredNorm());
         }
+    };
+    std::vector<float> differences = parallel_collect<float>(count(), kChunk, team, find);
     return differences.empty() ? 0.0F : median(std::move(differences));
 }
 

@@ -7,6 +7,7 @@
 #include <vcg/space/point3.h>
 
 #include "vcg_core/base/span.h"
+#include "vcg_core/base/thread_team.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/surface.h"
 
@@ -18,9 +19,9 @@ namespace neuralmesh {
 class FilteredFaces {
 public:
     /// The faces of \p network with its vertices at \p positions. O(vertices).
-    FilteredFaces(const Network& network, const PerVertex<vcg::Point3f>& positions);
+    FilteredFaces(const Network& network, const PerVertex<vcg::Point3f>& positions, ThreadTeam& team);
     /// The same with the vertices where they are.
-    explicit FilteredFaces(const Network& network);
+    FilteredFaces(const Network& network, ThreadTeam& team);
 
     int count() const { return surface_.face_count(); }
     /// As Surface::faces_around().
@@ -34,9 +35,9 @@ public:
     float area(int f) const { return areas_[f]; }
 
 private:
-    void filter();
+    void filter(ThreadTeam& team);
     vcg::Point3f filtered_normal(int f, float width) const;
-    float median_difference() const;
+    float median_difference(ThreadTeam& team) const;
 
     Surface surface_;  ///< for its faces only
     PerFace<vcg::Point3f> normals_;

@@ -211,7 +211,7 @@ bool Learner::learn_at_rest(std::int64_t count, Progress& progress, bool observe
     while (signals() < end) {
         learn_batch(static_cast<int>(std::min<std::int64_t>(batch_size(), end - signals())), [] {});
         if (observe && state_.options.observe_creases && signals() >= next_moment) {
-            crease_measure_.observe(network());
+            crease_measure_.observe(network(), batch_.team());
             next_moment += network().vertex_count();
         }
         if (!report_due()) continue;

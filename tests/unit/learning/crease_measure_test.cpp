@@ -27,13 +27,13 @@ struct Learned {
         NoProgress progress;
         learner.run(100, progress);
         CreaseMeasure measure;
+        ThreadTeam team(1);
         Random random(7);
         for (int sweep = 0; sweep < 30; ++sweep) {
             for (int i = 0; i < vertices; ++i) learner.basic_step(target.sample(random));
-            if (sweep >= 6) measure.observe(learner.network());
+            if (sweep >= 6) measure.observe(learner.network(), team);
         }
         network = learner.network();
-        ThreadTeam team(1);
         values = measure.values(network, team);
     }
 
@@ -115,8 +115,8 @@ TEST(CreaseMeasure, FindsNothingOnASphere) {
 TEST(CreaseMeasure, FindsNothingOnAPlane) {
     const Network network = referee::network_of(shapes::grid(12, 9));
     CreaseMeasure measure;
-    measure.observe(network);
     ThreadTeam team(1);
+    measure.observe(network, team);
     for (const float value : measure.values(network, team)) EXPECT_LT(value, 1e-3F);
 }
 
@@ -126,10 +126,10 @@ TEST(CreaseMeasure, IsIndifferentToScale) {
     for (const VertexId v : run.network.vertices()) large.set_position(v, run.network.position(v) * 8);
     CreaseMeasure of_small;
     CreaseMeasure of_large;
-    of_small.observe(run.network);
-    of_large.observe(large);
-    EXPECT_EQ(of_small.moments(), 1);
     ThreadTeam team(1);
+    of_small.observe(run.network, team);
+    of_large.observe(large, team);
+    EXPECT_EQ(of_small.moments(), 1);
     const PerVertex<float> a = of_small.values(run.network, team);
     const PerVertex<float> b = of_large.values(large, team);
     EXPECT_GT(*std::max_element(a.begin(), a.end()), 1.0F);
@@ -140,8 +140,8 @@ TEST(CreaseMeasure, IsIndifferentToScale) {
 TEST(CreaseMeasure, IsTheSameWithOneOfNoMoments) {
     const Network network = referee::network_of(shapes::icosphere(2));
     CreaseMeasure moments;
-    moments.observe(network);
     ThreadTeam team(1);
+    moments.observe(network, team);
     const PerVertex<float> before = moments.values(network, team);
     moments.add(CreaseMeasure());
     const PerVertex<float> after = moments.values(network, team);
@@ -153,10 +153,11 @@ TEST(CreaseMeasure, IsTheSameWithOneOfNoMoments) {
 TEST(CreaseMeasure, MeasuresAMovedVertexWhereItLies) {
     const Learned run(shapes::box_cloud(40000), 1500);
     const CreaseMeasure none;
-    CreaseMeasure one;
-    one.observe(run.network);
     ThreadTeam team(1), three(3);
-    EXPECT_EQ(one.values(run.network, team), one.values(run.network, three));
+    CreaseMeasure one, by_three;
+    one.observe(run.network, team);
+    by_three.observe(run.network, three);
+    EXPECT_EQ(one.values(run.network, team), by_three.values(run.network, three));
     EXPECT_EQ(none.values(run.network, team), one.values(run.network, team));
 
     const double half = 0.5 / std::sqrt(3.0);
