@@ -56,7 +56,10 @@ std::vector<Value> parallel_collect(int count, int chunk, ThreadTeam& team, cons
                [&](std::size_t c, std::size_t begin, std::size_t end) {
                    for (std::size_t i = begin; i < end; ++i) find(static_cast<int>(i), found[c]);
                });
+    std::size_t total = 0;
+    for (const std::vector<Value>& part : found) total += part.size();
     std::vector<Value> all;
+    all.reserve(total);
     for (const std::vector<Value>& part : found) all.insert(all.end(), part.begin(), part.end());
     return all;
 }

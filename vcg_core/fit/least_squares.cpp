@@ -64,6 +64,20 @@ PointToPlaneSystem::FaceSums PointToPlaneSystem::sum_over(const Surface& surface
     return sums;
 }
 
+/// By chunks: each thread allocates what it writes.
+PointToPlaneSystem::ChunksOfSums PointToPlaneSystem::sums_of_faces(const Surface& surface,
+                                                                   const PointsByFace& points, float hold,
+                                                                   ThreadTeam& team) {
+    const auto faces = static_cast<std::size_t>(surface.face_count());
+    ChunksOfSums chunks((faces + kChunk - 1) / kChunk);
+    for_chunks(faces, kChunk, team, [&](std::size_t c, std::size_t begin, std::size_t end) {
+        chunks[c].reserve(end - begin);
+        for (std::size_t f = begin; f < end; ++f)
+            chunks[c].push_back(sum_over(surface, points, hold, static_cast<int>(f)));
+    });
+    return chunks;
+}
+
 PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& surface,
                                        const PointsByFace& points, ThreadTeam& team,
                                        const PerVertex<float>& stiffness, float hold)
@@ -75,8 +89,7 @@ PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& su
     for (VertexId v = 0; v < network.slot_count(); ++v) row_[v + 1] = row_[v] + network.ring(v).valence;
     block_.resize(row_.back());
     const PerVertex<float> missing = missing_points_at_vertices(network, surface, points);
-    PerFace<FaceSums> sums(surface.face_count());
-    parallel_for(sums.size(), kChunk, team, [&](int f) { sums[f] = sum_over(surface, points, hold, f); });
+    const ChunksOfSums sums = sums_of_faces(surface, points, hold, team);
     parallel_for(network.slot_count(), kChunk, team, [&](VertexId v) {
         if (!network.alive(v)) return;
         gather(sums, surface, v);
@@ -98,7 +111,7 @@ void PointToPlaneSystem::find_coupled() {
                           : 0;
 }
 
-void PointToPlaneSystem::gather(const PerFace<FaceSums>& sums, const Surface& surface, VertexId v) {
+void PointToPlaneSystem::gather(const ChunksOfSums& sums, const Surface& surface, VertexId v) {
     const Ring& ring = network_.ring(v);
     for (int f : surface.faces_around(v)) {
         const Triangle& face = surface.faces[f];
@@ -106,10 +119,12 @@ void PointToPlaneSystem::gather(const PerFace<FaceSums>& sums, const Surface& su
         const std::size_t before = k == 0 ? 2 : k - 1;
         const VertexId next = face[k == 2 ? 0 : k + 1];
         const VertexId previous = face[before];
-        diagonal_[v].add(sums[f].pair[k], 1);
-        row(v)[ring.find(next)].add(sums[f].pair[3 + k], 1);
-        row(v)[ring.find(previous)].add(sums[f].pair[3 + before], 1);
-        force_[v] += sums[f].force[k];
+        const auto i = static_cast<std::size_t>(f);
+        const FaceSums& of_face = sums[i / kChunk][i % kChunk];
+        diagonal_[v].add(of_face.pair[k], 1);
+        row(v)[ring.find(next)].add(of_face.pair[3 + k], 1);
+        row(v)[ring.find(previous)].add(of_face.pair[3 + before], 1);
+        force_[v] += of_face.force[k];
     }
 }
 
@@ -173,9 +188,10 @@ void PointToPlaneSystem::add_bending(const Surface& surface, const PerVertex<flo
     };
     bending_terms_ = parallel_collect<BendingTerm>(network_.slot_count(), kChunk, team, find);
     if (bending_terms_.empty()) return;
-    std::vector<float> gaps;
-    gaps.reserve(bending_terms_.size());
-    for (const BendingTerm& term : bending_terms_) gaps.push_back(term.gap.norm());
+    std::vector<float> gaps(bending_terms_.size());
+    for_chunks(gaps.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) gaps[i] = bending_terms_[i].gap.norm();
+    });
     const float crease = std::max(kCrease * median(gaps), 1e-9F);
     for (std::size_t i = 0; i < gaps.size(); ++i) {
         BendingTerm& term = bending_terms_[i];

@@ -87,7 +87,10 @@ private:
     };
 
     static FaceSums sum_over(const Surface& surface, const PointsByFace& points, float hold, int face);
-    void gather(const PerFace<FaceSums>& sums, const Surface& surface, VertexId v);
+    using ChunksOfSums = std::vector<std::vector<FaceSums>>;
+    static ChunksOfSums sums_of_faces(const Surface& surface, const PointsByFace& points, float hold,
+                                      ThreadTeam& team);
+    void gather(const ChunksOfSums& sums, const Surface& surface, VertexId v);
     void regularise(const Surface& surface, float missing_points, VertexId v);
     static bool make_bending_term(const Surface& surface, const std::array<VertexId, 4>& corner,
                                   BendingTerm& term);
