@@ -4,10 +4,13 @@
 // Whether a batch runs faster on one thread or on all.
 #pragma once
 
+#include <vector>
+
 namespace neuralmesh {
 
 /// Times batches on one thread and on all, periodically, and chooses the faster: it depends on inter-core
-/// latency and load. The choice does not change what is computed.
+/// latency and load. A batch that was interrupted does not decide. The choice does not change what is
+/// computed.
 class ThreadTiming {
 public:
     /// Whether to run the next batch on all threads.
@@ -16,9 +19,10 @@ public:
     void add_batch(double nanoseconds_per_signal);
 
 private:
-    int batch_ = 0;          ///< since the last trial began
-    double one_thread_ = 0;  ///< sums over the timed batches of the trial, in ns per signal
-    double all_threads_ = 0;
+    int batch_ = 0;                   ///< since the last trial began
+    std::vector<double> one_thread_;  ///< the timed batches of the trial, in ns per signal
+    std::vector<double> all_threads_;
+    bool all_are_faster_ = false;  ///< in the last trial
 };
 
 }  // namespace neuralmesh
