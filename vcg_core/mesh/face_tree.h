@@ -35,13 +35,12 @@ public:
     /// depend on the number of threads. O(points x log faces)
     std::vector<Hit> nearest(const std::vector<Vector3>& points, ThreadTeam& team) const;
 
-    /// Calls \p visit(f, g) for every face g whose bounding box touches that of f, where f is the \p i-th
-    /// face in the order of the tree and g comes after it in that order. Over all i this gives each pair
-    /// once.
+    /// The faces come in so many groups, most of them empty or of four faces.
+    int group_count() const { return nodes_.size(); }
+    /// Calls \p visit(f, g) for every two faces whose bounding boxes touch, where f is of the \p i-th group
+    /// and g of the same or of a later one. Over all groups this gives each pair once.
     template <class Visit>
-    void for_overlapping(int i, const Visit& visit) const {
-        for_overlapping(boxes_[i], i + 1, [&](int g) { visit(order_[i], g); });
-    }
+    void for_overlapping_pairs(int i, const Visit& visit) const;
     /// Calls \p visit(g) for every face g of the tree whose bounding box touches that of \p face of \p
     /// surface.
     template <class Visit>
@@ -51,7 +50,10 @@ public:
     /// The same for a given \p box.
     template <class Visit>
     void for_overlapping(const Eigen::AlignedBox3f& box, const Visit& visit) const {
-        for_overlapping(box, 0, visit);
+        for_leaves(box, 0, [&](const Node& leaf) {
+            for (int j = leaf.begin; j < leaf.end; ++j)
+                if (box.intersects(boxes_[j])) visit(order_[j]);
+        });
     }
 
 private:
@@ -92,7 +94,7 @@ private:
     void set_boxes(const Surface& surface, ThreadTeam& team);
     struct Packet;
     template <class Visit>
-    void for_overlapping(const Box& box, int first, const Visit& visit) const;
+    void for_leaves(const Box& box, int first, const Visit& visit) const;
 
     Indexed<int> order_;
     Indexed<Corners> corners_;  ///< in order_
@@ -100,9 +102,10 @@ private:
     Indexed<Node> nodes_;
 };
 
-/// Of the faces from the \p first in the order of the tree on.
+/// Calls \p visit(leaf) for every leaf whose box touches \p box and that does not end before the face \p
+/// first in the order of the tree.
 template <class Visit>
-void FaceTree::for_overlapping(const Box& box, int first, const Visit& visit) const {
+void FaceTree::for_leaves(const Box& box, int first, const Visit& visit) const {
     std::array<int, kStack> stack;
     std::size_t height = 0;
     if (!nodes_.empty()) stack[height++] = 0;
@@ -115,9 +118,21 @@ void FaceTree::for_overlapping(const Box& box, int first, const Visit& visit) co
             stack[height++] = n + 1;
             continue;
         }
-        for (int j = std::max(first, node.begin); j < node.end; ++j)
-            if (box.intersects(boxes_[j])) visit(order_[j]);
+        visit(node);
     }
+}
+
+template <class Visit>
+void FaceTree::for_overlapping_pairs(int i, const Visit& visit) const {
+    const Node& leaf = nodes_[i];
+    if (!leaf.is_leaf()) return;
+    for_leaves(leaf.box, leaf.begin, [&](const Node& other) {
+        for (int f = leaf.begin; f < leaf.end; ++f) {
+            if (!boxes_[f].intersects(other.box)) continue;
+            for (int g = std::max(f + 1, other.begin); g < other.end; ++g)
+                if (boxes_[f].intersects(boxes_[g])) visit(order_[f], order_[g]);
+        }
+    });
 }
 
 }  // namespace neuralmesh

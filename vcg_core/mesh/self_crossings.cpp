@@ -25,19 +25,6 @@ float volume(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3
     return area_vector(a, b, c).dot(d - a);
 }
 
-/// Whether the segment p-q goes through the triangle a b c, rather than along its plane. Without tolerances,
-/// so the answer does not depend on the scale.
-bool goes_through(const Vector3& p, const Vector3& q, const Vector3& a, const Vector3& b, const Vector3& c) {
-    const float at_p = volume(a, b, c, p);
-    const float at_q = volume(a, b, c, q);
-    // The product of the two could underflow, so compare the signs.
-    if (!((at_p < 0 && at_q > 0) || (at_p > 0 && at_q < 0))) return false;
-    const float u = volume(p, q, a, b);
-    const float v = volume(p, q, b, c);
-    const float w = volume(p, q, c, a);
-    return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
-}
-
 /// vcglib's test multiplies up to nine lengths, which underflows in float for edges of about 2e-5. If one of
 /// the two faces is smaller than this, both are moved to the origin and scaled up for the test.
 constexpr float kSmall = 0x1p-10F;
@@ -68,45 +55,69 @@ bool intersect(const Surface& surface, int f, int g) {
     return vcg::NoDivTriTriIsect(corner(0), corner(1), corner(2), corner(3), corner(4), corner(5));
 }
 
-/// Whether the edge opposite to corner \p k of face \p f goes through face \p g.
-bool opposite_edge_goes_through(const Surface& surface, int f, int k, int g) {
-    return goes_through(surface.corner(f, (k + 1) % 3), surface.corner(f, (k + 2) % 3), surface.corner(g, 0),
-                        surface.corner(g, 1), surface.corner(g, 2));
-}
+/// The faces of a surface with their area vectors, which each of them needs for several others.
+class Faces {
+public:
+    Faces(const Surface& surface, ThreadTeam& team) : surface_(surface), area_vectors_(surface.face_count()) {
+        parallel_for(surface.face_count(), kChunk, team,
+                     [&](int f) { area_vectors_[f] = area_vector(surface, f); });
+    }
 
-bool cut_each_other(const Surface& surface, int f, int g) {
-    const Triangle& s = surface.faces[f];
-    const Triangle& t = surface.faces[g];
-    int common = 0;
-    int in_s = 0;
-    int in_t = 0;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            if (s[static_cast<std::size_t>(i)] == t[static_cast<std::size_t>(j)]) {
-                ++common;
-                in_s = i;
-                in_t = j;
-            }
-    if (common > 1) return false;
-    if (common == 1)
-        return opposite_edge_goes_through(surface, f, in_s, g) ||
-               opposite_edge_goes_through(surface, g, in_t, f);
-    return intersect(surface, f, g);
-}
+    /// A face without area cuts nothing; where many vertices coincide there are many of them.
+    bool has_area(int f) const { return area_vectors_[f] != Vector3(0, 0, 0); }
 
-/// A face without area cuts nothing; where many vertices coincide there are many of them.
-bool has_area(const Surface& surface, int f) { return area_vector(surface, f) != Vector3(0, 0, 0); }
+    /// Appends the crossing of the faces \p f and \p g, if they cross.
+    void append_crossing(int f, int g, std::vector<SelfCrossing>& crossings) const {
+        if (!cut_each_other(std::min(f, g), std::max(f, g))) return;
+        Triangle s = surface_.faces[f];
+        Triangle t = surface_.faces[g];
+        std::sort(s.begin(), s.end());
+        std::sort(t.begin(), t.end());
+        if (t < s) std::swap(s, t);
+        crossings.push_back({s[0], s[1], s[2], t[0], t[1], t[2]});
+    }
 
-/// Appends the crossing of the faces \p f and \p g, if they cross.
-void append_crossing(const Surface& surface, int f, int g, std::vector<SelfCrossing>& crossings) {
-    if (!cut_each_other(surface, std::min(f, g), std::max(f, g))) return;
-    Triangle s = surface.faces[f];
-    Triangle t = surface.faces[g];
-    std::sort(s.begin(), s.end());
-    std::sort(t.begin(), t.end());
-    if (t < s) std::swap(s, t);
-    crossings.push_back({s[0], s[1], s[2], t[0], t[1], t[2]});
-}
+private:
+    bool cut_each_other(int f, int g) const {
+        const Triangle& s = surface_.faces[f];
+        const Triangle& t = surface_.faces[g];
+        int common = 0;
+        int in_s = 0;
+        int in_t = 0;
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+                if (s[static_cast<std::size_t>(i)] == t[static_cast<std::size_t>(j)]) {
+                    ++common;
+                    in_s = i;
+                    in_t = j;
+                }
+        if (common > 1) return false;
+        if (common == 1)
+            return opposite_edge_goes_through(f, in_s, g) || opposite_edge_goes_through(g, in_t, f);
+        return intersect(surface_, f, g);
+    }
+
+    /// Whether the edge opposite to corner \p k of face \p f goes through face \p g, rather than along its
+    /// plane. Without tolerances, so the answer does not depend on the scale.
+    bool opposite_edge_goes_through(int f, int k, int g) const {
+        const Vector3& p = surface_.corner(f, (k + 1) % 3);
+        const Vector3& q = surface_.corner(f, (k + 2) % 3);
+        const Vector3& a = surface_.corner(g, 0);
+        const float at_p = area_vectors_[g].dot(p - a);
+        const float at_q = area_vectors_[g].dot(q - a);
+        // The product of the two could underflow, so compare the signs.
+        if (!((at_p < 0 && at_q > 0) || (at_p > 0 && at_q < 0))) return false;
+        const Vector3& b = surface_.corner(g, 1);
+        const Vector3& c = surface_.corner(g, 2);
+        const float u = volume(p, q, a, b);
+        const float v = volume(p, q, b, c);
+        const float w = volume(p, q, c, a);
+        return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
+    }
+
+    const Surface& surface_;
+    PerFace<Vector3> area_vectors_;
+};
 
 /// Whether \p surface has the face, in either orientation.
 bool has_face(const Surface& surface, const Triangle& face) {
@@ -141,21 +152,21 @@ private:
 
 std::vector<SelfCrossing> self_crossings(const Surface& surface, ThreadTeam& team,
                                          std::int64_t* tested_pairs) {
-    std::vector<int> faces;
+    const Faces faces(surface, team);
+    std::vector<int> with_area;
     for (int f = 0; f < surface.face_count(); ++f)
-        if (has_area(surface, f)) faces.push_back(f);
-    const int count = static_cast<int>(faces.size());
-    const FaceTree tree(surface, std::move(faces), team);
+        if (faces.has_area(f)) with_area.push_back(f);
+    const FaceTree tree(surface, std::move(with_area), team);
     std::atomic<std::int64_t> tested{0};
-    std::vector<SelfCrossing> all =
-        parallel_collect<SelfCrossing>(count, kChunk, team, [&](int i, std::vector<SelfCrossing>& found) {
-            std::int64_t pairs = 0;
-            tree.for_overlapping(i, [&](int f, int g) {
-                ++pairs;
-                append_crossing(surface, f, g, found);
-            });
-            tested += pairs;
+    const auto find = [&](int group, std::vector<SelfCrossing>& found) {
+        std::int64_t pairs = 0;
+        tree.for_overlapping_pairs(group, [&](int f, int g) {
+            ++pairs;
+            faces.append_crossing(f, g, found);
         });
+        tested += pairs;
+    };
+    std::vector<SelfCrossing> all = parallel_collect<SelfCrossing>(tree.group_count(), kChunk, team, find);
     std::sort(all.begin(), all.end());
     if (tested_pairs != nullptr) *tested_pairs = tested;
     return all;
@@ -164,19 +175,20 @@ std::vector<SelfCrossing> self_crossings(const Surface& surface, ThreadTeam& tea
 std::vector<SelfCrossing> update_self_crossings(const Surface& surface, const Surface& before,
                                                 const std::vector<SelfCrossing>& known, ThreadTeam& team) {
     const CommonFaces common(surface, before);
+    const Faces faces(surface, team);
     PerFace<char> is_changed(surface.face_count(), 0);
     const auto examine = [&](int f, std::vector<int>& changed) {
         if (common.contain(surface.faces[f])) return;
         is_changed[f] = 1;
-        if (has_area(surface, f)) changed.push_back(f);
+        if (faces.has_area(f)) changed.push_back(f);
     };
     std::vector<int> changed = parallel_collect<int>(surface.face_count(), kChunk, team, examine);
     const FaceTree tree(surface, std::move(changed), team);
     const auto find = [&](int f, std::vector<SelfCrossing>& found) {
-        if (!has_area(surface, f)) return;
+        if (!faces.has_area(f)) return;
         tree.for_overlapping(surface, f, [&](int g) {
             // Two changed faces meet twice, and each meets itself.
-            if (is_changed[f] == 0 || f < g) append_crossing(surface, f, g, found);
+            if (is_changed[f] == 0 || f < g) faces.append_crossing(f, g, found);
         });
     };
     std::vector<SelfCrossing> all = parallel_collect<SelfCrossing>(surface.face_count(), kChunk, team, find);
