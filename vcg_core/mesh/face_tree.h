@@ -35,7 +35,7 @@ public:
     /// depend on the number of threads. O(points x log faces)
     std::vector<Hit> nearest(const std::vector<Vector3>& points, ThreadTeam& team) const;
 
-    /// The faces come in so many groups, most of them empty or of four faces.
+    /// The number of nodes. The faces of a leaf are a group; the groups of the other nodes are empty.
     int group_count() const { return nodes_.size(); }
     /// Calls \p visit(f, g) for every two faces whose bounding boxes touch, where f is of the \p i-th group
     /// and g of the same or of a later one. Over all groups this gives each pair once.
