@@ -21,8 +21,9 @@ namespace neuralmesh {
 /// that persist to \p level. (Chazal and Oudot 2008: the topology of a surface is what survives of one offset
 /// in a larger one.) Parts that come close keep a gap one node wide; cavities are filled. O(nodes + 14 x
 /// nodes added).
-void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
-                          NodeSet& solid);
+/// \return the change of the solid's Euler characteristic (level_topology.h)
+int grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
+                         NodeSet& solid);
 
 /// The level to which the solid at \p level is grown: that of twice its radius, at most Region::kMaxLevel.
 /// Level 0 is grown to level 2.
@@ -32,7 +33,7 @@ int grown_level(int level);
 NodeSet grown_solid(const Region& region, int level);
 
 /// The topologies of the grown solids of some levels up to a third of Region::kMaxRadius. Left out are levels
-/// whose solid is fragmented, and level 0 if it has specks. About 0.1 microseconds per node and level.
+/// whose solid is fragmented, and level 0 if it has specks. About 0.01 microseconds per node and level.
 std::vector<TopologyAt> grown_topologies(const Region& region, ThreadTeam& team);
 
 }  // namespace neuralmesh

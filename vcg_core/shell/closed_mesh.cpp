@@ -65,8 +65,14 @@ Network surface_of(const Region& region, const PerNode<float>& distances, int st
     return mesh.faces.empty() ? Network() : Network(mesh.positions, mesh.faces);
 }
 
-bool has_topology(const TopologyVote& vote, int components, int genus) {
-    return components == vote.components && genus == vote.genus;
+bool has_topology(const TopologyVote& vote, const LevelTopology& solid) {
+    return solid.surfaces() == vote.components && solid.genus == vote.genus;
+}
+
+/// The Euler characteristic comes first: it need not be counted.
+bool has_topology(const TopologyVote& vote, const Network& closed) {
+    return closed.euler_characteristic() == 2 * (vote.components - vote.genus) &&
+           closed.component_count() == vote.components;
 }
 
 /// Makes \p closed the mesh at \p level, on every third or second node. \return whether it has the topology
@@ -78,7 +84,7 @@ bool close_with_stride(const Region& region, const TopologyVote& vote, int level
     const PerNode<float> distances = signed_distances(region, closed.solid, closed.level);
     for (const int stride : {3, 2}) {
         closed.network = surface_of(region, distances, stride);
-        if (has_topology(vote, closed.network.component_count(), closed.network.genus())) return true;
+        if (has_topology(vote, closed.network)) return true;
     }
     return false;
 }
@@ -90,8 +96,7 @@ ClosedMesh closed_mesh(const Region& region, const TopologyVote& vote) {
     ClosedMesh closed;
     // The smallest radius, about the geometric mean, and the largest one.
     for (const int level : {levels.front(), levels[levels.size() / 3], levels.back()}) {
-        const LevelTopology& plain = region.topologies[level];
-        if (has_topology(vote, plain.surfaces(), plain.genus) &&
+        if (has_topology(vote, region.topologies[level]) &&
             close_with_stride(region, vote, level, false, closed))
             return closed;
     }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "vcg_core/base/indexed.h"
+#include "vcg_core/base/platform.h"
 
 namespace neuralmesh {
 
@@ -74,6 +75,10 @@ inline constexpr std::array<NodeOffset, kNeighbourCount> kNeighbourOffsets = {
     NodeOffset{1, 0, 0}, {-1, 0, 0}, {0, 1, 0},   {0, -1, 0}, {0, 0, 1},   {0, 0, -1}, {1, 1, 0},
     {-1, -1, 0},         {1, 0, 1},  {-1, 0, -1}, {0, 1, 1},  {0, -1, -1}, {1, 1, 1},  {-1, -1, -1}};
 
+/// Some of the neighbours of a node, as bits in the order of kNeighbourOffsets.
+using NeighbourSet = std::uint32_t;
+inline constexpr NeighbourSet kAllNeighbours = (NeighbourSet{1} << kNeighbourCount) - 1;
+
 /// Some of the neighbours of a node.
 struct NodeList {
     std::array<NodeId, kNeighbourCount> nodes{};
@@ -94,19 +99,34 @@ public:
     }
     /// The neighbour of node \p i at the place \p k in kNeighbourOffsets, if it has one.
     NodeId at(NodeId i, int k) const { return i + differences_[static_cast<std::size_t>(k)]; }
+    /// The places in kNeighbourOffsets at which node \p i has a neighbour: all, but for nodes on a side.
+    NeighbourSet places(NodeId i) const {
+        const Lattice& l = lattice_;
+        const auto [x, y, z] = l.coordinates(i);
+        if (!l.is_on_side(x, y, z)) return kAllNeighbours;
+        NeighbourSet set = 0;
+        for (int k = 0; k < kNeighbourCount; ++k) {
+            const auto& [dx, dy, dz] = kNeighbourOffsets[static_cast<std::size_t>(k)];
+            if (l.contains(x + dx, y + dy, z + dz)) set |= NeighbourSet{1} << k;
+        }
+        return set;
+    }
+    /// Calls visit(j, k) for the neighbours j of node \p i at the places k of \p places.
+    template <class Visit>
+    void for_each_at(NodeId i, NeighbourSet places, const Visit& visit) const {
+        if (places == kAllNeighbours) {
+            for (int k = 0; k < kNeighbourCount; ++k) visit(at(i, k), k);
+        } else {
+            for (; places != 0; places &= places - 1) {
+                const int k = lowest_bit(places);
+                visit(at(i, k), k);
+            }
+        }
+    }
     /// Calls visit(j, k) for the neighbours j of node \p i, where k is j's place in kNeighbourOffsets.
     template <class Visit>
     void for_each(NodeId i, const Visit& visit) const {
-        const Lattice& l = lattice_;
-        const auto [x, y, z] = l.coordinates(i);
-        if (l.is_on_side(x, y, z)) {
-            for (int k = 0; k < kNeighbourCount; ++k) {
-                const auto& [dx, dy, dz] = kNeighbourOffsets[static_cast<std::size_t>(k)];
-                if (l.contains(x + dx, y + dy, z + dz)) visit(at(i, k), k);
-            }
-        } else {
-            for (int k = 0; k < kNeighbourCount; ++k) visit(at(i, k), k);
-        }
+        for_each_at(i, places(i), visit);
     }
     /// The neighbours j of node \p i with member(j), in the order of kNeighbourOffsets. Without a branch for
     /// each, which would be hard to predict.

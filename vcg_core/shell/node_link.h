@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The neighbours of a lattice node that have a property, and whether they are connected with each other.
+// The neighbours of a lattice node that have a property, and the topology of what lies between them.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -12,30 +11,40 @@
 
 namespace neuralmesh {
 
-/// Some of the 14 neighbours of a node, as bits in the order of kNeighbourOffsets.
-using NeighbourSet = std::uint32_t;
+/// The neighbours with smaller ids than the node: every second one.
+inline constexpr NeighbourSet kSmallerIds = 0b10101010101010U;
 
-/// The neighbours j of node \p i with member(j).
+/// The neighbours of node \p i at the places \p places (Neighbours::places()) that are members: member(j).
 template <class Member>
-NeighbourSet neighbours_in(const Neighbours& neighbours, NodeId i, const Member& member) {
+NeighbourSet neighbours_in(const Neighbours& neighbours, NodeId i, NeighbourSet places,
+                           const Member& member) {
     NeighbourSet set = 0;
-    neighbours.for_each(i, [&](NodeId j, int k) { set |= NeighbourSet{member(j)} << k; });
+    neighbours.for_each_at(i, places, [&](NodeId j, int k) { set |= NeighbourSet{member(j)} << k; });
     return set;
 }
 
-/// For every set of neighbours, whether it is connected; the empty one is not. The neighbours of a node are
-/// the vertices of a triangulated sphere, the node's link.
-class LinkConnected {
+/// The topology of every set of neighbours. The neighbours of a node are the vertices of a triangulated
+/// sphere, the node's link; a set stands for the part of the sphere between its vertices.
+class LinkTopology {
 public:
     /// Made once, and shared by all threads.
-    static const LinkConnected& table();
+    static const LinkTopology& table();
 
-    bool operator()(NeighbourSet set) const { return connected_[set] != 0; }
+    /// The empty set is not.
+    bool is_connected(NeighbourSet set) const { return connected_[set] != 0; }
+    /// Vertices - edges + triangles.
+    int euler_characteristic(NeighbourSet set) const { return euler_[set]; }
 
 private:
-    LinkConnected();
+    LinkTopology();
 
     std::vector<std::uint8_t> connected_;
+    std::vector<std::int8_t> euler_;
 };
+
+/// The lower link of every node: the neighbours that come before it when nodes are ordered by \p values and
+/// then by their ids. Where a solid grows in this order, each node changes its Euler characteristic by 1 -
+/// that of the lower link (Banchoff 1967). O(nodes), in SIMD.
+PerNode<std::uint16_t> lower_links(const Lattice& lattice, const PerNode<std::int16_t>& values);
 
 }  // namespace neuralmesh

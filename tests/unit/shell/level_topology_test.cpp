@@ -54,6 +54,23 @@ TEST(LevelTopology, IsThatOfTheMesh) {
     EXPECT_GT(handles, 0);  // else the genus would not be tested
 }
 
+TEST(LevelTopology, HasTheEulerCharacteristicOfEachSolid) {
+    for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+        const Lattice lattice = small_lattice();
+        const PerNode<std::uint32_t> counts = random_counts(lattice, seed, 20);
+        const PerNode<SquaredRadius> clearance =
+            clearances(lattice, squared_distances(lattice, counts, kMaxRadius), kMaxRadius, {});
+        const PerLevel<LevelTopology> topologies =
+            topology_of_levels(lattice, clearance, counts, kMaxRadius, 2);
+        for (int level = 0; level < topologies.size(); ++level) {
+            NodeSet solid(lattice.size());
+            for (NodeId i = 0; i < solid.size(); ++i) solid[i] = clearance[i] <= level ? 1 : 0;
+            const LevelTopology& t = topologies[level];
+            EXPECT_EQ(t.components + t.specks - t.genus, euler_characteristic(lattice, solid));
+        }
+    }
+}
+
 TEST(LevelTopology, SmallComponentsCountAsSpecks) {
     const Lattice lattice = small_lattice();
     PerNode<std::uint32_t> counts(lattice.size(), 0);

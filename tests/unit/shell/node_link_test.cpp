@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The table of connected sets against a search for components, for all sets.
+// The table of sets of neighbours against a search for components and a count of simplices; lower links
+// against a look at each neighbour.
 #include "vcg_core/shell/node_link.h"
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "tests/unit/support/small_lattice.h"
 
 namespace neuralmesh {
 namespace {
+
+template <class Member>
+NeighbourSet set_of(const Neighbours& neighbours, NodeId i, const Member& member) {
+    return neighbours_in(neighbours, i, neighbours.places(i), member);
+}
 
 TEST(NodeLink, NeighboursAreTakenInTheOrderOfTheOffsets) {
     const Lattice lattice = small_lattice();
@@ -21,10 +29,16 @@ TEST(NodeLink, NeighboursAreTakenInTheOrderOfTheOffsets) {
         const NodeOffset& offset = kNeighbourOffsets[static_cast<std::size_t>(k)];
         const NodeId there = lattice.index(5 + offset[0], 6 + offset[1], 7 + offset[2]);
         EXPECT_EQ(neighbours.at(middle, k), there);
-        EXPECT_EQ(neighbours_in(neighbours, middle, [&](NodeId j) { return j == there; }), 1U << k);
+        EXPECT_EQ(set_of(neighbours, middle, [&](NodeId j) { return j == there; }), 1U << k);
     }
-    const NeighbourSet of_corner = neighbours_in(neighbours, 0, [](NodeId) { return true; });
+    const NeighbourSet of_corner = set_of(neighbours, 0, [](NodeId) { return true; });
     EXPECT_EQ(of_corner, 0b01010101010101U) << "those with no coordinate below 0";
+}
+
+TEST(NodeLink, SmallerIdsAreEverySecondNeighbour) {
+    const Lattice lattice = small_lattice();
+    const NodeId middle = lattice.index(5, 6, 7);
+    EXPECT_EQ(set_of(Neighbours(lattice), middle, [&](NodeId j) { return j < middle; }), kSmallerIds);
 }
 
 TEST(NodeLink, ConnectedSetsAreThoseOfOneComponent) {
@@ -51,9 +65,48 @@ TEST(NodeLink, ConnectedSetsAreThoseOfOneComponent) {
                 },
                 nodes);
         });
-        differ += LinkConnected::table()(set) != (components == 1) ? 1 : 0;
+        differ += LinkTopology::table().is_connected(set) != (components == 1) ? 1 : 0;
     }
     EXPECT_EQ(differ, 0);
+}
+
+TEST(NodeLink, EulerCharacteristicsAreThoseOfTheSimplices) {
+    const Lattice lattice = small_lattice();
+    const Neighbours neighbours(lattice);
+    const NodeId middle = lattice.index(5, 6, 7);
+    const auto adjacent = [&](int a, int b) {
+        const NodeId there = neighbours.at(middle, b);
+        return set_of(neighbours, neighbours.at(middle, a), [&](NodeId j) { return j == there; }) != 0;
+    };
+    int differ = 0;
+    for (NeighbourSet set = 0; set < NeighbourSet{1} << kNeighbourCount; set += 7) {
+        int euler = 0;
+        for (int a = 0; a < kNeighbourCount; ++a) {
+            if ((set >> a & 1U) == 0) continue;
+            ++euler;
+            for (int b = 0; b < a; ++b) {
+                if ((set >> b & 1U) == 0 || !adjacent(a, b)) continue;
+                --euler;
+                for (int c = 0; c < b; ++c)
+                    if ((set >> c & 1U) != 0 && adjacent(a, c) && adjacent(b, c)) ++euler;
+            }
+        }
+        differ += LinkTopology::table().euler_characteristic(set) != euler ? 1 : 0;
+    }
+    EXPECT_EQ(differ, 0);
+}
+
+TEST(NodeLink, LowerLinksHoldWhatComesBefore) {
+    const Lattice lattice = small_lattice();
+    const Neighbours neighbours(lattice);
+    Random random(1);
+    PerNode<std::int16_t> values(lattice.size());
+    for (std::int16_t& value : values) value = static_cast<std::int16_t>(random.below(4));
+    const PerNode<std::uint16_t> links = lower_links(lattice, values);
+    for (NodeId i = 0; i < lattice.size(); ++i)
+        ASSERT_EQ(links[i], set_of(neighbours, i, [&](NodeId j) {
+                      return std::pair(values[j], j) < std::pair(values[i], i);
+                  }));
 }
 
 }  // namespace
