@@ -196,7 +196,7 @@ std::vector<SettingInfo> paper_rows() {
         row(&S::smoothing_steps, "smoothing_steps", "Smoothing steps", 0, 100,
             "C_L of the paper: smoothing steps over the winner's one-ring per signal."),
         row(&S::signals_per_split, "signals_per_split", "Signals per split", 1, 1e6,
-            "C_vs of the paper: the number of signals from one vertex split to the next. Half as many do below 2,000 vertices where the fit removes most of the learned vertices, and on closed surfaces where the noise exceeds 14 % of the edges."),
+            "C_vs of the paper: the number of signals from one vertex split to the next. Half as many do if the fit follows: below 2,000 vertices where it removes most of the learned vertices, and on closed surfaces where the noise exceeds 14 % of the edges."),
         row(&S::signals_per_collapse, "signals_per_collapse", "Signals per collapse", 1, 1e6,
             "C_ec of the paper: after this many signals per vertex, the vertices that won none of them are "
             "removed by half-edge collapses."),

@@ -76,10 +76,7 @@ void fill_cavities(const Lattice& lattice, const std::vector<NodeId>& left_out,
             return true;
         };
         flood(neighbours, seed, enter, component);
-        for (const NodeId i : component) {
-            const auto [x, y, z] = lattice.coordinates(i);
-            open = open || lattice.is_on_side(x, y, z);
-        }
+        for (const NodeId i : component) open = open || neighbours.places(i) != kAllNeighbours;
         if (open) continue;
         for (const NodeId i : component) growing.add(i);
     }

@@ -77,11 +77,10 @@ public:
 
     /// \param link the neighbours of node \p i in the solid
     void add(NodeId i, NeighbourSet link) {
-        if (link == 0) return count(i, 1);
+        count(i, 1);
+        if (link == 0) return;
         const NodeId root = sets_.find(neighbours_.at(i, lowest_bit(link)));
-        count(root, -1);
-        sets_.join(root, i);
-        count(root, 1);
+        join(i, root);
         if (link_topology_.is_connected(link)) return;  // all in one set
         for (link &= link - 1; link != 0; link &= link - 1)
             join(sets_.find(neighbours_.at(i, lowest_bit(link))), root);
