@@ -104,4 +104,29 @@ void NearestPoints::nearest(Place place, int k, std::vector<Neighbour>& result) 
     visit_near(point(place), add, [&] { return bound; });
 }
 
+void NearestPoints::within(const vcg::Point3f& centre, float radius, std::size_t most,
+                           std::vector<vcg::Point3f>& result) const {
+    std::vector<Place> places;
+    const float limit = radius * radius;
+    visit_near(
+        centre,
+        [&](Place p, float d) {
+            if (d <= limit) places.push_back(p);
+        },
+        [&] { return limit; });
+    std::sort(places.begin(), places.end());
+    std::size_t stride = 1;
+    while (places.size() / stride > most) stride *= 2;
+    result.clear();
+    for (std::size_t i = 0; i < places.size(); i += stride) result.push_back(point(places[i]));
+}
+
+NearestPoints::Place NearestPoints::nearest_to(const vcg::Point3f& centre) const {
+    Neighbour best{std::numeric_limits<float>::infinity(), 0};
+    visit_near(
+        centre, [&](Place p, float d) { best = std::min(best, Neighbour{d, p}); },
+        [&] { return best.squared_distance; });
+    return best.place;
+}
+
 }  // namespace neuralmesh

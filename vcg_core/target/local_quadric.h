@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// A height field of degree 2 through the points around a place: the local surface of a noisy cloud.
+#pragma once
+
+#include <vcg/space/point3.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace neuralmesh {
+
+/// What the points around a place say of the surface there.
+struct LocalQuadric {
+    int points = 0;        ///< that it was fitted to; it holds if there are kLeastPoints
+    float deviation = 0;   ///< of the points about the quadric, robust, corrected for its six coefficients
+    float flatness = 0;    ///< spread across the plane over the smaller spread along it, 0 to 1
+    vcg::Point3f foot;     ///< of the place, along the normal of the plane
+    vcg::Point3f normal;   ///< of the quadric at the foot, of length 1, to either side
+    static constexpr int kLeastPoints = 12;
+    bool holds() const { return points >= kLeastPoints; }
+};
+
+/// More points tell no more of six coefficients.
+constexpr std::size_t kMostForQuadric = 120;
+
+/// Least squares over the plane of \p points, with Gaussian weights that fall to e^-2 at \p radius from \p
+/// place and two passes of Cauchy weights, which take outliers out. Does not hold for fewer than
+/// LocalQuadric::kLeastPoints points or where the points lie on a line. O(points).
+LocalQuadric local_quadric(const std::vector<vcg::Point3f>& points, const vcg::Point3f& place, float radius);
+
+}  // namespace neuralmesh
