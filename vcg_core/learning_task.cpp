@@ -46,11 +46,6 @@ constexpr double kWidestClosed = 0.066;
 constexpr double kOpeningSpacings = 3, kSheetSpacings = 5;
 /// The sides of walls thicker than this, in spacings of the points, are told apart (opposite_layers.h).
 constexpr double kToldSpacings = 4;
-/// Planes that are thicker than this say nothing about where the cloud is open.
-constexpr double kTooThick = 0.45;
-/// An open start mesh with more handles than this, or than one for so many vertices, follows gaps between the
-/// points. Scanned rooms and buildings have up to 21.
-constexpr int kMostHandles = 30, kVerticesPerHandle = 20;
 
 /// The start mesh of the paper, in the middle of the cloud, which is the origin of the core's frame; or a
 /// large one, whose corners lie outside of most clouds. A small one that begins between handles reaches their
@@ -71,11 +66,6 @@ void remove_repeated_points(LearningTask& task) {
                             std::to_string(all) + " points repeat others: every place was learned once.");
 }
 
-std::string share_of(std::size_t part, std::size_t all) {
-    const double share = std::max(0.001, static_cast<double>(part) / static_cast<double>(all));
-    return std::to_string(part) + " of " + std::to_string(all) + " points (" + percent(share) + ")";
-}
-
 /// A cloud with a larger share of outliers is more noise than surface.
 constexpr double kMostlyNoise = 0.3;
 
@@ -88,18 +78,30 @@ bool leave_out(LearningTask& task, const std::vector<std::uint8_t>& out) {
     return true;
 }
 
-/// The survey of the points to learn, made anew after some were left out.
+/// The surveys of the points to learn, made anew after some were left out.
 class Survey {
 public:
     explicit Survey(int threads) : threads_(threads) {}
     const CloudSurvey& of(const std::vector<vcg::Point3f>& points) {
-        if (!survey_ || survey_->cloud.size() != points.size()) survey_.emplace(points, threads_);
+        if (!survey_ || survey_->cloud.size() != points.size()) {
+            surface_.reset();
+            survey_.emplace(points, threads_);
+        }
         return *survey_;
+    }
+    /// Of a target without faces, whose points are its surface; else nothing.
+    std::optional<SurveyedCloud> surface_of(const TargetSpace& target) {
+        if (target.has_faces()) return {};
+        const CloudSurvey& points = of(target.positions());
+        ThreadTeam team(thread_count(threads_));
+        if (!surface_) surface_.emplace(points, team);
+        return SurveyedCloud{points, *surface_};
     }
 
 private:
     int threads_;
     std::optional<CloudSurvey> survey_;
+    std::optional<SurfaceSurvey> surface_;
 };
 
 Shell make_shell(const TargetSpace& target, const Settings& settings, Survey& survey, Progress& progress) {
@@ -111,8 +113,7 @@ Shell make_shell(const TargetSpace& target, const Settings& settings, Survey& su
     options.threads = settings.threads;
     options.learn_outliers = !settings.remove_outliers;
     Random random(stream_seed(settings.random_seed, Stream::shell));
-    const CloudSurvey* of_cloud = target.has_faces() ? nullptr : &survey.of(target.positions());
-    return Shell(target, options, random, progress, of_cloud);
+    return Shell(target, options, random, progress, survey.surface_of(target));
 }
 
 void remove_outliers(LearningTask& task, Survey& survey, int threads) {
@@ -120,7 +121,7 @@ void remove_outliers(LearningTask& task, Survey& survey, int threads) {
     if (out.empty()) return;
     const auto count = static_cast<std::size_t>(std::count(out.begin(), out.end(), 1));
     const std::size_t all = out.size();
-    std::string sentence = share_of(count, all);
+    std::string sentence = share_of_points(count, all);
     if (!leave_out(task, out)) {
         sentence += " look like outliers, and the others span no surface: all points were learned.";
     } else if (static_cast<double>(count) > kMostlyNoise * static_cast<double>(all)) {
@@ -175,7 +176,8 @@ double widest_closed(const TargetSpace& target) {
     return target.has_faces() ? kWidestClosed / 2 : kWidestClosed;
 }
 
-OpenStart make_open_start(const TargetSpace& target, const Settings& settings, Progress& progress) {
+OpenStart make_open_start(const TargetSpace& target, const Settings& settings, Survey& survey,
+                          Progress& progress) {
     OpenStartOptions options;
     const int grown = settings.target_vertices + surplus_vertices(settings, settings.target_vertices);
     options.wanted_vertices = std::clamp(static_cast<int>(kStartShare * grown), 4, kMostStartVertices);
@@ -186,7 +188,8 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, P
         options.closed_up_to = widest_closed(target);
     options.use_normals = settings.use_normals;
     Random random(stream_seed(settings.random_seed, Stream::shell));
-    return open_start(target, options, random, progress);
+    options.threads = settings.threads;
+    return open_start(target, options, random, progress, survey.surface_of(target));
 }
 
 /// Whether the cloud may be open: the shell closed wide openings, or a part of it has no space inside, and is
@@ -210,7 +213,7 @@ constexpr const char* kOneSheet = "They were learned as one sheet.";
 
 /// Warns if the points lie on the two sides of walls too thin to tell the sides apart.
 void warn_of_thin_walls(LearningTask& task, const LayerFigures& layers, const char* outcome) {
-    if (!layers.are_two() || layers.thickness > kToldSpacings * layers.spacing) return;
+    if (!layers.two || layers.thickness > kToldSpacings * layers.spacing) return;
     const double diagonal = task.target().frame().diagonal;
     std::ostringstream text;
     text.imbue(std::locale::classic());
@@ -227,7 +230,7 @@ void warn_of_thin_walls(LearningTask& task, const LayerFigures& layers, const ch
 /// Whether the start mesh of one layer is closed where the shell found no space: balls that do not get
 /// through the widest gap between the points are as wide as the walls there.
 bool encloses_more(const OpenStart& start, const Enclosure& shell) {
-    return start.loops == 0 && !start.layers.are_two() && !shell.encloses_space;
+    return start.loops == 0 && !start.layers.two && !shell.encloses_space;
 }
 
 /// Of those of a start mesh, an OpenStart or a StartMesh; the fit, if there is one, reduces it.
@@ -237,23 +240,24 @@ int vertices_needed(const Start& start, const Settings& settings) {
                                              : static_cast<int>(start.positions.size());
 }
 
-/// The start mesh of one layer of a cloud that may be open, or whose shell encloses no space; nothing if the
-/// cloud has none that learning can begin with, or if its shell is the better start.
+/// The start mesh of one layer of a cloud that may be open, or whose shell encloses no space; nothing if its
+/// shell is the better start.
+/// \throws InputError if the cloud has none and encloses no space either, unless it is to be closed
 std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& shell, const Settings& settings,
-                                        Progress& progress) {
+                                        Survey& survey, Progress& progress) {
     const TargetSpace& target = task.target();
+    const bool automatic = settings.surface == kAutomatic;
     try {
-        OpenStart start = make_open_start(target, settings, progress);
+        OpenStart start = make_open_start(target, settings, survey, progress);
         warn_of_thin_walls(task, start.layers, shell.encloses_space ? kSidesMayCross : kOneSheetClosed);
-        const auto vertices = static_cast<int>(start.positions.size());
-        const bool open = settings.surface == kAutomatic && start.loops > 0 && !start.layers.are_two() &&
+        const bool open = automatic && start.loops > 0 && !start.layers.two &&
                           (target.has_faces() || may_be_open(shell, target, settings, start.spacing)) &&
                           (settings.close_holes_up_to >= 0 || start.widest_loop > widest_closed(target));
-        if ((open || encloses_more(start, shell)) && start.thickness < kTooThick &&
-            vertices_needed(start, settings) <= settings.target_vertices &&
-            start.genus <= std::min(kMostHandles, vertices / kVerticesPerHandle))
-            return start;
+        const bool fits = vertices_needed(start, settings) <= settings.target_vertices;
+        if ((open && (fits || !shell.encloses_space)) || (fits && encloses_more(start, shell))) return start;
     } catch (const InputError&) {
+        const bool few = target.positions().size() < static_cast<std::size_t>(OpenStartOptions::kLeastCloud);
+        if (automatic && !shell.encloses_space && !few) throw;
     }
     return {};
 }
@@ -349,7 +353,7 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
         return;
     }
     if (settings.surface == kOpenSurface) {
-        OpenStart start = make_open_start(task.target(), settings, progress);
+        OpenStart start = make_open_start(task.target(), settings, survey, progress);
         warn_of_thin_walls(task, start.layers, kOneSheet);
         begin_open(task, std::move(start), settings);
         return;
@@ -361,7 +365,7 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
     const bool may_open =
         settings.surface == kAutomatic && may_be_open(enclosure, task.target(), settings, 0);
     if (may_open || !enclosure.encloses_space) {
-        std::optional<OpenStart> start = try_open_start(task, enclosure, settings, opening);
+        std::optional<OpenStart> start = try_open_start(task, enclosure, settings, survey, opening);
         if (start) {
             begin_open(task, std::move(*start), settings);
             return;

@@ -4,7 +4,9 @@
 // Numbers as text for warnings, the same in every locale.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 
 namespace neuralmesh {
@@ -13,6 +15,12 @@ namespace neuralmesh {
 inline std::string percent(double share) {
     const long long tenths = std::llround(share * 1000);
     return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " %";
+}
+
+/// "30 of 5030 points (0.6 %)". \pre all > 0
+inline std::string share_of_points(std::size_t part, std::size_t all) {
+    const double share = std::max(0.001, static_cast<double>(part) / static_cast<double>(all));
+    return std::to_string(part) + " of " + std::to_string(all) + " points (" + percent(share) + ")";
 }
 
 }  // namespace neuralmesh

@@ -6,18 +6,23 @@
 #include <algorithm>
 #include <locale>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
 
+#include "vcg_core/base/parallel_for.h"
+#include "vcg_core/base/text.h"
 #include "vcg_core/mesh/boundary_loops.h"
 #include "vcg_core/mesh/network.h"
+#include "vcg_core/mesh/pinched_vertices.h"
 #include "vcg_core/mesh/simplify.h"
+#include "vcg_core/shell/consolidated_points.h"
 #include "vcg_core/shell/facing.h"
-#include "vcg_core/shell/one_layer_contour.h"
+#include "vcg_core/shell/normal_orientation.h"
 #include "vcg_core/shell/outliers.h"
+#include "vcg_core/shell/point_triangulation.h"
 #include "vcg_core/shell/start_points.h"
-#include "vcg_core/shell/tangent_planes.h"
 
 namespace neuralmesh {
 namespace {
@@ -26,26 +31,28 @@ using vcg::Box3f;
 using vcg::Point3f;
 
 constexpr int kHighestValence = 12;  // leaves room for what the reduction and the learning add
-/// The automatic bound for holes that are filled, in spacings of the planes; and what is filled in any case,
-/// because it is a gap between points.
-constexpr float kGapSpacings = 6, kLeastGapSpacings = 3;
-/// Twice the width of a crack that is filled however long it is: the planes on its sides contradict each
-/// other, but there are points on both.
-constexpr float kCrackSpacings = 1.5F;
-/// Planes as thick as this lie on no surface.
-constexpr float kVolume = 0.6F;
+/// The automatic bound for holes that are filled, in radii of the points around; and what is filled in any
+/// case, because it is a gap between points.
+constexpr float kGapRadii = 6, kLeastGapRadii = 3;
+/// Twice the width of a crack that is filled however long it is: the points on its sides have normals that
+/// contradict each other.
+constexpr float kCrackRadii = 1.5F;
+/// A cloud with a larger share of clutter, or of curves, is no surface.
 constexpr double kMostWithoutSurface = 0.5;
-/// So many links between planes contradict each other along a cut; fewer do at rough places.
+/// So many links between points contradict each other along a cut; fewer do at rough places.
 constexpr std::size_t kManyContradictions = 20;
+/// Fewer consolidated points do not show what the surface is like: bays of its boundary, parts beside it.
+constexpr int kFewestConsolidated = 15000;
+/// The neighbours that normals are turned by.
+constexpr int kNeighbours = 12;
+/// Points belong to a vertex that is not farther than so many of its radii.
+constexpr float kBelongs = 3;
 
 /// A part with fewer points than options.component_share counts if it is a sheet: of at least so many points
-/// and planes, most of them thin. In a single view of 20,000 points a strip beside an occluded place has some
-/// hundred, and islands seen by two views have 50; clumps of outliers have fewer planes.
+/// and vertices. In a single view of 20,000 points a strip beside an occluded place has some hundred, and
+/// islands seen by two views have 50; clumps of outliers have no vertices.
 constexpr int kPointsOfSheet = 40;
-constexpr int kPlanesOfSheet = 20;
-constexpr float kThinPart = 0.35F, kThinShare = 0.85F;
-/// Noise makes all planes thick. Then thin is what is no thicker than so many times the median.
-constexpr float kThinOfMedian = 2, kThickestThin = 0.55F;
+constexpr int kVerticesOfSheet = 12;
 /// The least share of the points that such a part may have, times the vertices asked for. It takes three of
 /// them, so more small parts than that would leave none for the others.
 constexpr double kLeastPartVertices = 0.3;
@@ -77,25 +84,12 @@ int wanted_vertices(std::size_t points, const OpenStartOptions& options) {
     return std::min(options.wanted_vertices, static_cast<int>(points / OpenStartOptions::kPointsPerVertex));
 }
 
-/// \throws InputError if most planes are none
-void check_for_surface(const TangentPlanes& planes) {
-    long long all = 0, curve = 0, volume = 0;
-    for (const TangentPlane& plane : planes.planes) {
-        all += plane.points;
-        if (plane.on_curve) {
-            curve += plane.points;
-        } else if (plane.thickness > kVolume) {
-            volume += plane.points;
-        }
-    }
-    const double share = kMostWithoutSurface * static_cast<double>(all);
-    if (all == 0)
-        throw InputError(
-            "The cloud holds too few points for an open surface: choose surface 1 (closed), or add points.");
-    if (static_cast<double>(curve) > share)
+/// \throws InputError if most places show no surface
+void check_for_surface(const SurfaceSurvey& survey) {
+    if (survey.curves() > kMostWithoutSurface)
         throw InputError(
             "The points lie on curves, not on a surface: there is nothing to span an open surface over.");
-    if (static_cast<double>(volume) > share)
+    if (survey.clutter() > kMostWithoutSurface)
         throw InputError(
             "The points are scattered in space, or too noisy beside their spacing: an open surface cannot be found. "
             "Choose surface 1 (closed), or remove the scattered points first.");
@@ -125,94 +119,90 @@ Parts parts_of(const IndexedMesh<float>& mesh) {
     return parts;
 }
 
-/// A plane that no vertex of the contour lies on belongs to the part of one beside it.
-void spread_parts(const TangentPlanes& planes, std::vector<int>& part_of_plane) {
-    constexpr float kBeside = 3;  // spacings
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (std::size_t i = 0; i < part_of_plane.size(); ++i)
-            for (const int j : planes.around[i]) {
-                if (j < 0 || (part_of_plane[i] < 0) == (part_of_plane[at(j)] < 0)) continue;
-                const TangentPlane &a = planes.planes[i], &b = planes.planes[at(j)];
-                if ((a.centre - b.centre).Norm() > kBeside * std::min(a.spacing, b.spacing)) continue;
-                part_of_plane[i] = part_of_plane[at(j)] = std::max(part_of_plane[i], part_of_plane[at(j)]);
-                changed = true;
-            }
-    }
-}
-
-/// Outliers lie in clumps; a piece of surface is thin, wide and spans many cells.
-class PartsThatCount {
-public:
-    PartsThatCount(const TangentPlanes& planes, const std::vector<int>& part_of_plane, int parts,
-                   const Enough& enough)
-        : enough_(enough), sums_(at(parts)) {
-        const float thin = std::clamp(kThinOfMedian * planes.thickness, kThinPart, kThickestThin);
-        for (std::size_t i = 0; i < part_of_plane.size(); ++i) {
-            if (part_of_plane[i] < 0) continue;
-            Sum& sum = sums_[at(part_of_plane[i])];
-            const TangentPlane& plane = planes.planes[i];
-            sum.points += plane.points;
-            ++sum.planes;
-            sum.thin += plane.thickness < thin && !plane.on_curve ? 1 : 0;
-        }
-    }
-    bool operator()(int part) const {
-        const Sum& sum = sums_[at(part)];
-        return sum.points >= enough_.points ||
-               (sum.points >= enough_.on_sheet && sum.planes >= kPlanesOfSheet &&
-                static_cast<float>(sum.thin) >= kThinShare * static_cast<float>(sum.planes));
-    }
-
-private:
-    struct Sum {
-        long long points = 0;
-        int planes = 0;
-        int thin = 0;
-    };
-    const Enough enough_;
-    std::vector<Sum> sums_;
+/// The surface while it is put together, with the radius of the points at every vertex.
+struct Sheet {
+    IndexedMesh<float> mesh;
+    std::vector<Point3f> normals;
+    std::vector<float> radii, tolerances;  ///< as in ConsolidatedPoints
+    std::vector<Point3f> contradictions;  ///< where its two sides could not be told apart
 };
 
-/// Drops the parts of \p contour that do not count. \return for every plane whether its points are in what is
-/// kept
-std::vector<char> drop_small_parts(Contour& contour, const TangentPlanes& planes, const Enough& enough) {
-    IndexedMesh<float>& mesh = contour.mesh;
-    const Parts parts = parts_of(mesh);
-    std::vector<int> part_of_plane(planes.planes.size(), -1);
-    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-        part_of_plane[at(contour.plane[v])] = parts.of[static_cast<VertexId>(v)];
-    spread_parts(planes, part_of_plane);
-    const PartsThatCount counts(planes, part_of_plane, parts.count, enough);
-    // Crumbs beside a part that is kept are its fringe.
-    for (int& part : part_of_plane)
-        if (part >= 0 && !counts(part)) part = -1;
-    spread_parts(planes, part_of_plane);
-    std::vector<char> kept(part_of_plane.size(), 0);
-    for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = part_of_plane[i] >= 0 ? 1 : 0;
-    std::vector<Triangle> faces;
-    for (const Triangle& f : mesh.faces)
-        if (counts(parts.of[f[0]])) faces.push_back(f);
-    mesh.faces = std::move(faces);
-    return kept;
+std::vector<std::pair<int, int>> neighbours_of(const ConsolidatedPoints& points) {
+    const NearestPoints index(points.positions);
+    std::vector<std::pair<int, int>> pairs;
+    std::vector<NearestPoints::Neighbour> near;
+    for (NearestPoints::Place place = 0; place < index.size(); ++place) {
+        const std::size_t own = index.index(place);
+        index.nearest(place, kNeighbours, near);
+        for (const NearestPoints::Neighbour& n : near)
+            if (n.squared_distance < kBelongs * kBelongs * points.radii[own] * points.radii[own])
+                pairs.emplace_back(static_cast<int>(own), static_cast<int>(index.index(n.place)));
+    }
+    return pairs;
 }
 
-void drop_unused_vertices(Contour& contour) {
-    IndexedMesh<float>& mesh = contour.mesh;
-    std::vector<VertexId> moved(mesh.positions.size(), -1);
-    for (const Triangle& f : mesh.faces)
-        for (const VertexId v : f) moved[at(v)] = 0;
-    VertexId count = 0;
-    for (std::size_t v = 0; v < moved.size(); ++v) {
-        if (moved[v] < 0) continue;
-        mesh.positions[at(count)] = mesh.positions[v];
-        contour.plane[at(count)] = contour.plane[v];
-        moved[v] = count++;
+Sheet sheet_of(ConsolidatedPoints points, ThreadTeam& team) {
+    Sheet sheet;
+    sheet.contradictions = orient_normals(points.positions, neighbours_of(points), points.normals);
+    std::vector<int> source;
+    sheet.mesh = triangulation(points.positions, points.normals, points.radii, team, source);
+    for (const int i : source) {
+        sheet.normals.push_back(points.normals[at(i)]);
+        sheet.radii.push_back(points.radii[at(i)]);
+        sheet.tolerances.push_back(points.tolerances[at(i)]);
     }
-    mesh.positions.resize(at(count));
-    contour.plane.resize(at(count));
-    for (Triangle& f : mesh.faces)
-        for (VertexId& v : f) v = moved[at(v)];
+    return sheet;
+}
+
+/// The vertex of \p sheet that each point of the cloud belongs to, by place; -1: none. Clutter belongs to one
+/// only where it is as close as the noise there.
+std::vector<int> vertices_of_points(const Surveys& surveys, const Sheet& sheet, ThreadTeam& team) {
+    const NearestPoints& cloud = surveys.points().cloud;
+    constexpr int kAtATime = 1024;
+    std::vector<int> vertices(cloud.size(), -1);
+    if (sheet.mesh.positions.empty()) return vertices;
+    const NearestPoints index(sheet.mesh.positions);
+    parallel_for(static_cast<int>(cloud.size()), kAtATime, team, [&](int i) {
+        const Point3f& p = cloud.point(static_cast<NearestPoints::Place>(i));
+        const std::size_t nearest = index.index(index.nearest_to(p));
+        const Point3f way = p - sheet.mesh.positions[nearest];
+        if (way.Norm() > kBelongs * sheet.radii[nearest]) return;
+        if (surveys.surface().at(p).clutter && std::abs(way * sheet.normals[nearest]) > sheet.tolerances[nearest])
+            return;
+        vertices[at(i)] = static_cast<int>(nearest);
+    });
+    return vertices;
+}
+
+/// Drops the parts of \p sheet that have too few points. \return 1 for each point of \p cloud, in the order
+/// given, that belongs to nothing that is kept
+std::vector<std::uint8_t> drop_small_parts(const Surveys& surveys, const Enough& enough, ThreadTeam& team,
+                                           Sheet& sheet) {
+    const Parts parts = parts_of(sheet.mesh);
+    const std::vector<int> vertices = vertices_of_points(surveys, sheet, team);
+    std::vector<long long> points(at(parts.count), 0), size(at(parts.count), 0);
+    for (const int v : vertices)
+        if (v >= 0) ++points[at(parts.of[v])];
+    for (const int part : parts.of) ++size[at(part)];
+    const auto counts = [&](int part) {
+        return points[at(part)] >= enough.points ||
+               (points[at(part)] >= enough.on_sheet && size[at(part)] >= kVerticesOfSheet);
+    };
+    std::vector<Triangle>& faces = sheet.mesh.faces;
+    faces.erase(std::remove_if(faces.begin(), faces.end(),
+                               [&](const Triangle& f) { return !counts(parts.of[f[0]]); }),
+                faces.end());
+    std::vector<int> source(sheet.radii.size());
+    std::iota(source.begin(), source.end(), 0);
+    drop_unused_vertices(sheet.mesh, source);
+    for (std::size_t v = 0; v < source.size(); ++v) sheet.radii[v] = sheet.radii[at(source[v])];
+    const NearestPoints& cloud = surveys.points().cloud;
+    std::vector<std::uint8_t> out(cloud.size(), 0);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const int v = vertices[i];
+        out[cloud.index(static_cast<NearestPoints::Place>(i))] = v < 0 || !counts(parts.of[v]) ? 1 : 0;
+    }
+    return out;
 }
 
 double diameter_of(const std::vector<VertexId>& loop, const std::vector<Point3f>& positions) {
@@ -227,27 +217,24 @@ double diagonal_of(const std::vector<Point3f>& positions) {
     return static_cast<double>(box.Diag());
 }
 
-/// Fills holes up to options.close_holes_up_to, or where that is negative, up to kGapSpacings spacings of the
-/// planes around; cracks, which are long but narrow; and all, if none that is left is wider than
-/// options.closed_up_to.
-void fill_small_holes(Contour& contour, const TangentPlanes& planes, const OpenStartOptions& options,
-                      OpenStart& result) {
-    IndexedMesh<float>& mesh = contour.mesh;
+/// Fills holes up to options.close_holes_up_to, or where that is negative, up to kGapRadii radii; cracks,
+/// which are long but narrow; and all, if none that is left is wider than options.closed_up_to.
+void fill_small_holes(Sheet& sheet, const OpenStartOptions& options, OpenStart& result) {
+    IndexedMesh<float>& mesh = sheet.mesh;
     const auto loops = boundary_loops(static_cast<int>(mesh.positions.size()), mesh.faces);
     HoleFiller filler(mesh, loops, kHighestValence);
     std::vector<const std::vector<VertexId>*> left;
     double widest = 0;
     for (const std::vector<VertexId>& loop : loops) {
-        float spacing = 0;
-        for (const VertexId v : loop)
-            spacing += planes.planes[at(contour.plane[at(v)])].spacing / static_cast<float>(loop.size());
-        const double gap = static_cast<double>(kLeastGapSpacings * spacing);
+        float radius = 0;
+        for (const VertexId v : loop) radius += sheet.radii[at(v)] / static_cast<float>(loop.size());
+        const double gap = static_cast<double>(kLeastGapRadii * radius);
         const double most = options.close_holes_up_to >= 0 ? std::max(options.close_holes_up_to, gap)
-                                                           : static_cast<double>(kGapSpacings * spacing);
+                                                           : static_cast<double>(kGapRadii * radius);
         const double diameter = diameter_of(loop, mesh.positions);
         if (diameter <= most && filler.fill(loop)) {
             result.widest_filled = std::max(result.widest_filled, diameter);
-        } else if (!filler.fill(loop, kCrackSpacings * spacing)) {
+        } else if (!filler.fill(loop, kCrackRadii * radius)) {
             left.push_back(&loop);
             widest = std::max(widest, diameter);
         }
@@ -265,35 +252,22 @@ IndexedMesh<float> indexed(const Network& network) {
     return mesh;
 }
 
-/// The points outside of the lattice, or of planes that were dropped.
-std::vector<std::uint8_t> outliers_of(const TangentPlanes& planes, const std::vector<char>& kept) {
-    std::vector<std::uint8_t> result;
-    for (std::size_t i = 0; i < planes.cell_of.size(); ++i) {
-        const int cell = planes.cell_of[i];
-        if (cell >= 0 && kept[at(cell)] != 0) continue;
-        result.resize(planes.cell_of.size(), 0);
-        result[i] = 1;
-    }
-    return result;
+void set_outliers(std::vector<std::uint8_t> outliers, bool learn, OpenStart& result) {
+    const auto ignored = static_cast<std::size_t>(std::count(outliers.begin(), outliers.end(), 1));
+    if (ignored == 0) return;
+    result.warnings.push_back(
+        share_of_points(ignored, outliers.size()) + " show no surface, as leaves, points between two depths, or small groups do: " +
+        (learn ? "the start mesh leaves them out, but they are learned." : "they were left out."));
+    if (!learn) result.outliers = std::move(outliers);
 }
 
-/// Decides about the outliers, too: too many of them are none.
-void set_outliers(std::vector<std::uint8_t> outliers, long long points, long long least, bool learn,
+void warn_of_cuts(const TargetSpace& target, const std::vector<Point3f>& contradictions,
                   OpenStart& result) {
-    const long long ignored = std::count(outliers.begin(), outliers.end(), 1);
-    const bool too_many =
-        static_cast<double>(ignored) > OpenStartOptions::kMostOutliers * static_cast<double>(points);
-    if (!learn && !too_many) result.outliers = std::move(outliers);
-    const std::string sentence = warning_of_outliers(ignored, points, least, result.outliers.empty());
-    if (!sentence.empty()) result.warnings.push_back(sentence);
-}
-
-void warn_of_cuts(const TargetSpace& target, const TangentPlanes& planes, OpenStart& result) {
-    if (planes.contradictions.size() < kManyContradictions) return;
+    if (contradictions.size() < kManyContradictions) return;
     Point3f middle(0, 0, 0);
-    for (const Point3f& p : planes.contradictions)
-        middle += p / static_cast<float>(planes.contradictions.size());
-    const auto nearest = std::min_element(planes.contradictions.begin(), planes.contradictions.end(),
+    for (const Point3f& p : contradictions)
+        middle += p / static_cast<float>(contradictions.size());
+    const auto nearest = std::min_element(contradictions.begin(), contradictions.end(),
                                           [&](const Point3f& a, const Point3f& b) {
                                               return (a - middle).SquaredNorm() < (b - middle).SquaredNorm();
                                           });
@@ -334,42 +308,44 @@ void write_mesh(const Network& network, OpenStart& result) {
 }  // namespace
 
 OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options, Random& random,
-                     Progress& progress) {
+                     Progress& progress, const std::optional<SurveyedCloud>& given) {
     check(options);
-    progress(0.0, "Start mesh: fitting planes to the cloud");
+    progress(0.0, "Start mesh: surveying the cloud");
     const StartPoints start_points(target, options.samples, random);
     const std::vector<Point3f>& points = start_points.all();
     check_enough_points(points.size());
-    const Box3f box = main_box(points);
-    const TangentPlanes planes = tangent_planes(points, box, TangentPlaneOptions());
-    check_for_surface(planes);
+    ThreadTeam team(thread_count(options.threads));
+    const Surveys surveys(points, given, options.threads, team);
+    const SurfaceSurvey& surface = surveys.surface();
+    check_for_surface(surface);
 
-    progress(0.5, "Start mesh: building an open mesh");
-    Contour contour = one_layer_contour(box, planes);
+    progress(0.3, "Start mesh: thinning the cloud");
+    const int wanted = wanted_vertices(points.size(), options);
+    ConsolidatedPoints consolidated = consolidated_points(
+        surveys.points().cloud, surface, std::max(wanted, kFewestConsolidated), random, team);
+    progress(0.6, "Start mesh: building an open mesh");
+    Sheet sheet = sheet_of(std::move(consolidated), team);
     const Enough enough = enough_points(points.size(), options);
-    const std::vector<char> kept = drop_small_parts(contour, planes, enough);
-    drop_unused_vertices(contour);
-    if (contour.mesh.faces.empty())
+    std::vector<std::uint8_t> out = drop_small_parts(surveys, enough, team, sheet);
+    if (sheet.mesh.faces.empty())
         throw InputError(
             "No part of the cloud holds enough points for an open surface: choose surface 1 (closed), or add "
             "points.");
     OpenStart result;
-    fill_small_holes(contour, planes, options, result);
+    fill_small_holes(sheet, options, result);
 
     progress(0.8, "Start mesh: reducing it");
-    Network network(contour.mesh.positions, contour.mesh.faces);
-    simplify(network, wanted_vertices(points.size(), options));
+    Network network(sheet.mesh.positions, sheet.mesh.faces);
+    simplify(network, wanted);
     network.compact();
     orient_convex_side_outward(network);
     if (options.use_normals) result.faced_by_normals = orient_by_normals(network, target);
     write_mesh(network, result);
     result.fewest_vertices = fewest_vertices(std::move(network), options.target_vertices);
-    result.thickness = static_cast<double>(planes.thickness);
-    result.spacing = static_cast<double>(planes.step);
-    result.layers = layer_figures(points, planes);
-    set_outliers(outliers_of(planes, kept), static_cast<long long>(points.size()), enough.points,
-                 options.learn_outliers || target.is_exact(), result);
-    warn_of_cuts(target, planes, result);
+    result.spacing = surface.spacing();
+    result.layers = surface.layers();
+    set_outliers(std::move(out), options.learn_outliers || target.is_exact(), result);
+    warn_of_cuts(target, sheet.contradictions, result);
     progress(1.0, "Start mesh: done");
     return result;
 }

@@ -4,21 +4,23 @@
 // A start mesh of one layer, with boundary, for a cloud whose surface is open: a scan, a face, a facade.
 // Parts of the cloud that are closed come out closed.
 //
-// How: oriented tangent planes of the cloud (tangent_planes.h), contoured where there are points
-// (one_layer_contour.h); parts with too few points are dropped, small holes filled, and what remains is
+// How: the points are thinned to the scale on which they are a surface, put down on it
+// (consolidated_points.h), their normals turned to one side (normal_orientation.h), and triangulated
+// (point_triangulation.h). Parts with too few points are dropped, small holes filled, and what remains is
 // reduced by half-edge collapses, which keep its topology.
 #pragma once
 
 #include <vcg/space/point3.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/mesh/ring.h"
-#include "vcg_core/shell/two_layers.h"
+#include "vcg_core/target/surface_survey.h"
 #include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
@@ -45,14 +47,14 @@ struct OpenStartOptions {
     bool use_normals = false;
     /// Points drawn from a target that is a mesh.
     int samples = 100000;
+    /// 0: one per core. The mesh does not depend on it.
+    int threads = 0;
 
     static constexpr int kLeastPoints = 20;
     /// Fewer points do not tell where a vertex of the start mesh belongs.
     static constexpr int kPointsPerVertex = 4;
     /// Fewer points show no boundary.
     static constexpr int kLeastCloud = 100;
-    /// A cloud with a larger share of outliers is one of another kind than thought: they are to be learned.
-    static constexpr double kMostOutliers = 0.1;
 };
 
 /// An oriented 2-manifold with or without boundary (simplicial, valences up to 12) in the core's frame.
@@ -67,22 +69,21 @@ struct OpenStart {
     int faced_by_normals = 0;  ///< components with a boundary that face the side of the target's normals
     /// of the smallest sphere around the widest hole, as share of the mesh's diagonal
     double widest_loop = 0;
-    double spacing = 0;        ///< of the points, in the core's frame: the step of the lattice of cells
+    double spacing = 0;        ///< of the points, in the core's frame
     double widest_filled = 0;  ///< diameter of the widest hole that was filled
-    double thickness = 0;      ///< median of that of the tangent planes (tangent_planes.h)
     LayerFigures layers;       ///< whether most of the points lie on the two sides of a thin wall
-    /// 1 for each point of the cloud that is not to be learned; empty if there are none, too many, or if the
-    /// target has faces.
+    /// 1 for each point of the cloud that is not to be learned; empty if there are none, or if the target has
+    /// faces.
     std::vector<std::uint8_t> outliers;
     std::vector<std::string> warnings;  ///< full sentences
 };
 
 /// The open start mesh of \p target. The same target, options and state of \p random give the same mesh
-/// everywhere; random is drawn from only if the target has faces. \p progress gets fractions from 0 to 1; a
-/// wish to stop is not answered (0.2 s for 100,000 points).
-/// Memory: 16 bytes for each of up to 1,000,000 lattice nodes.
+/// everywhere. \p progress gets fractions from 0 to 1; a
+/// wish to stop is not answered (0.3 s for 100,000 points).
+/// \param given of the points of a target without faces; empty: made here
 /// \throws InputError if the points show no surface: they lie on curves, are scattered, too noisy, or too few
 OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options, Random& random,
-                     Progress& progress);
+                     Progress& progress, const std::optional<SurveyedCloud>& given = {});
 
 }  // namespace neuralmesh

@@ -183,14 +183,15 @@ void set_figures(const LatticeSurvey& survey, int level, StartMesh& result) {
     result.radius = result.resolution * std::sqrt(static_cast<double>(level));
 }
 
-Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace>& places) {
+Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace>& places,
+                       const SurfaceSurvey& surface) {
     Enclosure result;
     result.encloses_space = survey.chosen_region().encloses_space;
     result.sheet_share = sheet_share(survey.regions.front());
     result.widest_opening = survey.chosen_region().widest_opening;
     // Where the lattice shows no space, the points may lie on the two sides of walls too thin for it.
     const bool unclear = !result.encloses_space || result.sheet_share > kMostSheet;
-    result.walled = unclear && share_with_opposite_layer(places) > kWalled;
+    result.walled = unclear && share_with_opposite_layer(places, surface) > kWalled;
     result.encloses_space |= result.walled;
     return result;
 }
@@ -241,7 +242,7 @@ struct Shell::Examined {
 };
 
 Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress,
-             const CloudSurvey* survey) {
+             const std::optional<SurveyedCloud>& given) {
     check(options);
     progress(0.0, "Start mesh: measuring the density of the cloud");
     auto examined = std::make_unique<Examined>(target, options, random);
@@ -250,11 +251,10 @@ Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& ran
 
     progress(0.2, "Start mesh: counting components and handles");
     ThreadTeam team(thread_count(options.threads));
-    std::optional<CloudSurvey> made;
-    if (survey == nullptr) survey = &made.emplace(points, options.threads);
-    const std::vector<LayerPlace> places = layer_places(*survey, team);
+    const Surveys surveys(points, given, options.threads, team);
+    const std::vector<LayerPlace> places = layer_places(surveys.points(), team);
     examined->survey = survey_lattices(points, places, box, options);
-    examined->enclosure = enclosure_of(examined->survey, places);
+    examined->enclosure = enclosure_of(examined->survey, places, surveys.surface());
     examined_ = std::move(examined);
 }
 

@@ -44,7 +44,7 @@ struct HeightField {
     Matrix3d axes;  ///< columns: the normal, then two along the plane
     std::vector<Coefficients> at;
     std::vector<double> heights, gauss;
-    double flatness = 0;
+    double flatness = 0, width = 0;
     bool on_line = false;
 };
 
@@ -70,6 +70,7 @@ HeightField height_field(const std::vector<vcg::Point3f>& points, const Vector3d
     const Vector3d spread = solver.eigenvalues().cwiseMax(0);
     field.on_line = spread[1] <= kLine * spread[2];
     field.flatness = field.on_line ? 1 : std::sqrt(spread[0] / spread[1]);
+    field.width = std::sqrt(spread[1] / std::max(spread[2], 1e-300));
     for (const vcg::Point3f& p : points) {
         const Vector3d d = field.axes.transpose() * (to_eigen(p) - field.middle);
         field.heights.push_back(d[0]);
@@ -100,6 +101,16 @@ double robust_deviation(const HeightField& field, const Coefficients& quadric,
     return kDeviationPerMedian * median(residuals);
 }
 
+void set_moments(const std::vector<double>& residuals, LocalQuadric& result) {
+    double second = 0, fourth = 0;
+    for (const double r : residuals) {
+        second += r * r / static_cast<double>(residuals.size());
+        fourth += r * r * r * r / static_cast<double>(residuals.size());
+    }
+    result.spread = static_cast<float>(std::sqrt(second));
+    if (second > 0) result.kurtosis = static_cast<float>(fourth / (second * second));
+}
+
 }  // namespace
 
 LocalQuadric local_quadric(const std::vector<vcg::Point3f>& points, const vcg::Point3f& place, float radius) {
@@ -109,6 +120,7 @@ LocalQuadric local_quadric(const std::vector<vcg::Point3f>& points, const vcg::P
     const Vector3d centre = to_eigen(place);
     const HeightField field = height_field(points, centre, r);
     result.flatness = static_cast<float>(field.flatness);
+    result.width = static_cast<float>(field.width);
     if (field.on_line) return result;
     std::vector<double> weights = field.gauss, residuals;
     Coefficients quadric;
@@ -123,6 +135,7 @@ LocalQuadric local_quadric(const std::vector<vcg::Point3f>& points, const vcg::P
     const auto n = static_cast<double>(points.size());
     result.points = static_cast<int>(points.size());
     result.deviation = static_cast<float>(deviation / std::sqrt(std::max(1 - 6 / n, 0.2)));
+    set_moments(residuals, result);
     const Vector3d at = field.axes.transpose() * (centre - field.middle);
     const double u = at[1] / r, v = at[2] / r;
     const Vector3d foot(quadric.dot(monomials(u, v)), at[1], at[2]);

@@ -93,9 +93,13 @@ std::vector<LayerPlace> layer_places(const CloudSurvey& survey, ThreadTeam& team
         });
 }
 
-double share_with_opposite_layer(const std::vector<LayerPlace>& places) {
-    const auto with = std::count_if(places.begin(), places.end(),
-                                    [](const LayerPlace& place) { return place.on_thin_wall; });
+double share_with_opposite_layer(const std::vector<LayerPlace>& places, const SurfaceSurvey& survey) {
+    const auto with = std::count_if(places.begin(), places.end(), [&](const LayerPlace& place) {
+        if (!place.on_thin_wall) return false;
+        const SurveyedPlace& surveyed = survey.at(place.position);
+        return surveyed.two_layers() ||
+               std::max(place.above, place.below) > kLeastDeviations * surveyed.deviation;
+    });
     return places.empty() ? 0 : static_cast<double>(with) / static_cast<double>(places.size());
 }
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "vcg_core/base/thread_team.h"
-#include "vcg_core/target/cloud_survey.h"
+#include "vcg_core/target/surface_survey.h"
 
 namespace neuralmesh {
 
@@ -30,7 +30,8 @@ struct LayerPlace {
 /// Does not depend on the number of threads. O(places x 2,000 points).
 std::vector<LayerPlace> layer_places(const CloudSurvey& survey, ThreadTeam& team);
 
-/// The share of \p places that have an opposite layer at most some eight spacings away.
-double share_with_opposite_layer(const std::vector<LayerPlace>& places);
+/// The share of \p places that have an opposite layer at most some eight spacings away, and farther than the
+/// noise there lets tell.
+double share_with_opposite_layer(const std::vector<LayerPlace>& places, const SurfaceSurvey& survey);
 
 }  // namespace neuralmesh

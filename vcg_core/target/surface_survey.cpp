@@ -22,11 +22,8 @@ constexpr int kNeighbour = 7;
 constexpr float kPi = 3.1415927F;
 /// The median over so many places around takes out what is chance at one of them.
 constexpr int kPlacesAround = 12;
-/// The least radius in spacings, and in deviations: within five deviations the points have all heights, and no
-/// direction along the surface.
-constexpr float kLeastSpacings = 2, kLeastDeviations = 5;
-/// Neighbourhoods that are as thick as this beside their width show no surface.
-constexpr float kThick = 0.55F;
+/// Less wide than this the points lie on a line, as on one scan line, and more of them are needed.
+constexpr float kNarrow = 0.3F;
 /// A quadric takes the points within this many radii.
 constexpr float kSupport = 1.6F;
 /// The radius grows by a factor in steps, to eight times at most.
@@ -60,22 +57,31 @@ void find_radius(const NearestPoints& cloud, std::vector<Point3f>& near, Surveye
         const LocalQuadric quadric = local_quadric(near, place.position, kSupport * place.radius);
         place.deviation = quadric.holds() ? quadric.deviation : place.radius;
         place.normal = quadric.normal;
-        place.clutter = !quadric.holds() || kLeastDeviations * place.deviation > place.radius ||
-                        quadric.flatness > kThick;
+        place.kurtosis = quadric.kurtosis;
+        place.spread = quadric.spread;
+        place.on_curve = quadric.width < kNarrow;
+        place.clutter = !quadric.holds() || place.on_curve || quadric.flatness > kThick ||
+                        kLeastDeviations * place.deviation > place.radius;
     }
 }
 
-/// Replaces a number of every place by the median of the places around it.
+/// Replaces a number of every place by the median of the places around it that are no clutter: leaves above
+/// the ground say nothing of it. Where only clutter is around, by that of all.
 void smooth(const NearestPoints& index, std::vector<SurveyedPlace>& places, float SurveyedPlace::*number,
             ThreadTeam& team) {
     constexpr int kAtATime = 64;
+    constexpr std::size_t kFewest = 3;
     std::vector<float> smoothed(places.size());
     parallel_for(static_cast<int>(places.size()), kAtATime, team, [&](int i) {
         std::vector<NearestPoints::Neighbour> near;
         index.nearest(static_cast<Place>(i), kPlacesAround, near);
-        std::vector<float> values{places[static_cast<std::size_t>(i)].*number};
-        for (const NearestPoints::Neighbour& n : near) values.push_back(places[n.place].*number);
-        smoothed[static_cast<std::size_t>(i)] = median(std::move(values));
+        near.push_back({0, static_cast<Place>(i)});
+        std::vector<float> values, orderly;
+        for (const NearestPoints::Neighbour& n : near) {
+            values.push_back(places[n.place].*number);
+            if (!places[n.place].clutter) orderly.push_back(values.back());
+        }
+        smoothed[static_cast<std::size_t>(i)] = median(orderly.size() >= kFewest ? orderly : values);
     });
     for (std::size_t i = 0; i < places.size(); ++i) places[i].*number = smoothed[i];
 }
@@ -110,10 +116,23 @@ SurfaceSurvey::SurfaceSurvey(const CloudSurvey& survey, ThreadTeam& team)
     smooth(index_, places_, &SurveyedPlace::deviation, team);
 }
 
-double SurfaceSurvey::clutter() const {
-    const auto clutter =
-        std::count_if(places_.begin(), places_.end(), [](const SurveyedPlace& p) { return p.clutter; });
-    return static_cast<double>(clutter) / static_cast<double>(places_.size());
+double SurfaceSurvey::share(bool SurveyedPlace::*what) const {
+    const auto with = std::count_if(places_.begin(), places_.end(),
+                                    [&](const SurveyedPlace& p) { return p.*what; });
+    return static_cast<double>(with) / static_cast<double>(places_.size());
+}
+
+double SurfaceSurvey::median_of(float SurveyedPlace::*number) const {
+    std::vector<float> values;
+    for (const SurveyedPlace& p : places_) values.push_back(p.*number);
+    return static_cast<double>(median(std::move(values)));
+}
+
+LayerFigures SurfaceSurvey::layers() const {
+    const auto two = std::count_if(places_.begin(), places_.end(), [](const SurveyedPlace& p) { return p.two_layers(); });
+    const double sqrt_two = std::sqrt(2.0);  // together the layers are twice as dense as one
+    return {2 * static_cast<std::size_t>(two) > places_.size(), 2 * median_of(&SurveyedPlace::spread),
+            sqrt_two * spacing()};
 }
 
 }  // namespace neuralmesh

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/mesh/pinched_vertices.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "vcg_core/mesh/ring.h"
+
+namespace neuralmesh {
+namespace {
+
+/// The corners of the faces around each vertex, by vertex.
+struct Corners {
+    std::vector<int> first, corner;
+};
+
+Corners corners_of(const IndexedMesh<float>& mesh) {
+    Corners result;
+    result.first.assign(mesh.positions.size() + 1, 0);
+    for (const Triangle& f : mesh.faces)
+        for (const VertexId v : f) ++result.first[static_cast<std::size_t>(v) + 1];
+    for (std::size_t v = 1; v < result.first.size(); ++v) result.first[v] += result.first[v - 1];
+    result.corner.resize(3 * mesh.faces.size());
+    std::vector<int> next(result.first.begin(), result.first.end() - 1);
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+        for (std::size_t k = 0; k < 3; ++k)
+            result.corner[static_cast<std::size_t>(next[static_cast<std::size_t>(mesh.faces[f][k])]++)] =
+                static_cast<int>(3 * f + k);
+    return result;
+}
+
+/// The corners at one vertex, grouped by fans: faces that share edges at the vertex. Each fan begins with its
+/// first corner in the order of \p corners.
+std::vector<std::vector<int>> fans_of(const IndexedMesh<float>& mesh, std::vector<int> corners) {
+    const auto neighbour = [&mesh](int corner, std::size_t ahead) {
+        const auto c = static_cast<std::size_t>(corner);
+        return mesh.faces[c / 3][(c % 3 + ahead) % 3];
+    };
+    const auto share_an_edge = [&neighbour](int a, int b) {
+        return neighbour(a, 1) == neighbour(b, 2) || neighbour(a, 2) == neighbour(b, 1);
+    };
+    std::vector<std::vector<int>> fans;
+    while (!corners.empty()) {
+        std::vector<int> fan{corners.front()};
+        corners.erase(corners.begin());
+        for (std::size_t k = 0; k < fan.size(); ++k) {
+            const int member = fan[k];
+            const auto rest = std::stable_partition(corners.begin(), corners.end(),
+                                                    [&](int other) { return !share_an_edge(member, other); });
+            fan.insert(fan.end(), rest, corners.end());
+            corners.erase(rest, corners.end());
+        }
+        fans.push_back(std::move(fan));
+    }
+    return fans;
+}
+
+}  // namespace
+
+void split_pinched_vertices(IndexedMesh<float>& mesh, std::vector<int>& source) {
+    const Corners corners = corners_of(mesh);
+    for (std::size_t v = 0; v + 1 < corners.first.size(); ++v) {
+        const auto begin = corners.corner.begin();
+        const std::vector<std::vector<int>> fans =
+            fans_of(mesh, {begin + corners.first[v], begin + corners.first[v + 1]});
+        for (std::size_t fan = 1; fan < fans.size(); ++fan) {
+            const auto copy = static_cast<VertexId>(mesh.positions.size());
+            const vcg::Point3f position = mesh.positions[v];
+            mesh.positions.push_back(position);
+            source.push_back(source[v]);
+            for (const int corner : fans[fan]) {
+                const auto c = static_cast<std::size_t>(corner);
+                mesh.faces[c / 3][c % 3] = copy;
+            }
+        }
+    }
+}
+
+void drop_unused_vertices(IndexedMesh<float>& mesh, std::vector<int>& source) {
+    std::vector<VertexId> moved(mesh.positions.size(), -1);
+    for (const Triangle& f : mesh.faces)
+        for (const VertexId v : f) moved[static_cast<std::size_t>(v)] = 0;
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < moved.size(); ++v) {
+        if (moved[v] < 0) continue;
+        mesh.positions[count] = mesh.positions[v];
+        source[count] = source[v];
+        moved[v] = static_cast<VertexId>(count++);
+    }
+    mesh.positions.resize(count);
+    source.resize(count);
+    for (Triangle& f : mesh.faces)
+        for (VertexId& v : f) v = moved[static_cast<std::size_t>(v)];
+}
+
+}  // namespace neuralmesh
