@@ -20,8 +20,9 @@ using Place = NearestPoints::Place;
 /// A quadric takes the points within so many surveyed radii, and is fitted again around its own foot.
 constexpr float kSupport = 1.6F;
 constexpr int kPasses = 2;
-/// The survey tells its radius from the median of twelve places, so single ones are noisier.
-constexpr float kClutterFactor = 1.5F;
+/// Up to two and a half times the surveyed radius.
+constexpr int kSteps = 4;
+constexpr float kGrowth = 1.35F;
 
 /// The radius above which \p most points are left: discs thrown at random until no more fit cover .55 of a
 /// plane, so there are .7 of them per squared radius.
@@ -54,10 +55,35 @@ std::vector<Place> shuffled(Place count, Random& random) {
     return order;
 }
 
-/// Whether the points around a place are a surface on its surveyed scale.
-bool is_surface(const LocalQuadric& quadric, float radius) {
-    return quadric.holds() && quadric.flatness < kThick &&
-           kLeastDeviations * quadric.deviation < kClutterFactor * radius;
+/// A quadric on the least radius on which the points around a place are a surface.
+struct Grounded {
+    LocalQuadric quadric;  ///< does not hold where there is none
+    float radius = 0;
+};
+
+/// Fits a quadric, and again around its foot. \return false if the points are as thick as wide
+bool fit_twice(const NearestPoints& cloud, const Point3f& place, float radius, std::vector<Point3f>& near,
+               LocalQuadric& quadric) {
+    Point3f at = place;
+    for (int pass = 0; pass < kPasses; ++pass) {
+        cloud.within(at, kSupport * radius, kMostForQuadric, near);
+        quadric = local_quadric(near, at, kSupport * radius);
+        if (!quadric.holds()) return true;
+        if (quadric.flatness > kThick || (quadric.foot - at).Norm() > radius) return false;
+        at = quadric.foot;
+    }
+    return true;
+}
+
+/// From \p radius on: it grows where the points are sparser or noisier than the survey, a median, says.
+Grounded grounded(const NearestPoints& cloud, const Point3f& place, float radius) {
+    std::vector<Point3f> near;
+    Grounded result{LocalQuadric(), radius};
+    for (int step = 0; step < kSteps; ++step, result.radius *= kGrowth) {
+        if (!fit_twice(cloud, place, result.radius, near, result.quadric)) break;
+        if (result.quadric.holds() && kLeastDeviations * result.quadric.deviation <= result.radius) return result;
+    }
+    return {LocalQuadric(), radius};
 }
 
 }  // namespace
@@ -81,29 +107,20 @@ ConsolidatedPoints consolidated_points(const NearestPoints& cloud, const Surface
         });
     }
     std::sort(kept.begin(), kept.end());
-    std::vector<LocalQuadric> quadrics(kept.size());
+    std::vector<Grounded> found(kept.size());
     parallel_for(static_cast<int>(kept.size()), kAtATime, team, [&](int i) {
-        LocalQuadric& quadric = quadrics[static_cast<std::size_t>(i)];
         const Place place = kept[static_cast<std::size_t>(i)];
-        std::vector<Point3f> near;
-        Point3f at = cloud.point(place);
-        for (int pass = 0; pass < kPasses; ++pass) {
-            cloud.within(at, kSupport * surveyed[place], kMostForQuadric, near);
-            quadric = local_quadric(near, at, kSupport * surveyed[place]);
-            if (!quadric.holds() || (quadric.foot - at).Norm() > surveyed[place]) return;
-            at = quadric.foot;
-        }
+        found[static_cast<std::size_t>(i)] = grounded(cloud, cloud.point(place), surveyed[place]);
     });
     ConsolidatedPoints result;
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-        const float radius = surveyed[kept[i]];
-        if (!is_surface(quadrics[i], radius)) continue;
-        const float spacing = survey.at(quadrics[i].foot).spacing;
-        result.positions.push_back(quadrics[i].foot);
-        result.normals.push_back(quadrics[i].normal);
+    for (const auto& [quadric, radius] : found) {
+        if (!quadric.holds()) continue;
+        const float spacing = survey.at(quadric.foot).spacing;
+        result.positions.push_back(quadric.foot);
+        result.normals.push_back(quadric.normal);
         result.radii.push_back(std::max(least, radius));
         result.tolerances.push_back(
-            std::max(kLeastSpacings * spacing, kLeastDeviations * quadrics[i].deviation));
+            std::max(kLeastSpacings * spacing, kLeastDeviations * quadric.deviation));
     }
     return result;
 }

@@ -46,10 +46,10 @@ NodesByLevel nodes_by_level(const PerNode<SquaredRadius>& clearance, int levels)
 }
 
 /// Disjoint sets of nodes by union-find, with the number of points in each.
-class DisjointSets {
+class CountedSets {
 public:
     /// Each node is a set of its own.
-    explicit DisjointSets(const PerNode<std::uint32_t>& counts) : parent_(counts.size()), points_(counts) {
+    explicit CountedSets(const PerNode<std::uint32_t>& counts) : parent_(counts.size()), points_(counts) {
         std::iota(parent_.begin(), parent_.end(), 0);
     }
 
@@ -105,7 +105,7 @@ private:
 
     Neighbours neighbours_;
     const LinkTopology& link_topology_ = LinkTopology::table();
-    DisjointSets sets_;
+    CountedSets sets_;
     long long min_points_;
     LevelTopology topology_;
 };

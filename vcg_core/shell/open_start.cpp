@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/base/text.h"
 #include "vcg_core/mesh/boundary_loops.h"
@@ -22,6 +23,7 @@
 #include "vcg_core/shell/normal_orientation.h"
 #include "vcg_core/shell/outliers.h"
 #include "vcg_core/shell/point_triangulation.h"
+#include "vcg_core/shell/short_handles.h"
 #include "vcg_core/shell/start_points.h"
 
 namespace neuralmesh {
@@ -43,6 +45,8 @@ constexpr double kMostWithoutSurface = 0.5;
 constexpr std::size_t kManyContradictions = 20;
 /// Fewer consolidated points do not show what the surface is like: bays of its boundary, parts beside it.
 constexpr int kFewestConsolidated = 15000;
+/// Handles around or through which a loop of so many edges leads are chance: a tube of six edges is hardly one.
+constexpr int kEdgesOfHandle = 8;
 /// The neighbours that normals are turned by.
 constexpr int kNeighbours = 12;
 /// Points belong to a vertex that is not farther than so many of its radii.
@@ -52,7 +56,7 @@ constexpr float kBelongs = 3;
 /// and vertices. In a single view of 20,000 points a strip beside an occluded place has some hundred, and
 /// islands seen by two views have 50; clumps of outliers have no vertices.
 constexpr int kPointsOfSheet = 40;
-constexpr int kVerticesOfSheet = 12;
+constexpr int kVerticesOfSheet = 3;
 /// The least share of the points that such a part may have, times the vertices asked for. It takes three of
 /// them, so more small parts than that would leave none for the others.
 constexpr double kLeastPartVertices = 0.3;
@@ -104,18 +108,12 @@ struct Parts {
 Parts parts_of(const IndexedMesh<float>& mesh) {
     const int n = static_cast<int>(mesh.positions.size());
     Parts parts{PerVertex<int>(n, -1), 0};
-    PerVertex<VertexId> root(n);
-    std::iota(root.begin(), root.end(), 0);
-    const auto find = [&](VertexId v) {
-        while (root[v] != v) v = root[v] = root[root[v]];
-        return v;
-    };
-    for (const Triangle& f : mesh.faces)
-        for (const VertexId v : {f[1], f[2]}) {
-            const VertexId a = find(f[0]), b = find(v);
-            root[std::max(a, b)] = std::min(a, b);
-        }
-    for (VertexId v = 0; v < n; ++v) parts.of[v] = find(v) == v ? parts.count++ : parts.of[find(v)];
+    DisjointSets sets(n);
+    for (const Triangle& f : mesh.faces) {
+        sets.join(f[0], f[1]);
+        sets.join(f[0], f[2]);
+    }
+    for (VertexId v = 0; v < n; ++v) parts.of[v] = sets.find(v) == v ? parts.count++ : parts.of[sets.find(v)];
     return parts;
 }
 
@@ -146,12 +144,20 @@ Sheet sheet_of(ConsolidatedPoints points, ThreadTeam& team) {
     sheet.contradictions = orient_normals(points.positions, neighbours_of(points), points.normals);
     std::vector<int> source;
     sheet.mesh = triangulation(points.positions, points.normals, points.radii, team, source);
+    cut_short_handles(sheet.mesh, kEdgesOfHandle, source);
     for (const int i : source) {
         sheet.normals.push_back(points.normals[at(i)]);
         sheet.radii.push_back(points.radii[at(i)]);
         sheet.tolerances.push_back(points.tolerances[at(i)]);
     }
     return sheet;
+}
+
+/// Replaces \p values by those at \p source.
+void take(std::vector<float>& values, const std::vector<int>& source) {
+    std::vector<float> taken;
+    for (const int i : source) taken.push_back(values[at(i)]);
+    values = std::move(taken);
 }
 
 /// The vertex of \p sheet that each point of the cloud belongs to, by place; -1: none. Clutter belongs to one
@@ -195,7 +201,7 @@ std::vector<std::uint8_t> drop_small_parts(const Surveys& surveys, const Enough&
     std::vector<int> source(sheet.radii.size());
     std::iota(source.begin(), source.end(), 0);
     drop_unused_vertices(sheet.mesh, source);
-    for (std::size_t v = 0; v < source.size(); ++v) sheet.radii[v] = sheet.radii[at(source[v])];
+    take(sheet.radii, source);
     const NearestPoints& cloud = surveys.points().cloud;
     std::vector<std::uint8_t> out(cloud.size(), 0);
     for (std::size_t i = 0; i < vertices.size(); ++i) {

@@ -98,7 +98,8 @@ double share_with_opposite_layer(const std::vector<LayerPlace>& places, const Su
         if (!place.on_thin_wall) return false;
         const SurveyedPlace& surveyed = survey.at(place.position);
         return surveyed.two_layers() ||
-               std::max(place.above, place.below) > kLeastDeviations * surveyed.deviation;
+               (!surveyed.clutter &&
+                std::max(place.above, place.below) > kLeastDeviations * surveyed.deviation);
     });
     return places.empty() ? 0 : static_cast<double>(with) / static_cast<double>(places.size());
 }

@@ -31,7 +31,7 @@ struct LayerPlace {
 std::vector<LayerPlace> layer_places(const CloudSurvey& survey, ThreadTeam& team);
 
 /// The share of \p places that have an opposite layer at most some eight spacings away, and farther than the
-/// noise there lets tell.
+/// noise there lets tell. Clutter has none.
 double share_with_opposite_layer(const std::vector<LayerPlace>& places, const SurfaceSurvey& survey);
 
 }  // namespace neuralmesh
