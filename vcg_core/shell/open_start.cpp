@@ -345,6 +345,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     simplify(network, wanted);
     network.compact();
     orient_convex_side_outward(network);
+    orient_to_viewer(network, target.frame().inside({0, 0, 0}));
     if (options.use_normals) result.faced_by_normals = orient_by_normals(network, target);
     write_mesh(network, result);
     result.fewest_vertices = fewest_vertices(std::move(network), options.target_vertices);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 #include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/soundness.h"
@@ -62,6 +63,20 @@ TEST(GoingOn, KeepsBoundariesHandlesAndComponents) {
     Settings closed = going_on(600);
     closed.surface = kClosedSurface;
     EXPECT_TRUE(soundness::has_warning(learn(torus, closed, start), "because the start layer is"));
+}
+
+TEST(GoingOn, FacesTheSideThatTheStartFaces) {
+    const TargetSpace square = targets::target_of(shapes::plane_cloud(8000));
+    for (const bool down : {false, true}) {
+        Shape start = shapes::grid(10, 10);
+        if (down)
+            for (auto& f : start.faces) std::swap(f[1], f[2]);
+        const NeuralMesh mesh = learn(square, going_on(400), start);
+        for (const auto& f : mesh.faces) {
+            const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(f[k])]; };
+            ASSERT_EQ(((at(1) - at(0)) ^ (at(2) - at(0)))[2] < 0, down);
+        }
+    }
 }
 
 TEST(GoingOn, MayNotHaveMoreVerticesThanTheTarget) {

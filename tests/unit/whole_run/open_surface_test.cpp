@@ -51,6 +51,29 @@ TEST(OpenSurface, ComesOutWithItsTopologyAndExactlyAsManyVertices) {
     }
 }
 
+/// The share of the area that faces up.
+double share_upward(const NeuralMesh& mesh) {
+    double up = 0, all = 0;
+    for (const Triangle& f : mesh.faces) {
+        const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(f[k])]; };
+        const vcg::Point3d across = (at(1) - at(0)) ^ (at(2) - at(0));
+        all += across.Norm();
+        up += across[2] > 0 ? across.Norm() : 0;
+    }
+    return up / all;
+}
+
+// The origin lies in the square, above it and below it.
+TEST(OpenSurface, FacesTheOriginIfThatIsBesideItElseUp) {
+    for (const double height : {0.0, -3.0, 3.0}) {
+        Cloud cloud = shapes::plane_cloud(8000);
+        Random random(2);
+        for (vcg::Point3d& p : cloud) p[2] = height + 0.002 * shapes::signed_unit(random);
+        const NeuralMesh mesh = learn(cloud, settings_with(500, kOpenSurface));
+        EXPECT_NEAR(share_upward(mesh), height > 0 ? 0 : 1, 0.01) << height;
+    }
+}
+
 TEST(OpenSurface, IsTheStartOfWallsWithGapsAsWideAsTheyAreThick) {
     const Cloud cloud = open_shapes::tube_with_gap(66000);
     for (const int surface : {kAutomatic, kClosedSurface}) {
