@@ -90,8 +90,10 @@ StopReason Learner::grow(Progress& progress) {
         });
         if (!forced_ && schedule_.collapse_due(signals())) half_edge_collapse();
         memory_order_.update_while_growing();
-        if (state_.options.learn_topology && stages.pass(network().vertex_count()))
-            learn_topology(stages.over());
+        PartOf standing(progress, done, done);
+        if (state_.options.learn_topology && stages.pass(network().vertex_count()) &&
+            !learn_topology(stages.over(), standing))
+            return StopReason::cancelled;
 
         if (!forced_ && schedule_.stalled(signals())) force_growth();
         if (schedule_.exhausted(signals())) return StopReason::cut_short;
@@ -164,29 +166,32 @@ int Learner::half_edge_collapse() {
     return removed;
 }
 
-int Learner::learn_topology(bool last) {
+bool Learner::learn_topology(bool last, Progress& progress) {
     constexpr int kMostRounds = 4;
     const TopologyRules& rules = state_.options.topology_rules;
     ThreadTeam team(thread_count(state_.options.threads));
     const auto evidence = [&] { return topology_evidence(network(), target_, topology_random_, team); };
     state_.network.orient_outward();  // a tetrahedron may turn inside out as a whole while it is small
     int changes = 0;
+    bool goes_on = true;
     auto now = evidence();
-    for (int round = 0; now && round < kMostRounds; ++round) {
+    for (int round = 0; now && goes_on && round < kMostRounds; ++round) {
         const int before = changes;
-        for (const Reconnection& change : neuralmesh::topology_changes(network(), target_, *now, rules, team))
+        for (const Reconnection& change :
+             neuralmesh::topology_changes(network(), target_, *now, rules, team, progress))
             changes += state_.exchange_faces(change.gone, change.added) ? 1 : 0;
+        goes_on = report("Learning", 0, progress);
         if (changes == before) break;
         now = evidence();
     }
-    if (now && last && std::isfinite(rules.opens_from)) {
+    if (now && last && goes_on && std::isfinite(rules.opens_from)) {
         for (const std::vector<Triangle>& gone : membranes_to_open(*now, rules))
             changes += state_.exchange_faces(gone, {}) ? 1 : 0;
         mends_notches_ = !state_.to_the_letter() && network().boundary_loop_count() > 0;
     }
     if (changes > 0) batch_.reassign_slabs();
     topology_changes_ += changes;
-    return changes;
+    return goes_on;
 }
 
 void Learner::force_growth() {

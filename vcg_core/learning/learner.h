@@ -67,8 +67,9 @@ public:
     int half_edge_collapse();
     /// Takes membranes out of the network, see topology/learned_topology.h, in rounds until none gains any
     /// more, four at most, and if this is the \p last time opens those that LearnerOptions::topology_rules
-    /// allow. Does nothing if the network has a boundary. \return the number of changes. O(signals x log n)
-    int learn_topology(bool last);
+    /// allow. Does nothing if the network has a boundary. \return false if \p progress asked to stop.
+    /// O(signals x log n)
+    bool learn_topology(bool last, Progress& progress);
     /// Learns settling_signals(per_vertex, vertices) signals without splits and collapses, so that counters
     /// describe the final connectivity. In the end mends faces along boundaries, which keeps all vertices.
     /// \param observe false: no crease measure. It needs fixed connectivity, so pass false before growth.

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "vcg_core/topology/membranes.h"
 
@@ -25,12 +24,29 @@ constexpr int kPlaces = 3;
 }  // namespace
 
 Corridors::Corridors(const Surface& surface, const FaceSignals& support,
-                     const std::vector<vcg::Point3f>& points, float edge)
+                     const std::vector<vcg::Point3f>& points, float edge, const PerFace<int>& membrane_of)
     : surface_(surface),
       support_(support),
       edge_(edge),
       points_per_signal_(static_cast<float>(points.size()) / static_cast<float>(support.signals.size())),
-      near_(points) {}
+      near_(points),
+      region_(surface.face_count(), -1) {
+    for (int first = 0; first < surface.face_count(); ++first) {
+        if (region_[first] >= 0 || membrane_of[first] >= 0) continue;
+        std::vector<int> way{first};
+        region_[first] = first;
+        for (std::size_t i = 0; i < way.size(); ++i)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Triangle& face = surface.faces[way[i]];
+                const int next = face_beyond(surface, way[i], k);
+                if (next < 0 || region_[next] >= 0 || membrane_of[next] >= 0 ||
+                    !is_clear(face[k], face[(k + 1) % 3]))
+                    continue;
+                region_[next] = first;
+                way.push_back(next);
+            }
+    }
+}
 
 float Corridors::spacing(float signals_per_area) const {
     return 1 / std::sqrt(signals_per_area * points_per_signal_);
@@ -53,33 +69,19 @@ bool Corridors::is_clear(VertexId a, VertexId b) const {
     return false;
 }
 
-std::vector<int> Corridors::clear_faces(const Rim& rim) const {
-    std::vector<int> found;
+std::set<int> Corridors::regions_at(const Rim& rim) const {
+    std::set<int> found;
     for (std::size_t i = 0; i < rim.size(); ++i) {
         const VertexId a = rim[i], b = rim[(i + 1) % rim.size()];
         const int face = corner_of_edge(surface_, a, b).face;
-        if (face >= 0 && is_clear(a, b)) found.push_back(face);
+        if (face >= 0 && region_[face] >= 0 && is_clear(a, b)) found.insert(region_[face]);
     }
     return found;
 }
 
-bool Corridors::lead(const Rim& from, const Rim& to, const PerFace<char>& left_out) const {
-    const std::vector<int> ends = clear_faces(to);
-    const std::set<int> goal(ends.begin(), ends.end());
-    std::vector<int> way = clear_faces(from);
-    std::set<int> seen(way.begin(), way.end());
-    for (std::size_t i = 0; i < way.size(); ++i) {
-        if (goal.count(way[i]) != 0) return true;
-        const Triangle& face = surface_.faces[way[i]];
-        for (std::size_t k = 0; k < 3; ++k) {
-            const int next = face_beyond(surface_, way[i], k);
-            if (next < 0 || left_out[next] != 0 || seen.count(next) != 0) continue;
-            if (!is_clear(face[k], face[(k + 1) % 3])) continue;
-            seen.insert(next);
-            way.push_back(next);
-        }
-    }
-    return false;
+bool Corridors::lead(const Rim& from, const Rim& to) const {
+    const std::set<int> here = regions_at(from), there = regions_at(to);
+    return std::any_of(here.begin(), here.end(), [&](int region) { return there.count(region) != 0; });
 }
 
 float Corridors::widest(const std::vector<int>& faces) const {

@@ -70,13 +70,13 @@ std::optional<TopologyEvidence> topology_evidence(const Network& network, const 
 
 std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target,
                                            const TopologyEvidence& now, const TopologyRules& rules,
-                                           ThreadTeam& team) {
+                                           ThreadTeam& team, Progress& progress) {
     const std::vector<vcg::Point3f> points =
         points_for_handles(target, rules, now.support, static_cast<std::size_t>(network.vertex_count()));
     std::vector<Reconnection> chosen;
     std::set<int> used;
     for (Reconnection& change : find_reconnections(network, now.surface, now.support, now.membranes, points,
-                                                   rules.from_tetrahedron, team)) {
+                                                   rules.from_tetrahedron, team, progress)) {
         const auto taken = [&](int membrane) { return used.count(membrane) != 0; };
         if (std::any_of(change.membranes.begin(), change.membranes.end(), taken)) continue;
         used.insert(change.membranes.begin(), change.membranes.end());

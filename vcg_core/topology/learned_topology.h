@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "vcg_core/base/progress.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/mesh/network.h"
@@ -67,7 +68,7 @@ std::optional<TopologyEvidence> topology_evidence(const Network& network, const 
 /// in two of them. They do not depend on the number of threads.
 std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target,
                                            const TopologyEvidence& now, const TopologyRules& rules,
-                                           ThreadTeam& team);
+                                           ThreadTeam& team, Progress& progress);
 
 /// The faces of each certain membrane with one rim that is wide enough to become a hole, and faces no other.
 std::vector<std::vector<Triangle>> membranes_to_open(const TopologyEvidence& now, const TopologyRules& rules);

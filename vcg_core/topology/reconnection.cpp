@@ -4,17 +4,19 @@
 #include "vcg_core/topology/reconnection.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/mesh/face_tree.h"
 #include "vcg_core/topology/corridors.h"
 #include "vcg_core/topology/membrane_groups.h"
-#include "vcg_core/topology/necks.h"
 #include "vcg_core/topology/rim_parts.h"
 #include "vcg_core/topology/surroundings.h"
 
@@ -39,85 +41,136 @@ constexpr float kLeastShare = 0.4F, kLeastGain = 8;
 /// and more.
 constexpr float kLeastRadius = 2.4F;
 
+/// A membrane that more others face is left alone: points that fill space, as leaves do, make membranes all
+/// around, and any surface in their place is as wrong.
+constexpr std::size_t kMostFacing = 8;
+/// What a search may cost: so many faces looked at for each face of the mesh. Small meshes from a tetrahedron
+/// are full of membranes: up to 90,000 are looked at where there are 600 to 6,000.
+constexpr std::int64_t kVisitsPerFace = 8, kFewestFaces = 12000;
+/// Candidates between two looks at the budget and the progress. A number that depends on the threads would
+/// let them change the result.
+constexpr int kBetweenLooks = 32;
+
 /// A membrane, and the same one and more rings wider.
 using Wide = std::vector<Membrane>;
+/// Membranes that may go together, by their indices.
+using Group = std::vector<int>;
 
-/// Several threads may search at the same time.
 class Search {
 public:
     Search(const Network& network, const Surface& surface, const FaceSignals& support,
-           const std::vector<vcg::Point3f>& points, ThreadTeam& team)
-        : network_(network),
-          surface_(surface),
-          tree_(surface, team),
-          support_(support),
-          points_(points),
-          edge_(mean_edge_length(surface)) {}
+           const std::vector<Membrane>& membranes, const std::vector<vcg::Point3f>& points, ThreadTeam& team,
+           Progress& progress);
 
-    Wide widened(const Membrane& membrane) const;
-    /// The best reconnection of a membrane, if it gains enough; else one without faces.
-    Reconnection of_one(const Wide& membrane) const;
-    /// The same of two membranes, joined.
-    Reconnection of_pair(const Wide& a, const Wide& b) const;
-    /// The same of two membranes as one: the sides of a web, and the faces between them along its free edge.
-    Reconnection of_web(const Wide& a, const Wide& b) const;
-    /// The same of three and more.
-    Reconnection of_group(const std::vector<const Wide*>& group) const;
-    bool may_join(const Membrane& a, const Membrane& b) const;
+    /// Every certain membrane, and every two that face each other and are no clutter.
+    std::vector<Group> candidates();
+    /// The best reconnections of \p groups that gain enough, as far as the budget goes.
+    std::vector<Reconnection> reconnections(const std::vector<Group>& groups);
+    float missing(const Group& group) const;
     float edge() const { return edge_; }
 
 private:
-    Reconnection best(const std::vector<const Membrane*>& membranes) const;
+    /// Calls \p find(i, found) for every i below \p count, on several threads, while the search may go on.
+    template <class Found, class Find>
+    std::vector<Found> collect(int count, const Find& find);
+    void widen(Wide& wide) const;
+    /// The membranes that \p membrane may be joined with.
+    Group facing(int membrane) const;
+    /// The best reconnection of membranes, joined if they are several, if it gains enough; else one without
+    /// faces.
+    Reconnection of(const Group& group) const;
+    /// The same of two membranes as one: the sides of a web, and the faces between them along its free edge.
+    Reconnection of_web(const Wide& a, const Wide& b) const;
+    Reconnection best(const std::vector<Membrane>& membranes) const;
     /// Makes a membrane of \p faces. \return false if it cannot be completed.
     bool make(Membrane& membrane, std::vector<int> faces) const;
-    bool widen(Membrane& membrane) const;
     const Corridors& corridors() const;
     /// Whether the points know a handle, or one component, where the rims of the same part are joined.
-    bool knows_handle(const std::vector<const Membrane*>& membranes, const std::vector<Rim>& rims,
-                      const RimParts& parts, const PerFace<char>& out) const;
+    bool knows_handle(const std::vector<Membrane>& membranes, const std::vector<Rim>& rims,
+                      const RimParts& parts) const;
 
     const Network& network_;
     const Surface& surface_;
     FaceTree tree_;
     const FaceSignals& support_;
     const std::vector<vcg::Point3f>& points_;
+    ThreadTeam& team_;
+    Progress& progress_;
     float edge_;
+    Indexed<Wide> wide_;
+    PerFace<int> membrane_of_;  ///< -1: none
+    bool stopped_ = false;
+    mutable std::atomic<std::int64_t> visits_{0};  ///< faces looked at
     mutable std::mutex mutex_;  // std::call_once() needs a newer C library than hosts of 2022 bring
     mutable std::unique_ptr<const Corridors> corridors_;  ///< made when they are first asked for
 };
 
+Search::Search(const Network& network, const Surface& surface, const FaceSignals& support,
+               const std::vector<Membrane>& membranes, const std::vector<vcg::Point3f>& points,
+               ThreadTeam& team, Progress& progress)
+    : network_(network),
+      surface_(surface),
+      tree_(surface, team),
+      support_(support),
+      points_(points),
+      team_(team),
+      progress_(progress),
+      edge_(mean_edge_length(surface)),
+      membrane_of_(surface.face_count(), -1) {
+    for (const Membrane& membrane : membranes) {
+        for (const int f : membrane.faces) membrane_of_[f] = wide_.size();
+        wide_.push_back({membrane});
+    }
+}
+
+template <class Found, class Find>
+std::vector<Found> Search::collect(int count, const Find& find) {
+    const std::int64_t most = kVisitsPerFace * std::max<std::int64_t>(surface_.face_count(), kFewestFaces);
+    std::vector<Found> all;
+    for (int begin = 0; begin < count && !stopped_ && visits_ < most; begin += kBetweenLooks) {
+        const int some = std::min(kBetweenLooks, count - begin);
+        for (Found& found : parallel_collect<Found>(
+                 some, 1, team_, [&](int i, std::vector<Found>&part) { find(begin + i, part); }))
+            all.push_back(std::move(found));
+        stopped_ = !progress_(0, "Learning: exchanging faces without points");
+    }
+    return all;
+}
+
 const Corridors& Search::corridors() const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!corridors_) corridors_ = std::make_unique<const Corridors>(surface_, support_, points_, edge_);
+    if (!corridors_)
+        corridors_ = std::make_unique<const Corridors>(surface_, support_, points_, edge_, membrane_of_);
     return *corridors_;
 }
 
-bool Search::knows_handle(const std::vector<const Membrane*>& membranes, const std::vector<Rim>& rims,
-                          const RimParts& parts, const PerFace<char>& out) const {
+bool Search::knows_handle(const std::vector<Membrane>& membranes, const std::vector<Rim>& rims,
+                          const RimParts& parts) const {
     const Corridors& corridors = this->corridors();
     float width = 0;
-    for (const Membrane* membrane : membranes) width += corridors.widest(membrane->faces);
+    for (const Membrane& membrane : membranes) width += corridors.widest(membrane.faces);
     if (width < kLeastRadius * static_cast<float>(membranes.size())) return false;
     for (const std::vector<std::size_t>& part : parts)
         for (std::size_t i = 0; i < part.size(); ++i)
             for (std::size_t k = i + 1; k < part.size(); ++k)
-                if (corridors.lead(rims[part[i]], rims[part[k]], out)) return false;
+                if (corridors.lead(rims[part[i]], rims[part[k]])) return false;
     return true;
 }
 
 /// Of the membranes together; one that joins them, if they are several. Its gain is the lowest number if
 /// there is none.
-Reconnection Search::best(const std::vector<const Membrane*>& membranes) const {
+Reconnection Search::best(const std::vector<Membrane>& membranes) const {
     Reconnection found;
     found.gain = std::numeric_limits<float>::lowest();
     std::vector<int> faces;
     std::vector<Rim> rims;
     std::vector<std::size_t> membrane_of;
     for (std::size_t m = 0; m < membranes.size(); ++m) {
-        faces.insert(faces.end(), membranes[m]->faces.begin(), membranes[m]->faces.end());
-        rims.insert(rims.end(), membranes[m]->rims.begin(), membranes[m]->rims.end());
+        faces.insert(faces.end(), membranes[m].faces.begin(), membranes[m].faces.end());
+        rims.insert(rims.end(), membranes[m].rims.begin(), membranes[m].rims.end());
         membrane_of.resize(rims.size(), m);
     }
+    visits_ += static_cast<std::int64_t>(faces.size());
     if (rims.size() > (membranes.size() > 2 ? kMostOfGroup : kMostRims)) return found;
     PerFace<char> out(surface_.face_count(), 0);
     for (const int f : faces) {
@@ -133,10 +186,10 @@ Reconnection Search::best(const std::vector<const Membrane*>& membranes) const {
         if (handle && points_.empty()) continue;
         std::vector<Triangle> added = patches_of(parts, rims, surface_.positions, edges);
         if (added.empty() || !network_.can_exchange_faces(found.gone, added)) continue;
-        if (!around) around.emplace(surface_, tree_, support_, faces, edge_);
+        if (!around) visits_ += around.emplace(surface_, tree_, support_, faces, edge_).face_count();
         const float gain = around->gain(added);
         if (gain <= found.gain) continue;
-        if (handle && gain >= kLeastGain && !knows_handle(membranes, rims, parts, out)) continue;
+        if (handle && gain >= kLeastGain && !knows_handle(membranes, rims, parts)) continue;
         found.gain = gain;
         found.added = std::move(added);
     }
@@ -150,45 +203,53 @@ bool Search::make(Membrane& membrane, std::vector<int> faces) const {
     return complete(surface_, support_, membrane);
 }
 
-/// Adds the faces around.
-bool Search::widen(Membrane& membrane) const {
-    std::vector<int> faces;
-    for (const int f : membrane.faces)
-        for (const VertexId v : surface_.faces[f])
-            faces.insert(faces.end(), surface_.faces_around(v).begin(), surface_.faces_around(v).end());
-    return make(membrane, std::move(faces));
+/// Adds the same membrane with the faces around, and around those.
+void Search::widen(Wide& wide) const {
+    while (wide.size() <= kWidest) {
+        std::vector<int> faces;
+        for (const int f : wide.back().faces)
+            for (const VertexId v : surface_.faces[f])
+                faces.insert(faces.end(), surface_.faces_around(v).begin(), surface_.faces_around(v).end());
+        Membrane next;
+        if (!make(next, std::move(faces))) return;
+        wide.push_back(std::move(next));
+    }
 }
 
-Wide Search::widened(const Membrane& membrane) const {
-    Wide wide{membrane};
-    for (Membrane next = membrane; wide.size() <= kWidest && widen(next);) wide.push_back(next);
-    return wide;
+Group Search::facing(int membrane) const {
+    const Membrane& from = wide_[membrane].front();
+    Eigen::AlignedBox3f box;
+    for (const int f : from.faces)
+        for (const VertexId v : surface_.faces[f]) box.extend(surface_.positions[v]);
+    const Vector3 reach = Vector3::Constant(kReach * edge_);
+    std::set<int> near;
+    tree_.for_overlapping({box.min() - reach, box.max() + reach},
+                          [&](int f) { near.insert(membrane_of_[f]); });
+    Group found;
+    for (const int other : near)
+        if (other >= 0 && other != membrane && face_each_other(surface_, from, wide_[other].front(), edge_))
+            found.push_back(other);
+    return found;
 }
 
 /// The least gain of a reconnection of membranes that lack so many signals.
 float least_gain(float missing) { return std::max(kLeastGain, kLeastShare * missing); }
 
-Reconnection Search::of_one(const Wide& membrane) const {
-    const float least = least_gain(membrane.front().missing);
+Reconnection Search::of(const Group& group) const {
     Reconnection found;
-    for (std::size_t ring = 0; ring < membrane.size() && ring < kWidest; ++ring) {
-        Reconnection next = best({&membrane[ring]});
-        if (next.gain >= least && next.gain > found.gain) found = std::move(next);
+    found.gain = std::numeric_limits<float>::lowest();
+    for (std::size_t ring = 0; ring <= kWidest; ++ring) {
+        std::vector<Membrane> membranes;
+        for (const int i : group) membranes.push_back(wide_[i][std::min(ring, wide_[i].size() - 1)]);
+        if (group.size() > 2 && !take_apart(surface_, support_, membranes)) continue;
+        Reconnection next = best(membranes);
+        if (next.gain > found.gain) found = std::move(next);
+        if (group.size() == 2 && found.gain < kHopeless) break;
     }
+    if (found.gain < least_gain(missing(group))) found = Reconnection();
+    if (found.added.empty() && group.size() == 2) found = of_web(wide_[group[0]], wide_[group[1]]);
+    found.membranes = group;
     return found;
-}
-
-Reconnection Search::of_pair(const Wide& a, const Wide& b) const {
-    const float least = least_gain(a.front().missing + b.front().missing);
-    Reconnection found = best({&a.front(), &b.front()});
-    if (found.gain < kHopeless) return {};
-    for (const Membrane& wide_a : a)
-        for (const Membrane& wide_b : b) {
-            if (&wide_a == &a.front() && &wide_b == &b.front()) continue;
-            Reconnection next = best({&wide_a, &wide_b});
-            if (next.gain > found.gain) found = std::move(next);
-        }
-    return found.gain >= least ? found : Reconnection();
 }
 
 std::vector<int> faces_of(const Membrane& a, const Membrane& b) {
@@ -214,59 +275,53 @@ Reconnection Search::of_web(const Wide& a, const Wide& b) const {
     for (std::size_t ring = 1; ring < std::min(a.size(), b.size()); ++ring) {
         Membrane web;
         if (!make(web, faces_of(a[ring], b[ring])) || web.rims.size() != 1) continue;
-        Reconnection next = best({&web});
+        Reconnection next = best({web});
         if (next.gain >= least && next.gain > found.gain) found = std::move(next);
     }
     return found;
 }
 
-Reconnection Search::of_group(const std::vector<const Wide*>& group) const {
-    float missing = 0;
-    for (const Wide* wide : group) missing += wide->front().missing;
-    Reconnection found;
-    found.gain = std::numeric_limits<float>::lowest();
-    for (std::size_t ring = 0; ring <= kWidest; ++ring) {
-        std::vector<Membrane> membranes;
-        for (const Wide* wide : group) membranes.push_back((*wide)[std::min(ring, wide->size() - 1)]);
-        if (!take_apart(surface_, support_, membranes)) continue;
-        std::vector<const Membrane*> all;
-        for (const Membrane& membrane : membranes) all.push_back(&membrane);
-        Reconnection next = best(all);
-        if (next.gain > found.gain) found = std::move(next);
+float Search::missing(const Group& group) const {
+    float sum = 0;
+    for (const int i : group) sum += wide_[i].front().missing;
+    return sum;
+}
+
+std::vector<Group> Search::candidates() {
+    const Indexed<Group> facing(
+        collect<Group>(wide_.size(), [&](int a, auto& all) { all.push_back(this->facing(a)); }));
+    const auto is_clutter = [&](int a) { return facing[a].size() > kMostFacing; };
+    std::vector<Group> found;
+    for (int a = 0; a < facing.size(); ++a) {
+        if (is_clutter(a)) continue;
+        if (wide_[a].front().certain) found.push_back({a});
+        for (const int b : facing[a])
+            if (b > a && b < facing.size() && !is_clutter(b) &&
+                wide_[a].front().rims.size() + wide_[b].front().rims.size() <= kMostRims)
+                found.push_back({a, b});
     }
-    return found.gain >= least_gain(missing) ? found : Reconnection();
+    return found;
 }
 
-bool Search::may_join(const Membrane& a, const Membrane& b) const {
-    return a.rims.size() + b.rims.size() <= kMostRims && face_each_other(surface_, a, b, edge_);
+std::vector<Reconnection> Search::reconnections(const std::vector<Group>& groups) {
+    std::set<int> used;
+    for (const Group& group : groups) used.insert(group.begin(), group.end());
+    const std::vector<int> members(used.begin(), used.end());
+    parallel_for(static_cast<int>(members.size()), 1, team_,
+                 [&](int i) { widen(wide_[members[static_cast<std::size_t>(i)]]); });
+    return collect<Reconnection>(static_cast<int>(groups.size()),
+                                 [&](int i, std::vector<Reconnection>& found) {
+                                     Reconnection change = of(groups[static_cast<std::size_t>(i)]);
+                                     if (!change.added.empty()) found.push_back(std::move(change));
+                                 });
 }
 
-void keep(Reconnection change, const std::vector<int>& of, std::vector<Reconnection>& found) {
-    if (change.added.empty()) return;
-    change.membranes = of;
-    found.push_back(std::move(change));
-}
-
-/// Of the membrane \p a alone, and with each of those after it.
-void search_from(int a, const Search& search, const Indexed<Wide>& wide, std::vector<Reconnection>& found) {
-    if (wide[a].front().certain) keep(search.of_one(wide[a]), {a}, found);
-    for (int b = a + 1; b < wide.size(); ++b) {
-        if (!search.may_join(wide[a].front(), wide[b].front())) continue;
-        Reconnection change = search.of_pair(wide[a], wide[b]);
-        if (change.added.empty()) change = search.of_web(wide[a], wide[b]);
-        keep(std::move(change), {a, b}, found);
-    }
-}
-
-/// Without those that lack the least signals, as long as the others gain too little with them.
-void search_group(std::vector<int> group, const Search& search, const Indexed<Wide>& wide,
-                  std::vector<Reconnection>& found) {
-    for (const std::size_t before = found.size(); group.size() >= 3 && found.size() == before;
-         group.pop_back()) {
-        std::vector<const Wide*> of;
-        for (const int i : group) of.push_back(&wide[i]);
-        keep(search.of_group(of), group, found);
-    }
+/// \p groups, each followed by what is left of it without those that lack the least signals, down to three.
+std::vector<Group> with_smaller(const std::vector<Group>& groups) {
+    std::vector<Group> all;
+    for (Group group : groups)
+        for (; group.size() >= 3; group.pop_back()) all.push_back(group);
+    return all;
 }
 
 }  // namespace
@@ -275,26 +330,17 @@ std::vector<Reconnection> find_reconnections(const Network& network, const Surfa
                                              const FaceSignals& support,
                                              const std::vector<Membrane>& membranes,
                                              const std::vector<vcg::Point3f>& points, bool in_groups,
-                                             ThreadTeam& team) {
-    const std::vector<Membrane> necks = find_necks(network, surface, support);
-    std::vector<Reconnection> found;
-    if (membranes.empty() && necks.empty()) return found;
-    const Search search(network, surface, support, points, team);
-    const auto collect = [&](std::size_t count, const auto& find) {
-        for (Reconnection& change : parallel_collect<Reconnection>(static_cast<int>(count), 1, team, find))
-            found.push_back(std::move(change));
-    };
-    Indexed<Wide> wide(static_cast<int>(membranes.size()));
-    parallel_for(wide.size(), 1, team,
-                 [&](int i) { wide[i] = search.widened(membranes[static_cast<std::size_t>(i)]); });
-    collect(membranes.size(), [&](int i, auto& all) { search_from(i, search, wide, all); });
-    collect(necks.size(), [&](int i, auto& all) {
-        keep(search.of_one(search.widened(necks[static_cast<std::size_t>(i)])), {}, all);
-    });
-    std::vector<std::vector<int>> groups;
-    if (in_groups) groups = membrane_groups(surface, membranes, search.edge(), kMostOfGroup);
-    collect(groups.size(),
-            [&](int i, auto& all) { search_group(groups[static_cast<std::size_t>(i)], search, wide, all); });
+                                             ThreadTeam& team, Progress& progress) {
+    if (membranes.empty()) return {};
+    Search search(network, surface, support, membranes, points, team, progress);
+    std::vector<Group> groups = search.candidates();
+    if (in_groups)
+        for (Group& group : with_smaller(membrane_groups(surface, membranes, search.edge(), kMostOfGroup)))
+            groups.push_back(std::move(group));
+    // The budget is for those that lack the most signals.
+    std::stable_sort(groups.begin(), groups.end(),
+                     [&](const Group& a, const Group& b) { return search.missing(a) > search.missing(b); });
+    std::vector<Reconnection> found = search.reconnections(groups);
     std::stable_sort(found.begin(), found.end(),
                      [](const Reconnection& a, const Reconnection& b) { return a.gain > b.gain; });
     return found;

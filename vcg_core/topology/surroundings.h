@@ -24,6 +24,8 @@ public:
     /// costs up to 1 by its squared distance, and a face costs the signals that it lacks.
     /// O(faces around + signals near the patch x faces of the patch)
     float gain(const std::vector<Triangle>& patch) const;
+    /// Of the faces around.
+    int face_count() const { return static_cast<int>(kept_.size()); }
 
 private:
     class PatchBoxes;

@@ -45,7 +45,7 @@ struct Tube {
         ThreadTeam team(1);
         support =
             face_signals(network, surface, fair_sample(target, target.positions().size(), random), team);
-        ends.assign(surface.face_count(), 0);
+        ends.assign(surface.face_count(), -1);
         for (int f = 0; f < surface.face_count(); ++f) {
             const Triangle& face = surface.faces[f];
             const auto on = [&](const Rim& rim) {
@@ -53,7 +53,7 @@ struct Tube {
                     return std::find(rim.begin(), rim.end(), v) != rim.end();
                 });
             };
-            ends[f] = static_cast<char>(on(rims[0]) || on(rims[1]));
+            ends[f] = on(rims[0]) || on(rims[1]) ? 0 : -1;
         }
     }
     static Surface closed(Network& network, const std::vector<Rim>& rims) {
@@ -67,14 +67,17 @@ struct Tube {
     std::vector<int> faces(bool of_ends) const {
         std::vector<int> found;
         for (int f = 0; f < surface.face_count(); ++f)
-            if ((ends[f] != 0) == of_ends) found.push_back(f);
+            if ((ends[f] == 0) == of_ends) found.push_back(f);
         return found;
     }
-    Corridors corridors() const { return {surface, support, target.positions(), mean_edge_length(surface)}; }
+    Corridors corridors(const PerFace<int>& membrane_of) const {
+        return {surface, support, target.positions(), mean_edge_length(surface), membrane_of};
+    }
     /// Both ways.
-    bool lead(const PerFace<char>& left_out) const {
-        const bool there = corridors().lead(rims[0], rims[1], left_out);
-        EXPECT_EQ(there, corridors().lead(rims[1], rims[0], left_out));
+    bool lead(const PerFace<int>& membrane_of) const {
+        const Corridors ways = corridors(membrane_of);
+        const bool there = ways.lead(rims[0], rims[1]);
+        EXPECT_EQ(there, ways.lead(rims[1], rims[0]));
         return there;
     }
 
@@ -83,7 +86,7 @@ struct Tube {
     std::vector<Rim> rims;
     Surface surface;
     FaceSignals support;
-    PerFace<char> ends;
+    PerFace<int> ends;  ///< 0: at an end
 };
 
 bool nowhere(double /*turn*/, double /*height*/) { return false; }
@@ -116,7 +119,7 @@ TEST(Corridors, MayWind) {
 
 TEST(Corridors, DoNotLeadOverFacesThatAreLeftOut) {
     const Tube tube(side_without(along));
-    PerFace<char> left_out = tube.ends;
+    PerFace<int> left_out = tube.ends;
     for (const int f : tube.faces(false)) {
         const auto& s = tube.surface;
         const Vector3 middle = (s.corner(f, 0) + s.corner(f, 1) + s.corner(f, 2)) / 3;
@@ -128,9 +131,9 @@ TEST(Corridors, DoNotLeadOverFacesThatAreLeftOut) {
 
 TEST(Corridors, TheWidestPlaceIsMeasuredInSpacings) {
     const Tube dense(side_without(nowhere)), sparse(side_without(nowhere, 200));
-    EXPECT_GE(dense.corridors().widest(dense.faces(true)), 9.9F);
-    EXPECT_LT(dense.corridors().widest(dense.faces(false)), 3);
-    const float width = sparse.corridors().widest(sparse.faces(true));
+    EXPECT_GE(dense.corridors(dense.ends).widest(dense.faces(true)), 9.9F);
+    EXPECT_LT(dense.corridors(dense.ends).widest(dense.faces(false)), 3);
+    const float width = sparse.corridors(sparse.ends).widest(sparse.faces(true));
     EXPECT_GT(width, 3);  // the ends are as wide as about five spacings
     EXPECT_LT(width, 9);
 }

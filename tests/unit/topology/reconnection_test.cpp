@@ -87,12 +87,13 @@ Network plugged(const TargetSpace& target) {
 /// Applies what topology_changes() finds until it finds no more. \return the number of changes
 int learn(Network& network, const TargetSpace& target, int threads = 1, const TopologyRules& rules = {}) {
     ThreadTeam team(threads);
+    NoProgress progress;
     Random random(1);
     int changes = 0;
     for (int round = 0; round < 10; ++round) {
         const auto now = topology_evidence(network, target, random, team);
         if (!now) return changes;
-        const auto found = topology_changes(network, target, *now, rules, team);
+        const auto found = topology_changes(network, target, *now, rules, team, progress);
         if (found.empty()) return changes;
         for (const Reconnection& change : found) {
             if (!network.can_exchange_faces(change.gone, change.added)) continue;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Necks are found where a handle that few points support is as thin as a triangle or a quadrangle.
-#include "vcg_core/topology/necks.h"
+// Membranes that are found on a handle as thin as a triangle.
+#include "vcg_core/topology/membranes.h"
 
 #include <gtest/gtest.h>
 
@@ -39,14 +39,6 @@ struct Arc {
                 shape.faces.push_back({id(h, i), id(h + 1, i), id(h + 1, i + 1)});
                 shape.faces.push_back({id(h, i), id(h + 1, i + 1), id(h, i + 1)});
             }
-    }
-    /// With a triangle on either side instead of the faces between two hoops, of three vertices each.
-    void close_between(int hoop, int next) {
-        const auto in = [&](int vertex) { return vertex / around_ == hoop || vertex / around_ == next; };
-        const auto between = [&](const std::array<int, 3>& f) { return in(f[0]) && in(f[1]) && in(f[2]); };
-        shape.faces.erase(std::remove_if(shape.faces.begin(), shape.faces.end(), between), shape.faces.end());
-        shape.faces.push_back({3 * hoop + 2, 3 * hoop + 1, 3 * hoop});
-        shape.faces.push_back({3 * next, 3 * next + 1, 3 * next + 2});
     }
     bool is_thin(int vertex) const { return vertex >= kFirstThin * around_; }
     bool is_in_middle(int vertex) const { return vertex / around_ == kFirstThin + 1; }
@@ -89,48 +81,11 @@ struct Found {
         Random random(1);
         ThreadTeam team(1);
         evidence = topology_evidence(network, target, random, team);
-        necks = find_necks(network, evidence->surface, evidence->support);
     }
     TargetSpace target;
     Network network;
     std::optional<TopologyEvidence> evidence;
-    std::vector<Membrane> necks;
 };
-
-TEST(Necks, AreTubesWithFewPointsAndAreCut) {
-    for (const int around : {3, 4}) {
-        Found found(Arc(around), 0.3);
-        ASSERT_EQ(found.network.genus(), 1);
-        EXPECT_TRUE(found.evidence->membranes.empty()) << "then a neck would not be needed";
-        ASSERT_EQ(found.necks.size(), 1U);
-        EXPECT_EQ(found.necks.front().faces.size(), 4U * static_cast<unsigned>(around));
-        EXPECT_EQ(found.necks.front().rims.size(), 2U);
-        ThreadTeam team(1);
-        const auto changes = topology_changes(found.network, found.target, *found.evidence, {}, team);
-        ASSERT_EQ(changes.size(), 1U);
-        found.network.exchange_faces(changes.front().gone, changes.front().added);
-        EXPECT_EQ(found.network.validate(), "");
-        EXPECT_EQ(found.network.genus(), 0);
-        EXPECT_EQ(found.network.component_count(), 1);
-        EXPECT_EQ(found.network.boundary_loop_count(), 0);
-    }
-}
-
-TEST(Necks, AreNotThoseWithPoints) {
-    for (const int around : {3, 4}) EXPECT_TRUE(Found(Arc(around), 1).necks.empty());
-}
-
-TEST(Necks, AreNotThickerThanAQuadrangle) { EXPECT_TRUE(Found(Arc(5), 0.3).necks.empty()); }
-
-// Without the chain there would be two components.
-TEST(Necks, BelongToHandles) {
-    Arc arc(3);
-    arc.close_between(17, 18);
-    const Found found(arc, 0.3);
-    ASSERT_EQ(found.network.validate(), "");
-    ASSERT_EQ(found.network.genus(), 0);
-    EXPECT_TRUE(found.necks.empty());
-}
 
 TEST(Membranes, AreCertainIfTheyAreTubesHoweverThin) {
     const Found found(Arc(3), 0);
