@@ -26,4 +26,8 @@ inline int number_of(const char* name, int otherwise, int low) {
     return otherwise;
 }
 
+/// True in `./run.sh test full`, which sets NEURALMESH_FULL: all that a test can vary is to be tried.
+/// Otherwise the variations that find most.
+inline bool full() { return std::getenv("NEURALMESH_FULL") != nullptr; }
+
 }  // namespace neuralmesh::environment

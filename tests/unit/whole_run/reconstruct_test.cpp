@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Whole runs: exact number of vertices, manifold, orientation, progress, stop reasons; also with settings and
-// clouds chosen to break them.
+// Whole runs: what is learned, progress, stop reasons.
 #include "vcg_core/reconstruct.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
-#include "vcg_core/learn_and_fit.h"
-#include "vcg_core/learning/learner.h"
+#include "tests/unit/support/watched_runs.h"
 
 namespace neuralmesh {
 namespace {
@@ -24,60 +22,9 @@ using shapes::Cloud;
 using soundness::expect_exact;
 using soundness::expect_sound;
 using soundness::target_of;
-
-/// Checks fractions and texts; asks to stop after \p patience calls.
-class Watch : public Progress {
-public:
-    explicit Watch(int patience = 1 << 30) : patience_(patience) {}
-
-    bool operator()(double fraction, const char* text) override {
-        EXPECT_GE(fraction, 0);
-        EXPECT_LE(fraction, 1);
-        if (fraction < last_) ++steps_back;
-        last_ = fraction;
-        EXPECT_GT(std::string(text).size(), 3U);
-        return ++calls <= patience_;
-    }
-
-    int calls = 0;
-    int steps_back = 0;
-
-private:
-    int patience_;
-    double last_ = 0;
-};
-
-NeuralMesh learn(const Cloud& cloud, const Settings& settings) {
-    NoProgress progress;
-    return reconstruct(target_of(cloud), settings, progress);
-}
-
-Settings with_target(int vertices, int start_mesh = kShell) {
-    Settings settings;
-    settings.target_vertices = vertices;
-    settings.start_mesh = start_mesh;
-    return settings;
-}
-
-TEST(Reconstruct, GivesTheExactCountAsAClosedOutwardSurface) {
-    const std::pair<const char*, Cloud> clouds[] = {{"sphere", shapes::sphere_cloud(3000)},
-                                                    {"noisy sphere", shapes::sphere_cloud(3000, 0.05)},
-                                                    {"torus", shapes::torus_cloud(3000)},
-                                                    {"cube", shapes::box_cloud(3000)},
-                                                    {"slab", shapes::box_cloud(3000, {1, 0.7, 0.1})},
-                                                    {"needle", shapes::box_cloud(3000, {1, 0.05, 0.05})}};
-    for (const auto& cloud : clouds) {
-        for (const int start : {kShell, kTetrahedron}) {
-            for (const int vertices : {4, 17, 100, 501}) {
-                SCOPED_TRACE(testing::Message() << cloud.first << ", start " << start << ", " << vertices);
-                const Settings settings = with_target(vertices, start);
-                const NeuralMesh mesh = learn(cloud.second, settings);
-                expect_exact(mesh, settings);
-                EXPECT_GT(referee::enclosed_volume(mesh), 0);
-            }
-        }
-    }
-}
+using watched_runs::learn;
+using watched_runs::Watch;
+using watched_runs::with_target;
 
 TEST(Reconstruct, LiesOnTheSphereItLearned) {
     for (const int start : {kShell, kTetrahedron}) {
@@ -132,25 +79,6 @@ TEST(Reconstruct, ProgressNeverGoesBack) {
         reconstruct(target_of(shapes::torus_cloud(5000)), with_target(1500, start), watch);
         EXPECT_GT(watch.calls, 50);
         EXPECT_EQ(watch.steps_back, 0) << "of " << watch.calls;
-    }
-}
-
-TEST(Reconstruct, CanBeCancelledAtAnyTime) {
-    // From the shell, the network grows to more than 300 vertices.
-    const TargetSpace target = target_of(shapes::sphere_cloud(12000));
-    for (const int start : {kShell, kTetrahedron}) {
-        Watch all;
-        reconstruct(target, with_target(300, start), all);
-        for (int patience = 0; patience < all.calls; patience += std::max(1, all.calls / 30)) {
-            SCOPED_TRACE(testing::Message()
-                         << "start " << start << ", after " << patience << " of " << all.calls);
-            Watch watch(patience);
-            const NeuralMesh mesh = reconstruct(target, with_target(300, start), watch);
-            EXPECT_EQ(mesh.report.stop_reason, StopReason::cancelled);
-            EXPECT_LE(watch.calls, patience + 3);
-            EXPECT_LE(mesh.report.vertices, 300);
-            expect_sound(mesh);
-        }
     }
 }
 
@@ -270,113 +198,6 @@ TEST(Reconstruct, SelectsByOneMeasureAndShowsTheOther) {
         }
     }
     EXPECT_EQ(learn(box, with_target(300)).features, crease.features) << "not the default";
-}
-
-std::vector<std::pair<const char*, Cloud>> hostile_clouds() {
-    Cloud two = shapes::sphere_cloud(1000);
-    for (std::size_t i = 0; i < two.size(); ++i)
-        two[i] = two[i] * 0.001 + vcg::Point3d(i % 2 == 0 ? 1 : -1, 0, 0);
-    Cloud outlier = shapes::sphere_cloud(1000);
-    outlier.push_back({1e5, 0, 0});
-    Cloud doubled = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
-    for (int i = 0; i < 8; ++i) doubled.insert(doubled.end(), doubled.begin(), doubled.end());
-    Cloud cross;
-    for (int i = -50; i <= 50; ++i)
-        for (int axis = 0; axis < 3; ++axis) {
-            vcg::Point3d p(0, 0, 0);
-            p[axis] = i;
-            cross.push_back(p);
-        }
-    Cloud thin = shapes::box_cloud(1000, {1, 1e-5, 1e-5});
-    return {{"four points", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
-            {"four points in a plane", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}},
-            {"plane", shapes::plane_cloud(1000)},
-            {"two small clusters", two},
-            {"one far outlier", outlier},
-            {"five points, many times", doubled},
-            {"three crossing lines", cross},
-            {"almost a line", thin}};
-}
-
-TEST(Reconstruct, HostileCloudsStillGiveTheExactCount) {
-    for (const auto& cloud : hostile_clouds()) {
-        for (const int start : {kShell, kTetrahedron}) {
-            SCOPED_TRACE(testing::Message() << cloud.first << ", start " << start);
-            const Settings settings = with_target(200, start);
-            expect_exact(learn(cloud.second, settings), settings);
-        }
-    }
-}
-
-std::vector<std::pair<const char*, Settings>> hostile_settings() {
-    std::vector<std::pair<const char*, Settings>> result;
-    const auto add = [&](const char* name, const auto& change) {
-        Settings settings = with_target(150, kTetrahedron);
-        settings.fit_to_points = false;
-        change(settings);
-        result.emplace_back(name, settings);
-    };
-    add("no maturity", [](Settings& s) { s.min_wins_per_split = 0; });
-    add("collapse at every chance", [](Settings& s) { s.signals_per_collapse = 1; });
-    add("both", [](Settings& s) { s.min_wins_per_split = 0, s.signals_per_collapse = 1; });
-    add("split at every signal", [](Settings& s) { s.signals_per_split = 1; });
-    add("split and collapse at every signal",
-        [](Settings& s) { s.signals_per_split = s.signals_per_collapse = 1; });
-    add("maturity beyond reach", [](Settings& s) {
-        s.min_wins_per_split = 1000;
-        s.signals_per_split = 1;
-    });
-    add("no counter decay", [](Settings& s) { s.counter_decay = 1; });
-    add("fastest counter decay", [](Settings& s) { s.counter_decay = 0.01; });
-    add("the last signal alone", [](Settings& s) { s.normalization_window = 1; });
-    add("no feature memory", [](Settings& s) { s.feature_decay = 0; });
-    add("winner jumps onto the signal", [](Settings& s) { s.learning_rate = 1; });
-    add("no smoothing", [](Settings& s) { s.smoothing_steps = 0; });
-    add("strongest smoothing", [](Settings& s) { s.smoothing_steps = 100, s.smoothing_rate = 1; });
-    add("no settling", [](Settings& s) { s.settling_signals_per_vertex = 0; });
-    add("signal counter to the letter",
-        [](Settings& s) { s.utility_counter = kSignalCount, s.min_wins_per_split = 0; });
-    return result;
-}
-
-/// Growth of the learner alone ends within Learner::signal_bound().
-void expect_run_within_bound(const Cloud& cloud, Settings settings) {
-    settings.settling_signals_per_vertex = 0;
-    const TargetSpace target = target_of(cloud);
-    constexpr float kA = 0.1F;
-    Learner learner(target, learner_options_from(settings),
-                    Network({{kA, kA, kA}, {-kA, -kA, kA}, {-kA, kA, -kA}, {kA, -kA, -kA}},
-                            {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}));
-    NoProgress progress;
-    EXPECT_EQ(learner.run(0, progress), StopReason::target_reached);
-    EXPECT_EQ(learner.network().vertex_count(), settings.target_vertices);
-    EXPECT_EQ(learner.network().validate(), "");
-    EXPECT_LE(learner.signals(), learner.signal_bound());
-}
-
-TEST(Reconstruct, HostileSettingsEndWithinTheBound) {
-    const auto all = hostile_clouds();
-    const std::pair<const char*, Cloud> clouds[] = {
-        all[0], all[1], all[3], all[6], {"sphere", shapes::sphere_cloud(3000)}};
-    for (const auto& settings : hostile_settings()) {
-        for (const auto& cloud : clouds) {
-            SCOPED_TRACE(testing::Message() << settings.first << ", " << cloud.first);
-            expect_run_within_bound(cloud.second, settings.second);
-        }
-    }
-}
-
-TEST(Reconstruct, HostileSettingsGiveSoundMeshes) {
-    const Cloud cloud = shapes::torus_cloud(2000);
-    for (const auto& entry : hostile_settings()) {
-        for (const int start : {kShell, kTetrahedron}) {
-            SCOPED_TRACE(testing::Message() << entry.first << ", start " << start);
-            Settings settings = entry.second;
-            settings.start_mesh = start;
-            settings.fit_to_points = true;
-            expect_exact(learn(cloud, settings), settings);
-        }
-    }
 }
 
 }  // namespace

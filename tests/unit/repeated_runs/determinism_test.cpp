@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The same input gives the same bytes, whatever the threads; position and scale of the cloud do not matter.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "tests/unit/support/environment.h"
+#include "tests/unit/support/run_variants.h"
+#include "tests/unit/support/soundness.h"
+#include "vcg_core/reconstruct.h"
+
+namespace neuralmesh {
+namespace {
+
+using run_variants::learn;
+using run_variants::variants;
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+void expect_same(const NeuralMesh& a, const NeuralMesh& b) {
+    EXPECT_TRUE(same_bytes(a.positions, b.positions));
+    EXPECT_TRUE(same_bytes(a.faces, b.faces));
+    EXPECT_TRUE(same_bytes(a.counters, b.counters));
+    EXPECT_TRUE(same_bytes(a.features, b.features));
+    EXPECT_EQ(a.report.signals, b.report.signals);
+    EXPECT_EQ(a.report.rms_error, b.report.rms_error);
+    EXPECT_EQ(a.report.mean_counter, b.report.mean_counter);
+}
+
+void expect_same_with(const std::vector<int>& numbers_of_threads, const shapes::Cloud& cloud,
+                      Settings settings) {
+    settings.threads = 1;
+    const NeuralMesh first = learn(cloud, settings);
+    for (const int threads : numbers_of_threads) {
+        SCOPED_TRACE(threads);
+        settings.threads = threads;
+        expect_same(first, learn(cloud, settings));
+    }
+}
+
+TEST(Determinism, SameSeedSameBytesWhateverTheThreads) {
+    for (const Settings& settings : variants())
+        expect_same_with(environment::full() ? std::vector<int>{1, 3, 0} : std::vector<int>{3},
+                         shapes::sphere_cloud(1500, 0.01), settings);
+}
+
+/// From 3,000 vertices on, each thread has its own region of space.
+TEST(Determinism, SameBytesWhereThreadsShareTheNetwork) {
+    Settings settings;
+    settings.target_vertices = 5000;
+    settings.signals_per_split = 40;
+    settings.min_wins_per_split = 10;
+    settings.settling_signals_per_vertex = 20;
+    settings.fit_to_points = false;
+    expect_same_with(environment::full() ? std::vector<int>{2, 3, 8} : std::vector<int>{3},
+                     shapes::torus_cloud(20000, 0.005), settings);
+}
+
+TEST(Determinism, AnotherSeedGivesAnotherMesh) {
+    const shapes::Cloud cloud = shapes::sphere_cloud(1500);
+    for (Settings settings : variants()) {
+        const NeuralMesh first = learn(cloud, settings);
+        settings.random_seed = 2;
+        EXPECT_FALSE(same_bytes(first.positions, learn(cloud, settings).positions));
+    }
+}
+
+TEST(Determinism, PlaceAndScaleDoNotMatter) {
+    // Dyadic coordinates, moved and scaled by powers of two: exact in double.
+    shapes::Cloud cloud = shapes::box_cloud(1500);
+    for (vcg::Point3d& p : cloud)
+        for (int k = 0; k < 3; ++k) p[k] = std::round(p[k] * 0x1p20) * 0x1p-20;
+    shapes::Cloud moved = cloud;
+    for (vcg::Point3d& p : moved) p = p * 0x1p10 + vcg::Point3d(0x1p24, -0x1p20, 0x1p22);
+    for (const Settings& settings : variants()) {
+        const NeuralMesh here = learn(cloud, settings);
+        const NeuralMesh there = learn(moved, settings);
+        EXPECT_TRUE(same_bytes(here.faces, there.faces));
+        EXPECT_TRUE(same_bytes(here.counters, there.counters));
+        ASSERT_EQ(here.positions.size(), there.positions.size());
+        for (std::size_t i = 0; i < here.positions.size(); ++i) {
+            const vcg::Point3d back = (there.positions[i] - vcg::Point3d(0x1p24, -0x1p20, 0x1p22)) * 0x1p-10;
+            ASSERT_LT((back - here.positions[i]).Norm(), 1e-11);
+        }
+    }
+}
+
+TEST(Determinism, RandomRepeatsItselfAndStaysInRange) {
+    Random a(1);
+    Random b(1);
+    Random c(2);
+    int differ = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const std::uint32_t x = a.bits();
+        EXPECT_EQ(x, b.bits());
+        differ += x != c.bits() ? 1 : 0;
+    }
+    EXPECT_GT(differ, 990);
+    for (const std::uint32_t n : {1U, 2U, 3U, 1000U, 0xffffffffU})
+        for (int i = 0; i < 1000; ++i) EXPECT_LT(a.below(n), n);
+    for (int i = 0; i < 1000; ++i) {
+        const float u = a.unit();
+        EXPECT_TRUE(u >= 0 && u < 1);
+    }
+}
+
+}  // namespace
+}  // namespace neuralmesh
