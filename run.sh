@@ -6,7 +6,7 @@
 #   ./run.sh build                         the plugins for all MeshLabs, in build/plugins/
 #   ./run.sh demo [CLOUD [VERTICES [OUT]]] a neural mesh of a point cloud, with a picture; default: the Stanford bunny
 #   ./run.sh package                       the packages for others, in dist/
-#   ./run.sh test                          all tests
+#   ./run.sh test [full]                   the tests for daily work; `full`: all, before a piece of work is finished
 #   ./run.sh release                       installs each package in a bare Debian and uses it; needs root
 #   ./run.sh platform NAME                 the unit tests on arm64, windows, libcxx (clang's) or portable (plain C++)
 #   ./run.sh bench                         the performance tables
@@ -29,7 +29,6 @@ release_packages="debootstrap lintian"
 declare -A platform_packages=([arm64]="g++-aarch64-linux-gnu googletest qemu-user" [portable]="libgtest-dev"
     [windows]="g++-mingw-w64-x86-64-posix googletest wine64" [libcxx]="clang googletest libc++-dev libc++abi-dev")
 python=/usr/bin/python3
-stage_jobs=$((($(nproc) + 1) / 2))  # of each of the two stages that run at a time
 
 say() { printf '== %s\n' "$*"; }
 
@@ -104,7 +103,7 @@ need_venv() {
     rm -rf "$venv"
     "$python" -m venv "$venv"
     "$venv/bin/pip" install --quiet --disable-pip-version-check --only-binary :all: \
-        --require-hashes --requirement tests/requirements.txt
+        --no-compile --require-hashes --requirement tests/requirements.txt
     echo "$wanted" > "$venv/complete"
 }
 
@@ -181,54 +180,50 @@ demo() {
 sanitized() {
     local preset="$1"
     shift
+    say "With the sanitizers of the preset $preset"
     cmake --preset "$preset" > "$build/configure_$preset.log" 2>&1 ||
         { cat "$build/configure_$preset.log" >&2; fail "The configuration of $preset failed."; }
-    cmake --build --preset "$preset" --parallel "$stage_jobs" --target "$@" -- --quiet
-    ctest --preset "$preset" --parallel "$stage_jobs" | without_passed
+    cmake --build --preset "$preset" --target "$@" -- --quiet
+    ctest --preset "$preset" --parallel "$(nproc)" | without_passed
 }
 
 # Removes ctest's lines about tests that pass.
 without_passed() { grep -v -e '^ *Start ' -e ' Passed '; }
 
-# stage NAME: one stage of `./run.sh test`. Each pytest file of tests/hosts is a stage, so that a crash in a host's
-# libraries ends that file only.
-stage() {
-    say "$1"
-    # OpenMP threads that wait in a busy loop slow Poisson down many times while another stage runs.
-    export OMP_WAIT_POLICY=passive
-    TIMEFORMAT="$1: %U s of processor time + %S s of the system, %R s of the clock"
-    time case "$1" in
-        unit) ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel "$stage_jobs" | without_passed ;;
-        sanitize) sanitized sanitize unit_tests fuzz_network fuzz_settings fuzz_cloud fuzz_mesh ;;
-        threads) sanitized threads thread_tests ;;
-        accuracy)
-            "$venv/bin/python" tests/experiments/accuracy/accuracy_table.py --small --out "$build/experiments" \
-                --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
-            ;;
-        *) NEURALMESH_BUILD="$here/$build" "$venv/bin/python" -m pytest -q "tests/hosts/$1.py" ;;
-    esac
+# tests_of [OPTION...]: the tests of ctest that the options select, and which of them took longest.
+tests_of() {
+    local failed=0
+    export NEURALMESH_TIMES="$here/$build/times.txt"
+    rm -f "$NEURALMESH_TIMES"
+    ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel "$(nproc)" --output-junit tests.xml "$@" |
+        without_passed || failed=1
+    "$python" tests/times.py --report "$NEURALMESH_TIMES"
+    unset NEURALMESH_TIMES
+    [ "$failed" = 0 ] || fail "Tests have failed; their output is above."
 }
 
+# The two tiers are described in tests/README.md.
 run_tests() {
+    [ $# = 0 ] || [ "$*" = full ] || fail "'./run.sh test' takes no word but 'full'."
     need $compile_packages $demo_packages $test_packages $venv_packages
     need_venv  # before the configuration, which looks for pymeshlab there
-    compile all
-    # The longest first, so that the last ones end at about the same time.
-    local stages=(sanitize unit test_compare_pymeshlab threads test_experiments accuracy) file
-    for file in tests/hosts/test_*.py; do
-        file="$(basename "$file" .py)"
-        [[ " ${stages[*]} " = *" $file "* ]] || stages+=("$file")
-    done
-    say "Running ${#stages[@]} stages of tests, two at a time; each prints its output when it ends"
-    parallel --will-cite --jobs 2 ./run.sh stage ::: "${stages[@]}" ||
-        fail "$? of the stages failed; their output is above."
+    if [ $# = 0 ]; then
+        compile all
+        tests_of --label-exclude '^full$'
+    else
+        export NEURALMESH_FULL=1
+        compile all second_tier
+        tests_of
+        sanitized sanitize unit_tests fuzz_network fuzz_settings fuzz_cloud fuzz_mesh
+        sanitized threads thread_tests
+    fi
     say "All tests have passed"
 }
 
 bench() {
     need $compile_packages $demo_packages $test_packages $bench_packages $venv_packages
     need_venv
-    compile all cgal_peers
+    compile all benches cgal_peers
     say "Commit $(git rev-parse --short HEAD 2> /dev/null || echo unknown)$(git diff --quiet HEAD 2> /dev/null || echo ', changed')"
     local program
     for program in "$build"/tests/bench_*; do
@@ -251,7 +246,7 @@ bench() {
 figures() {
     need $compile_packages $demo_packages $test_packages $venv_packages
     need_venv
-    compile all
+    compile all experiments
     local plugin="$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
     say "Accuracy against Poisson and quadric collapse"
     "$venv/bin/python" tests/experiments/accuracy/accuracy_table.py --plugin "$plugin" --out out/figures
@@ -270,8 +265,7 @@ case "$word" in
     package) package ;;
     release) release ;;
     platform) platform "$@" ;;
-    test) run_tests ;;
-    stage) stage "$@" ;;  # one stage of the tests, for run_tests
+    test) run_tests "$@" ;;
     bench) bench ;;
     figures) figures ;;
     *)

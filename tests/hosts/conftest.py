@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-for folder in ("bench", "hosts"):
+for folder in (".", "bench", "hosts"):
     sys.path.insert(0, str(ROOT / "tests" / folder))
 for folder in ("accuracy", "paper", "pictures"):
     sys.path.insert(0, str(ROOT / "tests" / "experiments" / folder))
@@ -23,11 +23,48 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 import input_hosts  # noqa: E402
 import meshlabserver  # noqa: E402
 import models  # noqa: E402
+import times  # noqa: E402
 
 PYTHON_NAME = input_hosts.PYTHON_NAME
 # Made in code, or from a Debian package that run.sh installs; all are closed and of genus 0.
 MODELS = ("sphere", "cup", "filleted-cube", "crossed-cylinders", "bunny")
 CLOUD_POINTS = 20_000
+
+
+# What `./run.sh test full` runs besides; a whole file says `pytestmark = pytest.mark.full`.
+FULL = pytest.mark.full
+ALL_TIERS = "NEURALMESH_FULL" in os.environ
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "full: in the second tier of tests only, see tests/README.md")
+
+
+def pytest_collection_modifyitems(config, items):
+    if not ALL_TIERS:
+        later = [item for item in items if item.get_closest_marker("full")]
+        config.hook.pytest_deselected(items=later)
+        items[:] = [item for item in items if item not in later]
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_protocol(item):
+    start = times.processor_time()
+    yield
+    times.note(f"{item.path.stem}::{item.name}", times.processor_time() - start)
+
+
+def in_hosts(names, few):
+    """(name, host) for parametrize: all in pymeshlab, a few in meshlabserver, the others in the second tier."""
+    firsts = {input_hosts.PYMESHLAB: names, input_hosts.SERVER: few}
+    hosts = [input_hosts.PYMESHLAB, *(host for host in input_hosts.HOSTS if host != input_hosts.PYMESHLAB)]
+    return [pytest.param(name, host, marks=() if name in firsts.get(host, ()) else FULL)
+            for host in hosts for name in names]
+
+
+def of_libraries(values, first=()):
+    """`values` for parametrize, of the second tier but for those in `first`."""
+    return [pytest.param(value, marks=() if value in first else FULL) for value in values]
 
 
 def write_points(path, points, faces=()):

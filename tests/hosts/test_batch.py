@@ -20,7 +20,7 @@ import meshlabserver
 import numpy as np
 import psutil
 import pytest
-from conftest import ROOT, write_points
+from conftest import FULL, ROOT, write_points
 from many_clouds import records
 
 TIMEOUT = 120  # seconds, on a busy machine
@@ -87,6 +87,7 @@ def learners(process):
 # --- crashes and kills -----------------------------------------------------------------------------------------------
 
 
+@FULL
 def test_200_clouds_with_corrupt_ones_and_kills(command, batch, tmp_path):
     clouds, out = tmp_path / "clouds", tmp_path / "meshes"
     corrupt = many_clouds.make(clouds, 200)
@@ -251,6 +252,7 @@ def test_the_same_bytes_with_any_number_of_workers_and_by_the_other_command(inst
     assert (tmp_path / "one.ply").read_bytes() == alone["cloud_0003.ply"]
 
 
+@FULL
 def test_dask_with_two_workers_one_of_them_killed(command, few, alone, tmp_path):
     driver = command(few, "--out", tmp_path, "--engine", "dask", "--workers", 2, *many_clouds.SETTINGS)
     process = psutil.Process(driver.pid)
@@ -276,6 +278,7 @@ def run_slurm_job(srun, installed, few, tmp_path):
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
 
+@FULL
 def test_the_slurm_job_starts_a_cluster(installed, few, alone, tmp_path):
     # srun gives a task one core, unless it is told otherwise itself.
     job = run_slurm_job('[ "$1" = --cpus-per-task=2 ] && shift && exec "$@"', installed, few, tmp_path)
@@ -283,6 +286,7 @@ def test_the_slurm_job_starts_a_cluster(installed, few, alone, tmp_path):
     assert meshes(tmp_path / "out") == alone
 
 
+@FULL
 def test_the_slurm_job_ends_if_no_worker_starts(installed, few, tmp_path):
     job = run_slurm_job('echo "no dask here" >&2; exit 127', installed, few, tmp_path)
     assert job.returncode == 127

@@ -14,6 +14,8 @@ import models
 import peers
 import shapes
 
+pytestmark = pytest.mark.full
+
 SAMPLES = 30_000
 VERTICES = 2000
 

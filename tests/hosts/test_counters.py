@@ -17,11 +17,13 @@ import models
 import numpy as np
 import pytest
 import shapes
-from conftest import out_of_range, parameters, write_points
+from conftest import FULL, in_hosts, of_libraries, out_of_range, parameters, write_points
 from input_hosts import state
 from library_hosts import RELEASES
 
 COUNTED = inputs.counted_inputs()
+ELSEWHERE = ("empty layer", "by the counter", "selection not asked for", "deleted vertices", "quads",
+             "texture and attributes", "fins", "georeferenced")
 COUNTS = ("vertices", "signals", "outliers", "feature_vertices", "warnings", "stop_reason")
 MEASURES = ("mean_counter", "seconds")
 
@@ -32,8 +34,7 @@ def first_of():
     return {}
 
 
-@pytest.mark.parametrize("host", input_hosts.HOSTS)
-@pytest.mark.parametrize("name", COUNTED)
+@pytest.mark.parametrize("name, host", in_hosts(COUNTED, ELSEWHERE))
 def test_the_same_values_or_error_message(build, server, pymeshlab, first_of, tmp_path, name, host):
     layer = COUNTED[name]
     found = counter_hosts.count(build, server, pymeshlab, host, layer, tmp_path)
@@ -141,7 +142,7 @@ def run_library(build, release, layer, tmp_path, mode):
     return library_hosts.outcomes(library_hosts.run(build, release, plugin, file, tmp_path / "out.txt", mode))
 
 
-@pytest.mark.parametrize("release", RELEASES)
+@pytest.mark.parametrize("release", of_libraries(RELEASES))
 def test_a_host_that_asks_to_stop_gets_the_values_so_far(build, tmp_path, release):
     first, *stopped = run_library(build, release, ball_layer(), tmp_path, "cancel")
     assert first["stop_reason"] == 0 and first["unchanged"]
@@ -153,7 +154,7 @@ def test_a_host_that_asks_to_stop_gets_the_values_so_far(build, tmp_path, releas
         assert outcome["signals"] < 60000 or not outcome["asked_to_stop"]
 
 
-@pytest.mark.parametrize("release", RELEASES)
+@pytest.mark.parametrize("release", of_libraries(RELEASES))
 def test_out_of_memory_at_any_allocation_leaves_the_layer_as_it_was(build, tmp_path, release):
     first, *starved = run_library(build, release, ball_layer(), tmp_path, "memory")
     assert first["vertices"] == 642 and len(starved) > 200
@@ -166,6 +167,7 @@ def test_out_of_memory_at_any_allocation_leaves_the_layer_as_it_was(build, tmp_p
     assert sum(1 for outcome in starved if outcome["sentence"]) > len(starved) / 2
 
 
+@FULL
 @pytest.mark.parametrize("name", ["l-block", "crossed-cylinders"])
 def test_creases_of_a_noisy_mesh_are_found_better_than_by_any_curvature(pymeshlab, name):
     """At the default threshold, against the best threshold of each measure of the mesh, found with the truth."""

@@ -10,6 +10,8 @@ import pytest
 import error_over_time
 import meshlabserver
 
+pytestmark = pytest.mark.full
+
 # On the straight line error = 1 / seconds^2, in the logarithms of both.
 LINE = [(1, 1), (2, 1 / 4), (4, 1 / 16), (10, 1 / 100)]
 

@@ -20,6 +20,7 @@ import scans
 import selection_table
 import shapes
 
+pytestmark = pytest.mark.full
 
 VERTICES = 1000  # of the small table
 

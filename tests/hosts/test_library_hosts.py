@@ -10,6 +10,8 @@ import meshlabserver
 import pytest
 from library_hosts import RELEASES
 
+pytestmark = pytest.mark.full
+
 HOSTS = ("meshlab-2020.09", "meshlab-2022.02", "meshlab-2025.07", "pymeshlab-2025.7")
 
 

@@ -6,6 +6,8 @@
 import memcheck
 import pytest
 
+pytestmark = pytest.mark.full
+
 REPORT = """<valgrindoutput><error><kind>UninitCondition</kind><what>Conditional jump</what><stack>
 <frame><obj>/usr/lib/libc.so.6</obj><fn>memcpy</fn></frame><frame><obj>/there/{inner}</obj><fn>run</fn></frame>
 </stack></error></valgrindoutput>"""

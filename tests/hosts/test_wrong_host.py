@@ -8,7 +8,7 @@ import sys
 
 import meshlabserver
 import pytest
-from conftest import PYTHON_NAME
+from conftest import FULL, PYTHON_NAME
 
 HOSTS = ("meshlab-2020.09", "meshlab-2022.02", "meshlab-2025.07", "pymeshlab-2025.7")
 
@@ -26,6 +26,7 @@ def test_meshlab_2020_loads_no_later_plugin(build, model, tmp_path, host):
     assert not (tmp_path / "out.ply").exists()
 
 
+@FULL  # two more plugins to compile
 @pytest.mark.parametrize("kind, built", [("older_release", "2020.07 (float)"), ("other_scalar", "2020.09 (double)")])
 def test_the_plugin_itself_refuses_to_run_in_meshlab_2020(build, model, tmp_path, kind, built):
     """This host does not check plugins; running these would corrupt its memory."""
