@@ -41,9 +41,9 @@ constexpr double kShellMade = 0.6;  // of the progress
 /// the diagonal, those of scans and cut models wider. Chosen by open_table.py.
 constexpr double kWidestClosed = 0.066;
 /// Sparse points leave openings, and places that enclose nothing, in closed surfaces, too: openings as wide
-/// as 2.3 spacings and a sheet share of 4.4 times the spacing were found with 500 to 15,000 points of five
+/// as 2.3 radii and a sheet share of 4.4 times the radius were found with 500 to 15,000 points of five
 /// closed models. Of the same models cut by a plane one of the two is above these bounds.
-constexpr double kOpeningSpacings = 3, kSheetSpacings = 5;
+constexpr double kOpeningRadii = 3, kSheetRadii = 5;
 /// The sides of walls thicker than this, in spacings of the points, are told apart (opposite_layers.h).
 constexpr double kToldSpacings = 4;
 
@@ -194,16 +194,16 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, S
 
 /// Whether the cloud may be open: the shell closed wide openings, or a part of it has no space inside, and is
 /// no thin wall. A layer with faces is open where they end.
-/// \param spacing of the points, 0 if it is not known yet
+/// \param radius on which the points are a surface, 0 if it is not known yet
 bool may_be_open(const Enclosure& shell, const TargetSpace& target, const Settings& settings,
-                 double spacing) {
+                 double radius) {
     const bool chosen = settings.close_holes_up_to >= 0;
     const double asked = settings.close_holes_up_to / target.frame().diagonal;
     if (target.has_faces()) return widest_face_boundary(target) > (chosen ? asked : kWidestClosed);
-    const double widest = chosen ? asked : std::max(kWidestClosed, kOpeningSpacings * spacing);
+    const double widest = chosen ? asked : std::max(kWidestClosed, kOpeningRadii * radius);
     if (shell.walled) return false;
     return !shell.encloses_space || 2 * shell.widest_opening > widest ||
-           shell.sheet_share > std::max(kMostSheet, kSheetSpacings * spacing);
+           shell.sheet_share > std::max(kMostSheet, kSheetRadii * radius);
 }
 
 /// What becomes of walls whose sides cannot be told apart.
@@ -251,7 +251,7 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& she
         OpenStart start = make_open_start(target, settings, survey, progress);
         warn_of_thin_walls(task, start.layers, shell.encloses_space ? kSidesMayCross : kOneSheetClosed);
         const bool open = automatic && start.loops > 0 && !start.layers.two &&
-                          (target.has_faces() || may_be_open(shell, target, settings, start.spacing)) &&
+                          (target.has_faces() || may_be_open(shell, target, settings, start.radius)) &&
                           (settings.close_holes_up_to >= 0 || start.widest_loop > widest_closed(target));
         const bool fits = vertices_needed(start, settings) <= settings.target_vertices;
         if ((open && (fits || !shell.encloses_space)) || (fits && encloses_more(start, shell))) return start;

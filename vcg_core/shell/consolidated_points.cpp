@@ -20,8 +20,8 @@ using Place = NearestPoints::Place;
 /// A quadric takes the points within so many surveyed radii, and is fitted again around its own foot.
 constexpr float kSupport = 1.6F;
 constexpr int kPasses = 2;
-/// Up to two and a half times the surveyed radius.
-constexpr int kSteps = 4;
+/// The radius grows in steps, by up to 2.5 times for noise and 11 times where points are few.
+constexpr int kStepsOfNoise = 4, kMostSteps = 9;
 constexpr float kGrowth = 1.35F;
 
 /// The radius above which \p most points are left: discs thrown at random until no more fit cover .55 of a
@@ -46,6 +46,26 @@ float least_radius(const NearestPoints& cloud, const SurfaceSurvey& survey, int 
         (left(middle) > most ? low : high) = middle;
     }
     return static_cast<float>(high);
+}
+
+/// The distance that points are thinned to around every surveyed place: its radius, but no less than a part of
+/// those of others. Triangles cannot grow from one to the next by more than so much of the way between them.
+std::vector<float> graded_radii(const std::vector<SurveyedPlace>& places, float least, ThreadTeam& team) {
+    constexpr float kGradation = 0.5F;
+    constexpr int kAtATime = 64;
+    std::vector<float> graded(places.size());
+    parallel_for(static_cast<int>(places.size()), kAtATime, team, [&](int i) {
+        const SurveyedPlace& place = places[static_cast<std::size_t>(i)];
+        float radius = std::max(least, place.radius);
+        for (const SurveyedPlace& other : places) {
+            const float way = (other.radius - radius) / kGradation;
+            if (way <= 0) continue;
+            const float squared = (other.position - place.position).SquaredNorm();
+            if (squared < way * way) radius = other.radius - kGradation * std::sqrt(squared);
+        }
+        graded[static_cast<std::size_t>(i)] = radius;
+    });
+    return graded;
 }
 
 std::vector<Place> shuffled(Place count, Random& random) {
@@ -75,13 +95,17 @@ bool fit_twice(const NearestPoints& cloud, const Point3f& place, float radius, s
     return true;
 }
 
-/// From \p radius on: it grows where the points are sparser or noisier than the survey, a median, says.
+/// From \p radius on: it grows until there are enough points, and further where they are noisier than the
+/// survey, a median, says.
 Grounded grounded(const NearestPoints& cloud, const Point3f& place, float radius) {
     std::vector<Point3f> near;
     Grounded result{LocalQuadric(), radius};
-    for (int step = 0; step < kSteps; ++step, result.radius *= kGrowth) {
+    int held = 0;
+    for (int step = 0; step < kMostSteps && held < kStepsOfNoise; ++step, result.radius *= kGrowth) {
         if (!fit_twice(cloud, place, result.radius, near, result.quadric)) break;
-        if (result.quadric.holds() && kLeastDeviations * result.quadric.deviation <= result.radius) return result;
+        if (!result.quadric.holds()) continue;
+        if (kLeastDeviations * result.quadric.deviation <= result.radius) return result;
+        ++held;
     }
     return {LocalQuadric(), radius};
 }
@@ -91,17 +115,18 @@ Grounded grounded(const NearestPoints& cloud, const Point3f& place, float radius
 ConsolidatedPoints consolidated_points(const NearestPoints& cloud, const SurfaceSurvey& survey, int most,
                                        Random& random, ThreadTeam& team) {
     constexpr int kAtATime = 64;
-    std::vector<float> surveyed(cloud.size());
+    const std::vector<float> graded =
+        graded_radii(survey.places(), least_radius(cloud, survey, most), team);
+    std::vector<std::size_t> place_of(cloud.size());
     parallel_for(static_cast<int>(cloud.size()), 1024, team, [&](int i) {
-        surveyed[static_cast<std::size_t>(i)] = survey.at(cloud.point(static_cast<Place>(i))).radius;
+        place_of[static_cast<std::size_t>(i)] = survey.index_at(cloud.point(static_cast<Place>(i)));
     });
-    const float least = least_radius(cloud, survey, most);
     std::vector<char> gone(cloud.size(), 0);
     std::vector<Place> kept;
     for (const Place place : shuffled(cloud.size(), random)) {
         if (gone[place] != 0) continue;
         kept.push_back(place);
-        cloud.any_within(place, std::max(least, surveyed[place]), [&](Place other) {
+        cloud.any_within(place, graded[place_of[place]], [&](Place other) {
             gone[other] = 1;
             return false;
         });
@@ -110,17 +135,18 @@ ConsolidatedPoints consolidated_points(const NearestPoints& cloud, const Surface
     std::vector<Grounded> found(kept.size());
     parallel_for(static_cast<int>(kept.size()), kAtATime, team, [&](int i) {
         const Place place = kept[static_cast<std::size_t>(i)];
-        found[static_cast<std::size_t>(i)] = grounded(cloud, cloud.point(place), surveyed[place]);
+        found[static_cast<std::size_t>(i)] = grounded(cloud, cloud.point(place), survey.places()[place_of[place]].radius);
     });
     ConsolidatedPoints result;
-    for (const auto& [quadric, radius] : found) {
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const LocalQuadric& quadric = found[i].quadric;
         if (!quadric.holds()) continue;
-        const float spacing = survey.at(quadric.foot).spacing;
+        const std::size_t place = place_of[kept[i]];
         result.positions.push_back(quadric.foot);
         result.normals.push_back(quadric.normal);
-        result.radii.push_back(std::max(least, radius));
-        result.tolerances.push_back(
-            std::max(kLeastSpacings * spacing, kLeastDeviations * quadric.deviation));
+        result.radii.push_back(std::max(graded[place], found[i].radius));
+        result.tolerances.push_back(std::max(kLeastSpacings * survey.places()[place].spacing,
+                                             kLeastDeviations * quadric.deviation));
     }
     return result;
 }

@@ -242,7 +242,8 @@ void fill_small_holes(Sheet& sheet, const OpenStartOptions& options, OpenStart& 
             result.widest_filled = std::max(result.widest_filled, diameter);
         } else if (!filler.fill(loop, kCrackRadii * radius)) {
             left.push_back(&loop);
-            widest = std::max(widest, diameter);
+            // Half a radius of surface, on both sides, is beyond the last vertices.
+            widest = std::max(widest, diameter - static_cast<double>(radius));
         }
     }
     result.widest_loop = widest / diagonal_of(mesh.positions);
@@ -349,7 +350,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     if (options.use_normals) result.faced_by_normals = orient_by_normals(network, target);
     write_mesh(network, result);
     result.fewest_vertices = fewest_vertices(std::move(network), options.target_vertices);
-    result.spacing = surface.spacing();
+    result.radius = surface.radius();
     result.layers = surface.layers();
     set_outliers(std::move(out), options.learn_outliers || target.is_exact(), result);
     warn_of_cuts(target, sheet.contradictions, result);

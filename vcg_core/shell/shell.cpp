@@ -183,15 +183,14 @@ void set_figures(const LatticeSurvey& survey, int level, StartMesh& result) {
     result.radius = result.resolution * std::sqrt(static_cast<double>(level));
 }
 
-Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace>& places,
-                       const SurfaceSurvey& surface) {
+Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace>& places) {
     Enclosure result;
     result.encloses_space = survey.chosen_region().encloses_space;
     result.sheet_share = sheet_share(survey.regions.front());
     result.widest_opening = survey.chosen_region().widest_opening;
     // Where the lattice shows no space, the points may lie on the two sides of walls too thin for it.
     const bool unclear = !result.encloses_space || result.sheet_share > kMostSheet;
-    result.walled = unclear && share_with_opposite_layer(places, surface) > kWalled;
+    result.walled = unclear && share_with_opposite_layer(places) > kWalled;
     result.encloses_space |= result.walled;
     return result;
 }
@@ -254,7 +253,7 @@ Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& ran
     const Surveys surveys(points, given, options.threads, team);
     const std::vector<LayerPlace> places = layer_places(surveys.points(), team);
     examined->survey = survey_lattices(points, places, box, options);
-    examined->enclosure = enclosure_of(examined->survey, places, surveys.surface());
+    examined->enclosure = enclosure_of(examined->survey, places);
     examined_ = std::move(examined);
 }
 

@@ -26,11 +26,18 @@ constexpr float kFarthest = 10, kThin = 5, kColumn = 0.75F, kEmpty = 0.75F;
 constexpr double kLeastShare = 0.3;
 constexpr int kLeastPoints = 3;
 
-Point3f normal_of(const NearestPoints& cloud, NearestPoints::Place place,
-                  const std::vector<NearestPoints::Neighbour>& near) {
-    const Eigen::Matrix3d scatter = neighbour_scatter(cloud, place, near);
-    const Eigen::Vector3d n = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
-    return {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])};
+/// Thicker neighbourhoods, beside their width, are noise, or leaves: layers in them are no sides of a wall.
+constexpr double kThickest = 0.4;
+
+LayerPlace place_at(const NearestPoints& cloud, NearestPoints::Place place,
+                    const std::vector<NearestPoints::Neighbour>& near) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(neighbour_scatter(cloud, place, near));
+    const Eigen::Vector3d n = solver.eigenvectors().col(0), spread = solver.eigenvalues();
+    LayerPlace result;
+    result.position = cloud.point(place);
+    result.normal = {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])};
+    result.flat = spread[0] < kThickest * kThickest * spread[1];
+    return result;
 }
 
 /// The distance of the layer that the first \p count of sorted \p heights over the own layer, which is at 0,
@@ -70,7 +77,8 @@ void find_opposite_layers(const NearestPoints& cloud, NearestPoints::Place place
     };
     result.above = layer(above, below, kFarthest);
     result.below = layer(below, above, kFarthest);
-    result.on_thin_wall = layer(above, below, kThin) > 0 || layer(below, above, kThin) > 0;
+    result.on_thin_wall =
+        result.flat && (layer(above, below, kThin) > 0 || layer(below, above, kThin) > 0);
 }
 
 }  // namespace
@@ -87,20 +95,15 @@ std::vector<LayerPlace> layer_places(const CloudSurvey& survey, ThreadTeam& team
             std::vector<NearestPoints::Neighbour> near;
             cloud.nearest(place, kNeighbours, near);
             if (near.size() < static_cast<std::size_t>(kNeighbours)) return;
-            LayerPlace found{cloud.point(place), normal_of(cloud, place, near)};
+            LayerPlace found = place_at(cloud, place, near);
             find_opposite_layers(cloud, place, std::sqrt(near.back().squared_distance), found);
             places.push_back(found);
         });
 }
 
-double share_with_opposite_layer(const std::vector<LayerPlace>& places, const SurfaceSurvey& survey) {
-    const auto with = std::count_if(places.begin(), places.end(), [&](const LayerPlace& place) {
-        if (!place.on_thin_wall) return false;
-        const SurveyedPlace& surveyed = survey.at(place.position);
-        return surveyed.two_layers() ||
-               (!surveyed.clutter &&
-                std::max(place.above, place.below) > kLeastDeviations * surveyed.deviation);
-    });
+double share_with_opposite_layer(const std::vector<LayerPlace>& places) {
+    const auto with = std::count_if(places.begin(), places.end(),
+                                    [](const LayerPlace& place) { return place.on_thin_wall; });
     return places.empty() ? 0 : static_cast<double>(with) / static_cast<double>(places.size());
 }
 

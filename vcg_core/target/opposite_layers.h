@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "vcg_core/base/thread_team.h"
-#include "vcg_core/target/surface_survey.h"
+#include "vcg_core/target/cloud_survey.h"
 
 namespace neuralmesh {
 
@@ -21,7 +21,8 @@ struct LayerPlace {
     vcg::Point3f normal;
     float above = 0;
     float below = 0;
-    bool on_thin_wall = false;  ///< one of the layers is at most some eight spacings away
+    bool flat = false;          ///< the neighbours lie on the plane, as far as their number shows
+    bool on_thin_wall = false;  ///< flat, and one of the layers is at most some eight spacings away
 };
 
 /// About 1,000 places of the cloud, in the order of space. Opposite layers are looked for up to some twenty
@@ -30,8 +31,7 @@ struct LayerPlace {
 /// Does not depend on the number of threads. O(places x 2,000 points).
 std::vector<LayerPlace> layer_places(const CloudSurvey& survey, ThreadTeam& team);
 
-/// The share of \p places that have an opposite layer at most some eight spacings away, and farther than the
-/// noise there lets tell. Clutter has none.
-double share_with_opposite_layer(const std::vector<LayerPlace>& places, const SurfaceSurvey& survey);
+/// The share of \p places that have an opposite layer at most some eight spacings away.
+double share_with_opposite_layer(const std::vector<LayerPlace>& places);
 
 }  // namespace neuralmesh

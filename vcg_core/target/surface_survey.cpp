@@ -65,19 +65,25 @@ void find_radius(const NearestPoints& cloud, std::vector<Point3f>& near, Surveye
     }
 }
 
+/// A place speaks for what is not farther than so many of its radii: places are some four apart.
+constexpr float kSpeaksFor = 8;
+
 /// Replaces a number of every place by the median of the places around it that are no clutter: leaves above
 /// the ground say nothing of it. Where only clutter is around, by that of all.
 void smooth(const NearestPoints& index, std::vector<SurveyedPlace>& places, float SurveyedPlace::*number,
             ThreadTeam& team) {
     constexpr int kAtATime = 64;
     constexpr std::size_t kFewest = 3;
-    std::vector<float> smoothed(places.size());
+    std::vector<float> smoothed(places.size()), reaches;
+    for (const SurveyedPlace& p : places) reaches.push_back(std::max(p.radius, kLeastSpacings * p.spacing));
     parallel_for(static_cast<int>(places.size()), kAtATime, team, [&](int i) {
         std::vector<NearestPoints::Neighbour> near;
         index.nearest(static_cast<Place>(i), kPlacesAround, near);
         near.push_back({0, static_cast<Place>(i)});
         std::vector<float> values, orderly;
         for (const NearestPoints::Neighbour& n : near) {
+            const float reach = kSpeaksFor * reaches[n.place];
+            if (n.squared_distance > reach * reach) continue;
             values.push_back(places[n.place].*number);
             if (!places[n.place].clutter) orderly.push_back(values.back());
         }
@@ -129,10 +135,14 @@ double SurfaceSurvey::median_of(float SurveyedPlace::*number) const {
 }
 
 LayerFigures SurfaceSurvey::layers() const {
-    const auto two = std::count_if(places_.begin(), places_.end(), [](const SurveyedPlace& p) { return p.two_layers(); });
+    std::size_t orderly = 0, two = 0;
+    for (const SurveyedPlace& p : places_) {
+        orderly += p.clutter ? 0 : 1;
+        two += !p.clutter && p.two_layers() ? 1 : 0;
+    }
     const double sqrt_two = std::sqrt(2.0);  // together the layers are twice as dense as one
-    return {2 * static_cast<std::size_t>(two) > places_.size(), 2 * median_of(&SurveyedPlace::spread),
-            sqrt_two * spacing()};
+    return {2 * two > orderly, 2 * median_of(&SurveyedPlace::spread),
+            sqrt_two * median_of(&SurveyedPlace::spacing)};
 }
 
 }  // namespace neuralmesh

@@ -57,11 +57,13 @@ public:
 
     const std::vector<SurveyedPlace>& places() const { return places_; }
     /// The surveyed place nearest to \p p. O(log places).
-    const SurveyedPlace& at(const vcg::Point3f& p) const { return places_[index_.nearest_to(p)]; }
+    const SurveyedPlace& at(const vcg::Point3f& p) const { return places_[index_at(p)]; }
+    /// Its index in places().
+    std::size_t index_at(const vcg::Point3f& p) const { return index_.nearest_to(p); }
     /// The shares of the places that are clutter, and of those that lie on curves.
     double clutter() const { return share(&SurveyedPlace::clutter); }
     double curves() const { return share(&SurveyedPlace::on_curve); }
-    double spacing() const { return median_of(&SurveyedPlace::spacing); }
+    double radius() const { return median_of(&SurveyedPlace::radius); }
     LayerFigures layers() const;
 
 private:
