@@ -20,9 +20,16 @@ using Place = NearestPoints::Place;
 /// A quadric takes the points within so many surveyed radii, and is fitted again around its own foot.
 constexpr float kSupport = 1.6F;
 constexpr int kPasses = 2;
-/// The radius grows in steps, by up to 2.5 times for noise and 11 times where points are few.
+/// The radius grows in steps, up to 2.5 times.
 constexpr int kStepsOfNoise = 4, kMostSteps = 9;
 constexpr float kGrowth = 1.35F;
+constexpr float kThin = 0.15F;
+
+/// Without noise points may be closer than the radius of a quadric, which needs a dozen of them.
+float thinning_radius(const SurveyedPlace& place) {
+    constexpr float kSpacings = 1.5F;
+    return std::min(place.radius, std::max(kSpacings * place.spacing, kLeastDeviations * place.deviation));
+}
 
 /// The radius above which \p most points are left: discs thrown at random until no more fit cover .55 of a
 /// plane, so there are .7 of them per squared radius.
@@ -33,7 +40,7 @@ float least_radius(const NearestPoints& cloud, const SurfaceSurvey& survey, int 
     const auto left = [&](double radius) {
         double sum = 0;
         for (const SurveyedPlace& place : survey.places()) {
-            const double r = std::max(radius, static_cast<double>(place.radius));
+            const double r = std::max(radius, static_cast<double>(thinning_radius(place)));
             const double h = static_cast<double>(place.spacing);
             sum += kPerSquaredRadius * points_per_place * h * h / (r * r);
         }
@@ -46,26 +53,6 @@ float least_radius(const NearestPoints& cloud, const SurfaceSurvey& survey, int 
         (left(middle) > most ? low : high) = middle;
     }
     return static_cast<float>(high);
-}
-
-/// The distance that points are thinned to around every surveyed place: its radius, but no less than a part of
-/// those of others. Triangles cannot grow from one to the next by more than so much of the way between them.
-std::vector<float> graded_radii(const std::vector<SurveyedPlace>& places, float least, ThreadTeam& team) {
-    constexpr float kGradation = 0.5F;
-    constexpr int kAtATime = 64;
-    std::vector<float> graded(places.size());
-    parallel_for(static_cast<int>(places.size()), kAtATime, team, [&](int i) {
-        const SurveyedPlace& place = places[static_cast<std::size_t>(i)];
-        float radius = std::max(least, place.radius);
-        for (const SurveyedPlace& other : places) {
-            const float way = (other.radius - radius) / kGradation;
-            if (way <= 0) continue;
-            const float squared = (other.position - place.position).SquaredNorm();
-            if (squared < way * way) radius = other.radius - kGradation * std::sqrt(squared);
-        }
-        graded[static_cast<std::size_t>(i)] = radius;
-    });
-    return graded;
 }
 
 std::vector<Place> shuffled(Place count, Random& random) {
@@ -81,7 +68,7 @@ struct Grounded {
     float radius = 0;
 };
 
-/// Fits a quadric, and again around its foot. \return false if the points are as thick as wide
+/// Fits a quadric, and again around its foot. \return false if the points are as thick as wide, or a line
 bool fit_twice(const NearestPoints& cloud, const Point3f& place, float radius, std::vector<Point3f>& near,
                LocalQuadric& quadric) {
     Point3f at = place;
@@ -95,8 +82,7 @@ bool fit_twice(const NearestPoints& cloud, const Point3f& place, float radius, s
     return true;
 }
 
-/// From \p radius on: it grows until there are enough points, and further where they are noisier than the
-/// survey, a median, says.
+/// From \p radius on: it grows where the points are sparser or noisier than the survey, a median, says.
 Grounded grounded(const NearestPoints& cloud, const Point3f& place, float radius) {
     std::vector<Point3f> near;
     Grounded result{LocalQuadric(), radius};
@@ -104,7 +90,8 @@ Grounded grounded(const NearestPoints& cloud, const Point3f& place, float radius
     for (int step = 0; step < kMostSteps && held < kStepsOfNoise; ++step, result.radius *= kGrowth) {
         if (!fit_twice(cloud, place, result.radius, near, result.quadric)) break;
         if (!result.quadric.holds()) continue;
-        if (kLeastDeviations * result.quadric.deviation <= result.radius) return result;
+        const bool thin = step < kStepsOfNoise || result.quadric.flatness < kThin;
+        if (thin && kLeastDeviations * result.quadric.deviation <= result.radius) return result;
         ++held;
     }
     return {LocalQuadric(), radius};
@@ -115,8 +102,7 @@ Grounded grounded(const NearestPoints& cloud, const Point3f& place, float radius
 ConsolidatedPoints consolidated_points(const NearestPoints& cloud, const SurfaceSurvey& survey, int most,
                                        Random& random, ThreadTeam& team) {
     constexpr int kAtATime = 64;
-    const std::vector<float> graded =
-        graded_radii(survey.places(), least_radius(cloud, survey, most), team);
+    const float least = least_radius(cloud, survey, most);
     std::vector<std::size_t> place_of(cloud.size());
     parallel_for(static_cast<int>(cloud.size()), 1024, team, [&](int i) {
         place_of[static_cast<std::size_t>(i)] = survey.index_at(cloud.point(static_cast<Place>(i)));
@@ -126,7 +112,7 @@ ConsolidatedPoints consolidated_points(const NearestPoints& cloud, const Surface
     for (const Place place : shuffled(cloud.size(), random)) {
         if (gone[place] != 0) continue;
         kept.push_back(place);
-        cloud.any_within(place, graded[place_of[place]], [&](Place other) {
+        cloud.any_within(place, std::max(least, thinning_radius(survey.places()[place_of[place]])), [&](Place other) {
             gone[other] = 1;
             return false;
         });
@@ -135,7 +121,8 @@ ConsolidatedPoints consolidated_points(const NearestPoints& cloud, const Surface
     std::vector<Grounded> found(kept.size());
     parallel_for(static_cast<int>(kept.size()), kAtATime, team, [&](int i) {
         const Place place = kept[static_cast<std::size_t>(i)];
-        found[static_cast<std::size_t>(i)] = grounded(cloud, cloud.point(place), survey.places()[place_of[place]].radius);
+        found[static_cast<std::size_t>(i)] =
+            grounded(cloud, cloud.point(place), survey.places()[place_of[place]].radius);
     });
     ConsolidatedPoints result;
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -144,7 +131,7 @@ ConsolidatedPoints consolidated_points(const NearestPoints& cloud, const Surface
         const std::size_t place = place_of[kept[i]];
         result.positions.push_back(quadric.foot);
         result.normals.push_back(quadric.normal);
-        result.radii.push_back(std::max(graded[place], found[i].radius));
+        result.radii.push_back(std::max(least, found[i].radius));
         result.tolerances.push_back(std::max(kLeastSpacings * survey.places()[place].spacing,
                                              kLeastDeviations * quadric.deviation));
     }

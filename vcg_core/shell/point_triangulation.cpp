@@ -18,7 +18,7 @@ namespace {
 
 using vcg::Point3f;
 
-/// Neighbours farther than so many radii, or more of them, are not looked at: a star reaches two radii.
+/// Neighbours farther than so many radii, or more of them, are not looked at: a star reaches up to three radii.
 constexpr float kReach = 3;
 constexpr int kMostNeighbours = 32;
 /// Circles through the corners of a triangle that are wider than so many radii lie in a gap.

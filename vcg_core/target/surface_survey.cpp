@@ -22,8 +22,6 @@ constexpr int kNeighbour = 7;
 constexpr float kPi = 3.1415927F;
 /// The median over so many places around takes out what is chance at one of them.
 constexpr int kPlacesAround = 12;
-/// Less wide than this the points lie on a line, as on one scan line, and more of them are needed.
-constexpr float kNarrow = 0.3F;
 /// A quadric takes the points within this many radii.
 constexpr float kSupport = 1.6F;
 /// The radius grows by a factor in steps, to eight times at most.

@@ -17,6 +17,8 @@ namespace neuralmesh {
 
 /// Neighbourhoods that are as thick as this beside their width show no surface.
 constexpr float kThick = 0.55F;
+/// Less wide than this the points lie on a line, as on one scan line, and more of them are needed.
+constexpr float kNarrow = 0.3F;
 /// The least radius in spacings, and in deviations: within five of them the points have all heights, and no direction along the
 /// surface.
 constexpr float kLeastSpacings = 2, kLeastDeviations = 5;
