@@ -113,7 +113,8 @@ Shell make_shell(const TargetSpace& target, const Settings& settings, Survey& su
     options.threads = settings.threads;
     options.learn_outliers = !settings.remove_outliers;
     Random random(stream_seed(settings.random_seed, Stream::shell));
-    return Shell(target, options, random, progress, survey.surface_of(target));
+    const CloudSurvey* of_cloud = target.has_faces() ? nullptr : &survey.of(target.positions());
+    return Shell(target, options, random, progress, of_cloud);
 }
 
 void remove_outliers(LearningTask& task, Survey& survey, int threads) {
@@ -389,8 +390,10 @@ LearningTask points_to_learn(const TargetSpace& given, const Settings& settings)
 
 LearningTask prepare(const TargetSpace& given, const Settings& settings, const IndexedMesh<double>& start,
                      Progress& progress) {
+    progress(0, "Start mesh: looking for outliers");
     Survey survey(settings.threads);
     LearningTask task = points_to_learn(given, settings, survey);
+    progress(0, "Start mesh: examining the points");
     Settings trusted = settings;
     trusted.use_normals = normals_serve(task, survey, settings);
     begin(task, trusted, start, survey, progress);

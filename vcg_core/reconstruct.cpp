@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "vcg_core/base/progress.h"
 #include "vcg_core/cloud_colors.h"
 #include "vcg_core/counter_colors.h"
 #include "vcg_core/crease_lines.h"
@@ -22,6 +23,22 @@ namespace neuralmesh {
 namespace {
 
 constexpr int kDistanceSamples = 20000;  ///< points at which the error is measured
+
+/// Somebody who asks to stop before the start mesh is made gets a tetrahedron, or the mesh given as the
+/// start.
+LearningTask prepare_or_stop(const TargetSpace& given, const Settings& settings,
+                             const IndexedMesh<double>& start, Progress& progress) {
+    EndingProgress ending(progress);
+    try {
+        return prepare(given, settings, start, ending);
+    } catch (const Stopped&) {
+        Settings brief = settings;
+        brief.remove_outliers = brief.even_sampling = brief.use_normals = false;
+        if (settings.start_mesh == kShell) brief.start_mesh = kTetrahedron;
+        NoProgress alone;
+        return prepare(given, brief, start, alone);
+    }
+}
 
 void write_geometry(const Network& network, const Frame& frame, NeuralMesh& mesh) {
     PerVertex<VertexId> index(network.slot_count(), -1);
@@ -136,7 +153,7 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     settings.check();
     MonotoneProgress monotone(progress);
     PartOf preparing(monotone, 0, kPrepared);
-    LearningTask task = prepare(given, settings, start, preparing);
+    LearningTask task = prepare_or_stop(given, settings, start, preparing);
     const LearnedNetwork learned = learn_and_fit(task, settings, monotone);
 
     NeuralMesh mesh;

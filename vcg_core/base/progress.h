@@ -40,6 +40,22 @@ private:
     double to_;
 };
 
+/// Thrown by EndingProgress.
+struct Stopped {};
+
+/// For stages that have nothing to return before they are done: a request to stop ends them by an exception.
+class EndingProgress : public Progress {
+public:
+    explicit EndingProgress(Progress& caller) : caller_(caller) {}
+    bool operator()(double fraction, const char* text) override {
+        if (!caller_(fraction, text)) throw Stopped();
+        return true;
+    }
+
+private:
+    Progress& caller_;
+};
+
 /// For a run whose parts may repeat: fractions never decrease, and a request to stop is remembered.
 class MonotoneProgress : public Progress {
 public:

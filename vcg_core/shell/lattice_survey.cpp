@@ -60,11 +60,12 @@ std::vector<TopologyAt> plain_topologies(const Region& region) {
 class Surveyor {
 public:
     Surveyor(const std::vector<Point3f>& points, const std::vector<LayerPlace>& places, const Box3f& box,
-             const ShellOptions& options)
+             const ShellOptions& options, Progress& progress)
         : points_(points),
           places_(places),
           box_(box),
           options_(options),
+          progress_(progress),
           team_(thread_count(options.threads)) {
         survey_.step =
             step_for(points, box, options.max_nodes_per_side, options.max_nodes, options.points_per_node);
@@ -81,12 +82,14 @@ private:
     Region region_at(float step) const {
         return examine(points_, box_, step, options_.component_share, ShellOptions::kSpeckPoints, places_);
     }
+    void report() { progress_(0, "Start mesh: counting components and handles"); }
     void count_votes(bool grown);
 
     const std::vector<Point3f>& points_;
     const std::vector<LayerPlace>& places_;
     const Box3f& box_;
     const ShellOptions& options_;
+    Progress& progress_;
     ThreadTeam team_;
     LatticeSurvey survey_;
 };
@@ -103,13 +106,18 @@ void Surveyor::examine_plain() {
     for_chunks(2, 1, team_, [&](std::size_t i, std::size_t, std::size_t) {
         survey_.regions[i] = region_at(i == 0 ? survey_.step : kCoarser * survey_.step);
     });
-    for (const Region& region : survey_.regions) survey_.topologies.push_back(plain_topologies(region));
+    for (const Region& region : survey_.regions) {
+        report();
+        survey_.topologies.push_back(plain_topologies(region));
+    }
     count_votes(false);
 }
 
 void Surveyor::grow() {
-    for (std::size_t i = 0; i < survey_.regions.size(); ++i)
+    for (std::size_t i = 0; i < survey_.regions.size(); ++i) {
+        report();
         survey_.topologies[i] = grown_topologies(survey_.regions[i], team_);
+    }
     count_votes(true);
 }
 
@@ -117,7 +125,9 @@ void Surveyor::examine_finer() {
     const float step = step_for(points_, box_, options_.max_nodes_per_side, kFineNodes * options_.max_nodes,
                                 kFinePointsPerNode * options_.points_per_node);
     if (step * kCoarser > survey_.step) return;
+    report();
     survey_.regions.insert(survey_.regions.begin(), region_at(step));
+    report();
     survey_.topologies.insert(survey_.topologies.begin(), grown_topologies(survey_.regions.front(), team_));
     count_votes(true);
 }
@@ -125,6 +135,7 @@ void Surveyor::examine_finer() {
 void Surveyor::examine_coarser() {
     for (float step = survey_.step * kCoarser * kCoarser;
          confidence() < kLowConfidence && survey_.regions.size() < kMaxLattices; step *= kCoarser) {
+        report();
         survey_.regions.push_back(region_at(step));
         survey_.topologies.push_back(grown_topologies(survey_.regions.back(), team_));
         count_votes(true);
@@ -144,8 +155,8 @@ LatticeSurvey Surveyor::take() {
 }  // namespace
 
 LatticeSurvey survey_lattices(const std::vector<Point3f>& points, const std::vector<LayerPlace>& places,
-                              const Box3f& box, const ShellOptions& options) {
-    Surveyor surveyor(points, places, box, options);
+                              const Box3f& box, const ShellOptions& options, Progress& progress) {
+    Surveyor surveyor(points, places, box, options, progress);
     surveyor.examine_plain();
     if (surveyor.confidence() >= kPlainConfidence) return surveyor.take();
     surveyor.grow();

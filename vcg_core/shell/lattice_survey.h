@@ -9,6 +9,7 @@
 
 #include <vector>
 
+#include "vcg_core/base/progress.h"
 #include "vcg_core/shell/region.h"
 #include "vcg_core/shell/shell.h"
 #include "vcg_core/shell/topology_vote.h"
@@ -36,6 +37,6 @@ struct LatticeSurvey {
 /// If no lattice has a topology, the choice is the largest ball on the coarsest one. Uses
 /// options.threads threads. \p places tell hollows (hollows.h). The result does not depend on the threads.
 LatticeSurvey survey_lattices(const std::vector<vcg::Point3f>& points, const std::vector<LayerPlace>& places,
-                              const vcg::Box3f& box, const ShellOptions& options);
+                              const vcg::Box3f& box, const ShellOptions& options, Progress& progress);
 
 }  // namespace neuralmesh

@@ -69,7 +69,7 @@ struct OpenStart {
     int faced_by_normals = 0;  ///< components with a boundary that face the side of the target's normals
     /// of the smallest sphere around the widest hole, as share of the mesh's diagonal
     double widest_loop = 0;
-    double radius = 0;         ///< on which the points are a surface, the median, in the core's frame
+    double radius = 0;         ///< on which the points are a surface, in its sparser parts
     double widest_filled = 0;  ///< diameter of the widest hole that was filled
     LayerFigures layers;       ///< whether most of the points lie on the two sides of a thin wall
     /// 1 for each point of the cloud that is not to be learned; empty if there are none, or if the target has

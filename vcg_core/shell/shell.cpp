@@ -128,9 +128,12 @@ WallSides wall_sides(const Network& shell, const PerVertex<float>& thickenings) 
     return result;
 }
 
+constexpr const char* kReducing = "Start mesh: reducing it";
+
 /// Reduces \p closed to \p vertices vertices, or to more, up to \p most, where the surface is close to
 /// itself. \return StartMesh::walls for a mesh of \p final_vertices vertices
-WallSides reduce(ClosedMesh& closed, const Region& region, int vertices, double most, int final_vertices) {
+WallSides reduce(ClosedMesh& closed, const Region& region, int vertices, double most, int final_vertices,
+                 Progress& progress) {
     Network& network = closed.network;
     const Lattice& lattice = region.lattice;
     double area = 0;
@@ -147,18 +150,21 @@ WallSides reduce(ClosedMesh& closed, const Region& region, int vertices, double 
         simplify(network, vertices);
         return {};
     }
+    progress(0.83, kReducing);
     const int of_sides = kSideVertices * wanted;
     if (network.vertex_count() > kWorthReducing * of_sides) simplify(network, of_sides, edges.lengths);
     const double thick = kThickEdges * std::sqrt(area / (kAreaPerVertex * final_vertices));
     WallSides walls =
         wall_sides(network, thickenings(network, lattice, closed.solid, radius, static_cast<float>(thick)));
+    progress(0.86, kReducing);
     simplify(network, wanted, edges.lengths);
     return walls;
 }
 
 /// Reduces the mesh of \p closed and puts it into \p result, with its topology. \p points: their number.
 void set_mesh(ClosedMesh& closed, const Region& region, std::size_t points, const ShellOptions& options,
-              StartMesh& result) {
+              Progress& progress, StartMesh& result) {
+    progress(0.8, kReducing);
     Network& network = closed.network;
     result.components = network.component_count();
     result.genus = network.genus();
@@ -169,7 +175,7 @@ void set_mesh(ClosedMesh& closed, const Region& region, std::size_t points, cons
     const double most = std::min(told, static_cast<double>(options.most_vertices));
     // A sheet is nowhere far from itself.
     if (result.encloses_space && most > kWorthwhile * vertices) {
-        result.walls = reduce(closed, region, vertices, most, options.target_vertices);
+        result.walls = reduce(closed, region, vertices, most, options.target_vertices, progress);
     } else {
         simplify(network, vertices);
     }
@@ -241,7 +247,7 @@ struct Shell::Examined {
 };
 
 Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress,
-             const std::optional<SurveyedCloud>& given) {
+             const CloudSurvey* survey) {
     check(options);
     progress(0.0, "Start mesh: measuring the density of the cloud");
     auto examined = std::make_unique<Examined>(target, options, random);
@@ -250,9 +256,11 @@ Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& ran
 
     progress(0.2, "Start mesh: counting components and handles");
     ThreadTeam team(thread_count(options.threads));
-    const Surveys surveys(points, given, options.threads, team);
-    const std::vector<LayerPlace> places = layer_places(surveys.points(), team);
-    examined->survey = survey_lattices(points, places, box, options);
+    std::optional<CloudSurvey> made;
+    if (survey == nullptr) survey = &made.emplace(points, options.threads);
+    const std::vector<LayerPlace> places = layer_places(*survey, team);
+    PartOf counting(progress, 0.2, 0.7);
+    examined->survey = survey_lattices(points, places, box, options, counting);
     examined->enclosure = enclosure_of(examined->survey, places);
     examined_ = std::move(examined);
 }
@@ -272,7 +280,8 @@ StartMesh Shell::mesh(Progress& progress) const {
             "No part of the cloud holds enough points for a start mesh around it. Choose the tetrahedron as start mesh, or remove scattered points first.");
     StartMesh result;
     static_cast<Enclosure&>(result) = examined_->enclosure;
-    set_mesh(closed, region, points.size(), examined_->options, result);
+    set_mesh(closed, region, points.size(), examined_->options, progress, result);
+    progress(0.9, "Start mesh: measuring it");
     set_figures(survey, closed.level, result);
     set_outliers(examined_->target, points, region, closed, examined_->options.learn_outliers, result);
     warn_of_uncertain_topology(survey, result);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
@@ -130,6 +131,20 @@ double SurfaceSurvey::median_of(float SurveyedPlace::*number) const {
     std::vector<float> values;
     for (const SurveyedPlace& p : places_) values.push_back(p.*number);
     return static_cast<double>(median(std::move(values)));
+}
+
+double SurfaceSurvey::radius() const {
+    constexpr double kBelow = 0.75;
+    std::vector<std::pair<float, float>> areas;  // by radius; all places stand for as many points
+    double all = 0, below = 0;
+    for (const SurveyedPlace& p : places_) {
+        areas.emplace_back(p.radius, p.spacing * p.spacing);
+        all += static_cast<double>(areas.back().second);
+    }
+    std::sort(areas.begin(), areas.end());
+    for (const auto& [radius, area] : areas)
+        if ((below += static_cast<double>(area)) >= kBelow * all) return static_cast<double>(radius);
+    return static_cast<double>(areas.back().first);
 }
 
 LayerFigures SurfaceSurvey::layers() const {

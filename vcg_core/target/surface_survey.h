@@ -65,7 +65,8 @@ public:
     /// The shares of the places that are clutter, and of those that lie on curves.
     double clutter() const { return share(&SurveyedPlace::clutter); }
     double curves() const { return share(&SurveyedPlace::on_curve); }
-    double radius() const { return median_of(&SurveyedPlace::radius); }
+    /// The radius that a quarter of the surface, its sparsest or noisiest part, exceeds.
+    double radius() const;
     LayerFigures layers() const;
 
 private:
