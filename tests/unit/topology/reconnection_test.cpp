@@ -127,6 +127,47 @@ TEST(Reconnection, ATubeWithTwoPlugsIsJoined) {
     EXPECT_EQ(network.boundary_loop_count(), 0);
 }
 
+/// Asks to stop at once.
+struct Stop : Progress {
+    bool operator()(double /*fraction*/, const char* /*text*/) override {
+        ++calls;
+        return false;
+    }
+    int calls = 0;
+};
+
+TEST(Reconnection, ObeysAStop) {
+    const TargetSpace target = target_of(shapes::torus_cloud(20000));
+    const Network network = plugged(target);
+    ThreadTeam team(1);
+    Random random(1);
+    const auto now = topology_evidence(network, target, random, team);
+    Stop stop;
+    EXPECT_TRUE(topology_changes(network, target, *now, {}, team, stop).empty());
+    EXPECT_EQ(stop.calls, 1);
+    NoProgress progress;
+    EXPECT_FALSE(topology_changes(network, target, *now, {}, team, progress).empty());
+}
+
+// Clusters of points in a ball, like leaves: a crumpled mesh among them has membranes all around.
+TEST(Reconnection, LeavesPointsThatFillSpaceAlone) {
+    shapes::Cloud cloud;
+    Random random(1);
+    for (int leaf = 0; leaf < 2500; ++leaf) {
+        const vcg::Point3d centre = shapes::in_ball(random);
+        for (int i = 0; i < 16; ++i) cloud.push_back(centre + shapes::in_ball(random) * 0.03);
+    }
+    const TargetSpace target = target_of(cloud);
+    shapes::Shape crumpled = shapes::icosphere(4);
+    for (vcg::Point3d& p : crumpled.positions) p = p * (0.5 + 0.5 * static_cast<double>(random.unit()));
+    const Network network = network_in_frame(target, crumpled);
+    ThreadTeam team(1);
+    NoProgress progress;
+    const auto now = topology_evidence(network, target, random, team);
+    ASSERT_GT(now->membranes.size(), 100U);
+    EXPECT_LT(topology_changes(network, target, *now, {}, team, progress).size(), now->membranes.size() / 20);
+}
+
 // With 74 points per vertex.
 TEST(Reconnection, HandlesFormOnACoarseMeshIfTheyMay) {
     const TargetSpace target = target_of(shapes::torus_cloud(40000));
