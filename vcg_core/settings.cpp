@@ -129,7 +129,8 @@ std::vector<SettingInfo> mesh_rows() {
         row(&S::use_normals, "use_normals", "Use normals",
             "If the vertices of the layer have normals that fit the points, an open surface faces the side to "
             "which most of them point; closed parts always face out. Normals that do not fit are not used, "
-            "and the log says why. If off, an open surface faces out where it is convex. Without effect on "
+            "and the log says why. If off, an open surface faces the origin, if all of it is seen from there, "
+            "else up, if all of it is seen from above, else it faces out where it is convex. Without effect on "
             "points drawn from faces."),
     };
 }
