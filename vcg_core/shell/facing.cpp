@@ -21,8 +21,9 @@ constexpr double kClear = 0.6;
 /// Of the area that a viewer sees, this share may be turned away: steep places under noise, and overhangs. On
 /// frames and aerial scans it is 2 to 11 %; of a ball that lacks a third of its height, 25 %.
 constexpr double kMostAway = 0.15;
-/// A sensor sees nothing nearer than this, in diagonals of what it sees; a bowl may stand on the origin.
-constexpr float kNearestSensor = 0.05F;
+/// Sensors of one view see no more than 120 degrees: the cosine of half of that. A cap around the origin is
+/// wider.
+constexpr float kHalfView = 0.5F;
 /// Further off, the origin is that of a country's coordinates.
 constexpr float kFarthestSensor = 4;
 /// Normals that lie nearly along the face, less than 6 degrees above it, say nothing.
@@ -79,10 +80,13 @@ View view_from(const Viewpoint& viewpoint, const Network& network, const PerVert
 bool may_be_sensor(const Point3f& origin, const Network& network) {
     vcg::Box3f box;
     for (const VertexId v : network.vertices()) box.Add(network.position(v));
-    Point3f nearest = origin;
-    for (int k = 0; k < 3; ++k) nearest[k] = std::clamp(origin[k], box.min[k], box.max[k]);
-    const float distance = (origin - nearest).Norm() / box.Diag();
-    return distance > kNearestSensor && distance < kFarthestSensor;
+    const Point3f axis = box.Center() - origin;
+    if (axis.Norm() > kFarthestSensor * box.Diag()) return false;
+    for (const VertexId v : network.vertices()) {
+        const Point3f sight = network.position(v) - origin;
+        if (!(sight * axis > kHalfView * sight.Norm() * axis.Norm())) return false;
+    }
+    return true;
 }
 
 std::vector<char> components_with_boundary(const Network& network, const PerVertex<int>& component) {
