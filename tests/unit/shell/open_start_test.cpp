@@ -144,7 +144,7 @@ TEST(OpenStart, LeavesOutSpecks) {
     ASSERT_EQ(start.outliers.size(), cloud.size());
     EXPECT_EQ(std::count(start.outliers.begin(), start.outliers.end(), 1), 30);
     EXPECT_EQ(std::count(start.outliers.end() - 30, start.outliers.end(), 1), 30);
-    EXPECT_TRUE(warns(start, "30 of 5030 points were ignored as outliers"));
+    EXPECT_TRUE(warns(start, "30 of 5030 points (0.6 %) show no surface"));
 }
 
 TEST(OpenStart, RefusesWhatIsNoSurface) {
