@@ -16,25 +16,28 @@ namespace neuralmesh {
 
 namespace {
 
-/// With fewer points per vertex, learning and fit follow the accidents of the points; a vertex that has to
-/// share its points costs more than its absence. Chosen by the points of
-/// tests/experiments/accuracy/scan_table.py.
-constexpr std::size_t kPointsPerCarried = 2;
-
 /// The fit inserts up to this many times the vertices that it finds. A number that is a slip of the pen, 20
 /// million from 500 points, would take all memory at once; learning takes its time and can be cancelled.
 constexpr int kMostPerCarried = 64;
+
+std::size_t carried_by_points(const LearningTask& task) {
+    return task.noise_by_place->carried_by(task.target().positions().size());
+}
+
+/// Whether the fit inserts the vertices that the points do not carry.
+bool fills_up(const LearningTask& task, const Settings& settings) {
+    constexpr std::size_t kFewestPoints = 256;
+    return settings.redistributes_vertices() && task.encloses_space && task.noise_by_place != nullptr &&
+           task.target().positions().size() >= kFewestPoints;
+}
 
 /// The vertices that learning and fit place by the points; the fit inserts the others. All, unless the cloud
 /// is no sheet, the fit may redistribute vertices and only their number ends growth, or where there are too
 /// few points for a fit.
 int carried_vertices(const LearningTask& task, const Settings& settings) {
-    constexpr std::size_t kFewestPoints = 256;
     const int wanted = settings.target_vertices;
-    if (!settings.redistributes_vertices() || !task.encloses_space || task.target().has_faces() ||
-        task.target().positions().size() < kFewestPoints)
-        return wanted;
-    const std::size_t carried = task.target().positions().size() / kPointsPerCarried;
+    if (!fills_up(task, settings)) return wanted;
+    const std::size_t carried = carried_by_points(task);
     if (static_cast<std::size_t>(wanted) / kMostPerCarried > carried) return wanted;
     const std::size_t placed = std::max(carried, static_cast<std::size_t>(task.network.vertex_count()));
     return static_cast<int>(std::min(placed, static_cast<std::size_t>(wanted)));
@@ -142,6 +145,7 @@ bool follows_noise(const LearningTask& task, const Settings& settings) {
 LearnerOptions learner_options(const LearningTask& task, const Settings& settings, const Plan& plan) {
     LearnerOptions options = learner_options_from(settings);
     options.grow_to = plan.grow_to;
+    if (fills_up(task, settings)) options.noise = task.noise_by_place.get();
     if (learns_briefly(plan) || follows_noise(task, settings))
         options.signals_per_split = std::max(1, options.signals_per_split / 2);
     // As many signals as for those that stay settle them well enough; half as many where most of them stay:
@@ -165,11 +169,12 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
               Progress& progress) {
     FitOptions options;
     options.expect_strays = task.outliers > 0;
+    options.noise = task.noise_by_place.get();
     options.reduce_to = plan.carried;
     options.by_volume = plan.by_volume && network.vertex_count() > plan.carried;
     options.learned_briefly = learns_briefly(plan);
     options.calm = plan.calm || options.by_volume;
-    options.refine_to = plan.carried < settings.target_vertices ? settings.target_vertices : 0;
+    options.refine_to = fills_up(task, settings) ? settings.target_vertices : 0;
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
     // error is largest at the rim, and vertices inserted there stick out.
     options.redistribute = settings.utility_counter == kNormalVariation && task.encloses_space;
@@ -215,7 +220,7 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
     result.measures = measures_of(learner, learner.crease_measure(), result.network,
                                   moved ? report.sources : PerVertex<VertexId>(), settings);
     if (plan.carried < settings.target_vertices)
-        result.carried = static_cast<int>(task.target().positions().size() / kPointsPerCarried);
+        result.carried = static_cast<int>(carried_by_points(task));
     return result;
 }
 

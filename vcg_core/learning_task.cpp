@@ -17,6 +17,7 @@
 #include "vcg_core/shell/open_start.h"
 #include "vcg_core/shell/shell.h"
 #include "vcg_core/target/cloud_noise.h"
+#include "vcg_core/target/local_quadric.h"
 #include "vcg_core/target/outlier_removal.h"
 
 namespace neuralmesh {
@@ -142,9 +143,13 @@ LearningTask points_to_learn(const TargetSpace& given, const Settings& settings,
     return task;
 }
 
-void measure_noise(LearningTask& task, Survey& survey, int vertices) {
+void measure_noise(LearningTask& task, Survey& survey, const Settings& settings) {
     const std::vector<vcg::Point3f>& points = task.target().positions();
+    const int vertices = settings.target_vertices;
     task.noise = noise_in_edges(survey.of(points), static_cast<double>(points.size()) / vertices);
+    if (points.size() < static_cast<std::size_t>(LocalQuadric::kLeastPoints) || task.target().is_exact()) return;
+    const SurfaceSurvey& surface = survey.surface_of(task.target())->surface;
+    if (surface.clutter() < 1) task.noise_by_place = std::make_shared<NoiseByPlace>(surface);
 }
 
 /// Whether the points have normals that are to be used; a warning, if theirs cannot.
@@ -399,7 +404,7 @@ LearningTask prepare(const TargetSpace& given, const Settings& settings, const I
     begin(task, trusted, start, survey, progress);
     if (trusted.use_normals && settings.start_mesh == kShell && task.landing_signals > 0)
         report_normals(task.network, task.target(), task.parts_faced_by_normals, task.notes, task.warnings);
-    if (!given.has_faces()) measure_noise(task, survey, settings.target_vertices);
+    if (!given.has_faces()) measure_noise(task, survey, settings);
     if (settings.even_sampling && settings.utility_counter != kSignalCount && !given.is_exact())
         weigh_points(task, survey);
     return task;

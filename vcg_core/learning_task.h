@@ -5,6 +5,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/settings.h"
 #include "vcg_core/shell/shell.h"
+#include "vcg_core/target/noise_by_place.h"
 #include "vcg_core/target/target_space.h"
 #include "vcg_core/topology/topology_rules.h"
 
@@ -38,6 +40,8 @@ struct LearningTask {
     /// Noise of the points in mean edges of the mesh asked for (cloud_noise.h). Infinite for layers with
     /// faces, where it is not known.
     double noise = std::numeric_limits<double>::infinity();
+    /// Of target(). Nothing if the points are exact, too few, or show no surface anywhere.
+    std::shared_ptr<const NoiseByPlace> noise_by_place;
     TopologyRules topology_rules;    ///< with settings.learn_topology
     double topology_confidence = 0;  ///< as in Report
     int parts_faced_by_normals = 0;  ///< components of the network that face the side of the points' normals

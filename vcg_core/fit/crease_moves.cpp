@@ -284,7 +284,8 @@ bool is_near_boundary(const Network& network, VertexId v) {
 }  // namespace
 
 PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surface,
-                                    const PointsByFace& points, float noise_variance, ThreadTeam& team,
+                                    const PointsByFace& points, const PerVertex<float>& variances,
+                                    ThreadTeam& team,
                                     CreaseMoves which) {
     PerVertex<Vector3> moves(network.slot_count(), Vector3::Zero());
     PerFace<PlanesOfPoints::Side> sides(surface.face_count());
@@ -298,7 +299,7 @@ PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surfa
         PlanesOfPoints planes(network, surface, sides, points, which);
         for (auto v = static_cast<VertexId>(begin); v < static_cast<VertexId>(end); ++v)
             if (network.alive(v) && !is_near_boundary(network, v))
-                moves[v] = planes.way_to_crease(v, noise_variance);
+                moves[v] = planes.way_to_crease(v, variances[v]);
     });
     return moves;
 }

@@ -17,7 +17,8 @@ enum class CreaseMoves { likely, sure };
 
 /// For every vertex the way to the line where two planes meet, if the points of the faces of its two-ring lie
 /// on two planes and the line is nearer than a third of its edges; else 0, as on boundaries and one edge from
-/// them. \p noise_variance is that of the points; if its root exceeds .15 edges, nothing moves.
+/// them. \p variances are those of the points around the vertices; where the root exceeds .15 edges, nothing
+/// moves.
 ///
 /// Least squares do not find these places: edges that cut a crease off hold the vertices beside it, and no
 /// flip of such an edge gains before a vertex lies on the crease. Two planes are preferred to a smooth
@@ -26,7 +27,8 @@ enum class CreaseMoves { likely, sure };
 /// "k-Plane Clustering", 2000). O(points of all two-rings). The result does not depend on the number of
 /// threads.
 PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surface,
-                                    const PointsByFace& points, float noise_variance, ThreadTeam& team,
+                                    const PointsByFace& points, const PerVertex<float>& variances,
+                                    ThreadTeam& team,
                                     CreaseMoves which = CreaseMoves::likely);
 
 }  // namespace neuralmesh

@@ -205,6 +205,7 @@ void refine_and_fit(Network& network, const TargetSpace& target, const FitOption
     PointChoice points = points_for(network.vertex_count(), target, options, seed);
     if (inserted == 0 || points.fitted.points.size() < kMinPoints) return;
     Fitter fitter(network, std::move(points), team);
+    if (options.noise != nullptr) fitter.know_noise(*options.noise);
     if (options.expect_strays) fitter.expect_strays();
     PartOf untangling(progress, 0.1, 0.2);
     PartOf fitting(progress, 0.2, 1);
@@ -232,6 +233,7 @@ FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitO
     if (points.fitted.points.size() < kMinPoints || network.face_count() == 0) return report;
     const double learned_share = learned_share_of(network, target);
     Fitter fitter(network, std::move(points), team);
+    if (options.noise != nullptr) fitter.know_noise(*options.noise);
     if (options.expect_strays) fitter.expect_strays();
     // By time: the reduction takes about as long as the rounds.
     PartOf untangling(progress, 0, 0.1);

@@ -32,6 +32,10 @@ constexpr float kCrease = 4.0F;
 
 constexpr int kChunk = 256;
 
+float mean_of(const PerVertex<float>& values, const std::array<VertexId, 4>& corners) {
+    return (values[corners[0]] + values[corners[1]] + values[corners[2]] + values[corners[3]]) / 4;
+}
+
 }  // namespace
 
 PointToPlaneSystem::FaceSums PointToPlaneSystem::sum_over(const Surface& surface, const PointsByFace& points,
@@ -80,7 +84,7 @@ PointToPlaneSystem::ChunksOfSums PointToPlaneSystem::sums_of_faces(const Surface
 
 PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& surface,
                                        const PointsByFace& points, ThreadTeam& team,
-                                       const PerVertex<float>& stiffness, float hold)
+                                       const VertexNoise& noise, float hold)
     : network_(network),
       points_per_vertex_(points.per_vertex(network.vertex_count())),
       row_(network.slot_count() + 1, 0),
@@ -95,7 +99,7 @@ PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& su
         gather(sums, surface, v);
         regularise(surface, missing[v], v);
     });
-    add_bending(surface, stiffness, team);
+    add_bending(surface, noise, team);
     for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) add_target(target);
     add_boundary_bending(surface);
     find_coupled();
@@ -169,8 +173,7 @@ bool PointToPlaneSystem::make_bending_term(const Surface& surface, const std::ar
     return true;
 }
 
-void PointToPlaneSystem::add_bending(const Surface& surface, const PerVertex<float>& stiffness,
-                                     ThreadTeam& team) {
+void PointToPlaneSystem::add_bending(const Surface& surface, const VertexNoise& noise, ThreadTeam& team) {
     bending_force_.assign(surface.positions.size(), Vector3::Zero());
     bending_diagonal_.assign(surface.positions.size(), 0);
     stiff_diagonal_.assign(surface.positions.size(), 0);
@@ -195,8 +198,11 @@ void PointToPlaneSystem::add_bending(const Surface& surface, const PerVertex<flo
     const float crease = std::max(kCrease * median(gaps), 1e-9F);
     for (std::size_t i = 0; i < gaps.size(); ++i) {
         BendingTerm& term = bending_terms_[i];
-        term.weight = points_per_vertex_ / (1 + (gaps[i] / crease) * (gaps[i] / crease));
-        if (!stiffness.empty()) stiffen(term, stiffness);
+        float squared_crease = crease * crease;
+        if (!noise.variances.empty())
+            squared_crease = std::max(squared_crease, mean_of(noise.variances, term.corner));
+        term.weight = points_per_vertex_ / (1 + gaps[i] * gaps[i] / squared_crease);
+        if (!noise.stiffness.empty()) stiffen(term, mean_of(noise.stiffness, term.corner));
         for (std::size_t k = 0; k < 4; ++k) {
             const float c = term.coefficient[k];
             bending_force_[term.corner[k]] -= term.weight * c * term.gap;
@@ -205,8 +211,8 @@ void PointToPlaneSystem::add_bending(const Surface& surface, const PerVertex<flo
     }
 }
 
-void PointToPlaneSystem::stiffen(BendingTerm& term, const PerVertex<float>& stiffness) {
-    for (const VertexId v : term.corner) term.stiffness += stiffness[v] / 4;
+void PointToPlaneSystem::stiffen(BendingTerm& term, float stiffness) {
+    term.stiffness = stiffness;
     for (std::size_t k = 0; k < 4; ++k) {
         const float c = term.coefficient[k];
         force_[term.corner[k]] -= term.stiffness * term.weight * c * term.gap;

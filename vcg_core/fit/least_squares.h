@@ -17,6 +17,12 @@
 
 namespace neuralmesh {
 
+/// The noise of the points around each vertex, and how stiff it makes the surface there. Either may be empty:
+/// 0.
+struct VertexNoise {
+    PerVertex<float> stiffness, variances;
+};
+
 /// The normal equations of one round, (A + lambda B) u = f + lambda g, for the displacements u of the
 /// vertices. They minimise
 ///
@@ -34,18 +40,17 @@ namespace neuralmesh {
 /// from the points (Hoppe et al. 1993); with less it can, where it bends and points lie beyond the faces they
 /// keep. gap_e is the vector between the points where the two diagonals of the edge's quad cross when the
 /// quad is unfolded into the plane: 0 exactly where the surface is flat, whatever the shape of the triangles.
-/// c_e falls where the gap is large among the gaps of the mesh, so that creases are not rounded; c_v does the
-/// same at corners of the boundary. Points beyond a boundary edge count by their distance from the plane of
+/// c_e falls where the gap is large among the gaps of the mesh, so that creases are not rounded, and longer
+/// than the deviation of the points there, which is no crease; c_v does the same at corners of the boundary. Points beyond a boundary edge count by their distance from the plane of
 /// its face only: the mean of their distances from the edge would leave it short of their end.
 class PointToPlaneSystem {
 public:
     /// The hold that makes the blocks regular, but hardly slows sliding.
     static constexpr float kSliding = 0.03F;
 
-    /// Keeps a reference to \p network. \p stiffness: of the vertices; empty: none. \p hold: h, in
-    /// [0, 1]. O(points + vertices).
+    /// Keeps a reference to \p network. \p hold: h, in [0, 1]. O(points + vertices).
     PointToPlaneSystem(const Network& network, const Surface& surface, const PointsByFace& points,
-                       ThreadTeam& team, const PerVertex<float>& stiffness = {}, float hold = kSliding);
+                       ThreadTeam& team, const VertexNoise& noise = {}, float hold = kSliding);
 
     /// When solve() ends: at the residual \p tolerance relative to that of u = 0, in the norm of the
     /// preconditioner, or after \p iterations. The defaults suit rounds that are repeated with new faces.
@@ -94,8 +99,8 @@ private:
     void regularise(const Surface& surface, float missing_points, VertexId v);
     static bool make_bending_term(const Surface& surface, const std::array<VertexId, 4>& corner,
                                   BendingTerm& term);
-    void add_bending(const Surface& surface, const PerVertex<float>& stiffness, ThreadTeam& team);
-    void stiffen(BendingTerm& term, const PerVertex<float>& stiffness);
+    void add_bending(const Surface& surface, const VertexNoise& noise, ThreadTeam& team);
+    void stiffen(BendingTerm& term, float stiffness);
     void add_target(const BoundaryTarget& target);
     void find_coupled();
     void add_boundary_bending(const Surface& surface);

@@ -43,9 +43,9 @@ FaceHatSums hat_sums(const Surface& surface, const PointsByFace& points, int fac
 }
 
 /// The split of the edge a-b by its faces; its gain is negative if no point is near, or if it is less than \p
-/// least_gain.
+/// least_gain for points of weight 1.
 EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const PerFace<FaceHatSums>& sums,
-                   const LeastSplitGain& least_gain, VertexId a, VertexId b) {
+                   float least_gain, VertexId a, VertexId b) {
     HatSums both;
     Vector3 normal = Vector3::Zero();
     std::array<int, 2> faces{};
@@ -69,8 +69,7 @@ EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const Per
     const float bound = kMaxOffset * (at_a - at_b).norm();
     const float offset = std::min(std::max(both.phi_residual / both.phi_phi, -bound), bound);
     const float gain = both.phi_residual * both.phi_residual / both.phi_phi;
-    const bool enough =
-        gain >= least_gain.of((at_a - at_b).squaredNorm()) * points.mean_weight(faces[0], faces[1]);
+    const bool enough = gain >= least_gain * points.mean_weight(faces[0], faces[1]);
     return {enough ? gain : -1, a, b, 0.5F * (at_a + at_b) + offset * normal.normalized()};
 }
 
@@ -115,7 +114,12 @@ void add_boundary_gain(EdgeSplit& split, const BoundaryTarget& target) {
 }  // namespace
 
 std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surface, const PointsByFace& points,
-                                   const LeastSplitGain& least_gain, ThreadTeam& team) {
+                                   const LeastSplitGain& least_gain, ThreadTeam& team,
+                                   const PerVertex<float>& variances) {
+    const auto least_for = [&](VertexId a, VertexId b) {
+        const float variance = variances.empty() ? 1.0F : (variances[a] + variances[b]) / 2;
+        return least_gain.of((surface.positions[a] - surface.positions[b]).squaredNorm(), variance);
+    };
     PerFace<FaceHatSums> sums(surface.face_count());
     parallel_for(sums.size(), kChunk, team, [&](int f) { sums[f] = hat_sums(surface, points, f); });
     const auto find = [&](VertexId a, std::vector<EdgeSplit>& found) {
@@ -124,16 +128,15 @@ std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surfac
         for (int i = 0; i < ring.valence; ++i) {
             const bool on_boundary = ring.open != 0 && (i == 0 || i + 1 == ring.valence);
             if (ring[i] < a || on_boundary) continue;
-            const EdgeSplit split = split_of(surface, points, sums, least_gain, a, ring[i]);
+            const EdgeSplit split = split_of(surface, points, sums, least_for(a, ring[i]), a, ring[i]);
             if (split.gain >= 0) found.push_back(split);
         }
     };
     std::vector<EdgeSplit> splits = parallel_collect<EdgeSplit>(network.slot_count(), kChunk, team, find);
     for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) {
-        EdgeSplit split = split_of(surface, points, sums, {}, target.a, target.b);
+        EdgeSplit split = split_of(surface, points, sums, 0, target.a, target.b);
         add_boundary_gain(split, target);
-        const float least = least_gain.of(target.length * target.length);
-        if (split.gain >= least * points.mean_weight(target.face, target.face)) splits.push_back(split);
+        if (split.gain >= least_for(target.a, target.b) * points.mean_weight(target.face, target.face)) splits.push_back(split);
     }
     std::stable_sort(splits.begin(), splits.end(),
                      [](const EdgeSplit& x, const EdgeSplit& y) { return x.gain > y.gain; });

@@ -88,7 +88,8 @@ StopReason Learner::grow(Progress& progress) {
         learn_batch(batch_size(), [this] {
             if (schedule_.split_due(signals())) vertex_split();
         });
-        if (!forced_ && schedule_.collapse_due(signals())) half_edge_collapse();
+        const bool collapses = !forced_ && schedule_.collapse_due(signals());
+        if (collapses) half_edge_collapse();
         memory_order_.update_while_growing();
         PartOf standing(progress, done, done);
         if (state_.options.learn_topology && stages.pass(network().vertex_count()) &&
@@ -97,6 +98,10 @@ StopReason Learner::grow(Progress& progress) {
 
         if (!forced_ && schedule_.stalled(signals())) force_growth();
         if (schedule_.exhausted(signals())) return StopReason::cut_short;
+        if (collapses && is_saturated()) {
+            if (state_.options.learn_topology && !stages.over()) learn_topology(true);
+            return StopReason::target_reached;
+        }
         if (!report_due()) continue;
         done = std::max(done, static_cast<double>(network().vertex_count() - begin) / (goal - begin));
         if (!report("Learning", done, progress)) return StopReason::cancelled;
@@ -156,6 +161,13 @@ int Learner::batch_size() const {
 
 bool Learner::vertex_split() {
     return network().vertex_count() < state_.options.grow_to && neuralmesh::vertex_split(state_);
+}
+
+/// Whether the network has not grown since the last call, and most splits were refused.
+bool Learner::is_saturated() {
+    const Growth now{network().vertex_count(), state_.splits, state_.splits_refused};
+    const Growth last = std::exchange(growth_, now);
+    return now.vertices <= last.vertices && now.refused - last.refused > now.splits - last.splits;
 }
 
 int Learner::half_edge_collapse() {

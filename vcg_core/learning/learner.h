@@ -102,6 +102,7 @@ private:
     template <class AfterSignal>
     void learn_batch(int count, const AfterSignal& after_signal);
     StopReason grow(Progress& progress);
+    bool is_saturated();
     void force_growth();
     bool report_due();
     bool report(const char* doing, double fraction, Progress& progress) const;
@@ -120,6 +121,12 @@ private:
     BasicStepBatch batch_;
     BatchLimit batch_limit_;
     MemoryOrder memory_order_;
+    /// At the last call of is_saturated().
+    struct Growth {
+        int vertices = 0;
+        std::int64_t splits = 0, refused = 0;
+    };
+    Growth growth_;
     std::int64_t last_report_ = 0;
     Random topology_random_;
     int topology_changes_ = 0;

@@ -51,6 +51,7 @@ struct LearningState {
     std::int64_t signals = 0;          ///< learned so far
     std::int64_t splits = 0;
     std::int64_t collapses = 0;
+    std::int64_t splits_refused = 0;  ///< because the points carry no shorter edges
 };
 
 }  // namespace neuralmesh

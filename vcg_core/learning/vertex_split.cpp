@@ -82,15 +82,26 @@ bool split_along_longest_edge(LearningState& state, VertexId v) {
     return true;
 }
 
+/// Whether the edges of \p v are as short as the noise of the points allows.
+bool is_fine_enough(const LearningState& state, VertexId v) {
+    const NoiseByPlace* noise = state.options.noise;
+    return noise != nullptr && squared_mean_edge(state.network, v) <
+                                   static_cast<double>(noise->least_squared_edge_at(state.network.position(v)));
+}
+
 }  // namespace
 
 bool vertex_split(LearningState& state) {
+    bool any_fine = false;
     for (int tried = 0; tried < kMostTried; ++tried) {
         const VertexId v = state.utility_counters.highest();
-        if (v < 0) return false;
-        if (split_along_longest_edge(state, v)) return true;
+        if (v < 0) break;
+        const bool fine = is_fine_enough(state, v);
+        if (!fine && split_along_longest_edge(state, v)) return true;
+        any_fine = any_fine || fine;
         state.utility_counters.defer(v);
     }
+    state.splits_refused += any_fine ? 1 : 0;
     return false;
 }
 

@@ -49,8 +49,8 @@ FitScene roof_scene(double noise = 0) {
 PerVertex<Vector3> moves_of(const FitScene& scene, double noise = 0, int threads = 1,
                             CreaseMoves which = CreaseMoves::likely) {
     ThreadTeam team(threads);
-    return moves_to_creases(scene.network, scene.surface, scene.points, static_cast<float>(noise * noise / 3),
-                            team, which);
+    const PerVertex<float> variances(scene.network.slot_count(), static_cast<float>(noise * noise / 3));
+    return moves_to_creases(scene.network, scene.surface, scene.points, variances, team, which);
 }
 
 int count_moved(const PerVertex<Vector3>& moves) {

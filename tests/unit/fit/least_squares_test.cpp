@@ -107,7 +107,7 @@ TEST(BendingWeights, HaveTheirBitsWhereThereIsABoundary) {
     const Surface surface(network);
     ThreadTeam team(2);
     const PerVertex<float> stiffness(network.slot_count(), 0.5F);
-    const PointToPlaneSystem system(network, surface, points_on(surface, 12, sine), team, stiffness);
+    const PointToPlaneSystem system(network, surface, points_on(surface, 12, sine), team, {stiffness, {}});
     expect_bits_of_each_alone(system, {0.01F, 1, 8});
 }
 
@@ -183,7 +183,7 @@ TEST_F(LeastSquares, MeasuresThePointsAsDefined) {
 TEST_F(LeastSquares, TakesStiffnessForBendingWeight) {
     constexpr float kStiffness = 3;
     const PerVertex<float> even(network.slot_count(), kStiffness);
-    const PointToPlaneSystem stiff(network, surface, points, team, even);
+    const PointToPlaneSystem stiff(network, surface, points, team, {even, {}});
     const Matrix expected = matrix_of(system, network.slot_count(), 0.5F + kStiffness);
     EXPECT_LT((matrix_of(stiff, network.slot_count(), 0.5F) - expected).norm(), 1e-5 * expected.norm());
     EXPECT_LT((flat(stiff.right_side(0.5F)) - flat(system.right_side(0.5F + kStiffness))).norm(),
