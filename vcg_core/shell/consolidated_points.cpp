@@ -21,7 +21,7 @@ using Place = NearestPoints::Place;
 constexpr float kSupport = 1.6F;
 constexpr int kPasses = 2;
 /// The radius grows in steps, up to 2.5 times.
-constexpr int kStepsOfNoise = 4, kMostSteps = 9;
+constexpr int kStepsOfNoise = 4, kMostSteps = 4;
 constexpr float kGrowth = 1.35F;
 constexpr float kThin = 0.15F;
 

@@ -29,6 +29,11 @@ constexpr float kSupport = 1.6F;
 constexpr float kGrowth = 1.35F;
 constexpr int kSteps = 7;
 
+/// A place speaks for what is not farther than so many of its radii: places are some four apart. In the
+/// crowd of a denser surface, as between two depths, it has no say: a surface of its own has some 32 points.
+constexpr float kSpeaksFor = 8;
+constexpr std::size_t kCrowd = 96;
+
 std::vector<Place> chosen_places(const NearestPoints& cloud) {
     const std::size_t points = cloud.size();
     const std::size_t wanted =
@@ -52,7 +57,9 @@ void find_radius(const NearestPoints& cloud, std::vector<Point3f>& near, Surveye
     place.clutter = true;
     for (int step = 0; step < kSteps && place.clutter; ++step) {
         if (step > 0) place.radius *= kGrowth;
-        cloud.within(place.position, kSupport * place.radius, kMostForQuadric, near);
+        const std::size_t count =
+            cloud.within(place.position, kSupport * place.radius, kMostForQuadric, near);
+        if (step == 0) place.crowded = count > kCrowd;
         const LocalQuadric quadric = local_quadric(near, place.position, kSupport * place.radius);
         place.deviation = quadric.holds() ? quadric.deviation : place.radius;
         place.normal = quadric.normal;
@@ -63,9 +70,6 @@ void find_radius(const NearestPoints& cloud, std::vector<Point3f>& near, Surveye
                         kLeastDeviations * place.deviation > place.radius;
     }
 }
-
-/// A place speaks for what is not farther than so many of its radii: places are some four apart.
-constexpr float kSpeaksFor = 8;
 
 /// Replaces a number of every place by the median of the places around it that are no clutter: leaves above
 /// the ground say nothing of it. Where only clutter is around, by that of all.
@@ -82,7 +86,8 @@ void smooth(const NearestPoints& index, std::vector<SurveyedPlace>& places, floa
         std::vector<float> values, orderly;
         for (const NearestPoints::Neighbour& n : near) {
             const float reach = kSpeaksFor * reaches[n.place];
-            if (n.squared_distance > reach * reach) continue;
+            const bool speaks = places[static_cast<std::size_t>(i)].crowded || n.squared_distance <= reach * reach;
+            if (!speaks) continue;
             values.push_back(places[n.place].*number);
             if (!places[n.place].clutter) orderly.push_back(values.back());
         }

@@ -33,6 +33,7 @@ struct SurveyedPlace {
     float deviation = 0;
     float radius = 0;      ///< the least on which the points show a surface
     bool clutter = false;  ///< no radius shows one: leaves, grass, points between two depths
+    bool crowded = false;  ///< many more points are near than its own spacing lets expect
     bool on_curve = false;  ///< clutter whose points lie on a line or narrow curve
     float kurtosis = 3;    ///< as in LocalQuadric, on that radius
     float spread = 0;      ///< the same
