@@ -20,14 +20,20 @@ namespace {
 /// million from 500 points, would take all memory at once; learning takes its time and can be cancelled.
 constexpr int kMostPerCarried = 64;
 
+/// With fewer points per vertex, learning and fit follow the accidents of the points; a vertex that has to
+/// share its points costs more than its absence. Chosen by the points of
+/// tests/experiments/accuracy/scan_table.py.
+constexpr std::size_t kPointsPerCarried = 2;
+
 std::size_t carried_by_points(const LearningTask& task) {
-    return task.noise_by_place->carried_by(task.target().positions().size());
+    const std::size_t points = task.target().positions().size();
+    return task.noise_by_place ? task.noise_by_place->carried_by(points) : points / kPointsPerCarried;
 }
 
 /// Whether the fit inserts the vertices that the points do not carry.
 bool fills_up(const LearningTask& task, const Settings& settings) {
     constexpr std::size_t kFewestPoints = 256;
-    return settings.redistributes_vertices() && task.encloses_space && task.noise_by_place != nullptr &&
+    return settings.redistributes_vertices() && task.encloses_space && !task.target().has_faces() &&
            task.target().positions().size() >= kFewestPoints;
 }
 
@@ -174,7 +180,9 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
     options.by_volume = plan.by_volume && network.vertex_count() > plan.carried;
     options.learned_briefly = learns_briefly(plan);
     options.calm = plan.calm || options.by_volume;
-    options.refine_to = fills_up(task, settings) ? settings.target_vertices : 0;
+    // Growth by the noise of each place may end early.
+    const bool refines = plan.carried < settings.target_vertices || (task.noise_by_place && fills_up(task, settings));
+    options.refine_to = refines ? settings.target_vertices : 0;
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
     // error is largest at the rim, and vertices inserted there stick out.
     options.redistribute = settings.utility_counter == kNormalVariation && task.encloses_space;
@@ -219,8 +227,7 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
     // If the rounds of the fit were discarded, no vertex has moved to the place of another.
     result.measures = measures_of(learner, learner.crease_measure(), result.network,
                                   moved ? report.sources : PerVertex<VertexId>(), settings);
-    if (plan.carried < settings.target_vertices)
-        result.carried = static_cast<int>(carried_by_points(task));
+    if (plan.carried < settings.target_vertices) result.carried = static_cast<int>(carried_by_points(task));
     return result;
 }
 

@@ -147,7 +147,11 @@ void measure_noise(LearningTask& task, Survey& survey, const Settings& settings)
     const std::vector<vcg::Point3f>& points = task.target().positions();
     const int vertices = settings.target_vertices;
     task.noise = noise_in_edges(survey.of(points), static_cast<double>(points.size()) / vertices);
-    if (points.size() < static_cast<std::size_t>(LocalQuadric::kLeastPoints) || task.target().is_exact()) return;
+    // Closed surfaces are learned from even samples mostly, which one number describes. With the noise of each
+    // place feline would have 1.15 times the error at .1 % of the diagonal (50,000 points, 2,000 vertices).
+    const bool open = task.network.boundary_loop_count() > 0;
+    if (!open || points.size() < static_cast<std::size_t>(LocalQuadric::kLeastPoints) || task.target().is_exact())
+        return;
     const SurfaceSurvey& surface = survey.surface_of(task.target())->surface;
     if (surface.clutter() < 1) task.noise_by_place = std::make_shared<NoiseByPlace>(surface);
 }

@@ -285,8 +285,7 @@ bool is_near_boundary(const Network& network, VertexId v) {
 
 PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surface,
                                     const PointsByFace& points, const PerVertex<float>& variances,
-                                    ThreadTeam& team,
-                                    CreaseMoves which) {
+                                    ThreadTeam& team, CreaseMoves which) {
     PerVertex<Vector3> moves(network.slot_count(), Vector3::Zero());
     PerFace<PlanesOfPoints::Side> sides(surface.face_count());
     parallel_for(sides.size(), kFacesAtATime, team, [&](int f) {

@@ -28,7 +28,6 @@ enum class CreaseMoves { likely, sure };
 /// threads.
 PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surface,
                                     const PointsByFace& points, const PerVertex<float>& variances,
-                                    ThreadTeam& team,
-                                    CreaseMoves which = CreaseMoves::likely);
+                                    ThreadTeam& team, CreaseMoves which = CreaseMoves::likely);
 
 }  // namespace neuralmesh

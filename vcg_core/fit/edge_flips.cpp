@@ -149,8 +149,7 @@ private:
 }  // namespace
 
 std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface, const PointsByFace& points,
-                                 float least_gain, ThreadTeam& team,
-                                 const PerVertex<float>& variances) {
+                                 float least_gain, ThreadTeam& team, const PerVertex<float>& variances) {
     const Support support(network, surface, points);
     const FlipGains gains(surface, points, support);
     std::vector<EdgeFlip> flips = parallel_collect<EdgeFlip>(
@@ -163,9 +162,8 @@ std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface,
                 q.f = face_with(surface, a, b, q.c);
                 q.g = face_with(surface, b, a, q.d);
                 const float variance =
-                    variances.empty()
-                        ? 1.0F
-                        : (variances[a] + variances[b] + variances[q.c] + variances[q.d]) / 4;
+                    variances.empty() ? 1.0F
+                                      : (variances[a] + variances[b] + variances[q.c] + variances[q.d]) / 4;
                 const float gain = gains.gain(q, least_gain * variance);
                 if (gain >= 0) found.push_back({gain, a, b});
             }

@@ -24,8 +24,7 @@ struct EdgeFlip {
 /// triangle_quality() of the two faces by a fifth. kFlipRules of face_rules.h hold. \p surface is that of the
 /// network. O(points). The result does not depend on the number of threads.
 std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface, const PointsByFace& points,
-                                 float least_gain, ThreadTeam& team,
-                                 const PerVertex<float>& variances = {});
+                                 float least_gain, ThreadTeam& team, const PerVertex<float>& variances = {});
 
 /// Flips the edges \p found, in their order, leaving out those with a face in common with an earlier flip and
 /// those with a \p barred corner. \return the number of flips

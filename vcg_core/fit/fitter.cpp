@@ -38,11 +38,6 @@ constexpr int kFacesAtATime = 128;
 constexpr float kFirstWeights[] = {0.01F, 0.1F, 1.0F, 8.0F, 50.0F};
 constexpr float kWeightDown = 8;
 constexpr float kWeightUp = 2.5F;
-/// Likely gap of an edge (see PointToPlaneSystem) on a surface without noise, in edge lengths. By Bayes' rule
-/// it determines how stiff noise makes the surface. A frame of a depth camera in a room has normals that are
-/// 2.3 degrees off with .05 and 2.8 with .07 (2,500 vertices), 3.8 with .1 (10,000). Bunny with noise of .3 % of
-/// the diagonal and 4 points per vertex has 1.2 times the error of .07 with .05, and .9 times with .1.
-constexpr float kLikelyGap = 0.06F;
 /// Where parts are thin, the survey of the points takes their two sides for one thick one, and the mesh tells
 /// them apart. Points vary about a mesh that follows them less than they do about the surface, but not by so
 /// much.
@@ -51,13 +46,19 @@ constexpr float kMostOfLocal = 2;
 constexpr float kFirstLeastWeight = 0.3F;
 constexpr float kLeastWeightDecay = 0.1F;
 constexpr float kLastLeastWeight = 1e-3F;
-/// With fewer points for each vertex the layers of points are not looked for.
+/// Likely gap of an edge (see PointToPlaneSystem) on a surface without noise, in edge lengths. By Bayes' rule
+/// it determines the least bending weight under noise.
+constexpr float kLikelyGap = 0.05F;
+/// The same with fewer points per vertex than kFewPoints, where it rarely takes a bend for noise.
+constexpr float kLikelyGapOfFew = 0.1F;
 constexpr float kFewPoints = 5;
+/// The same where the noise of each place is known. A frame of a depth camera in a room has normals that are
+/// 2.3 degrees off with .05 and 2.8 with .07 (2,500 vertices), 3.8 with .1 (10,000).
+constexpr float kLikelyGapByPlace = 0.06F;
 /// Layers of points: the local stiffness in least bending weights of independent noise, and the rounds that
 /// take out the folds that learning has left between layers, with their bending weight. Chosen on
 /// the clouds of tests/experiments/accuracy/scan_table.py --groups levels.
 constexpr float kLayerStiffness = 3;
-constexpr float kLikelyGapOfLayers = 0.05F;
 constexpr int kStiffRounds = 3;
 constexpr float kStiffWeight = 50;
 constexpr float kWeightAfterStiff = 1;
@@ -103,13 +104,13 @@ float outlier_distance(const Surface& surface, const std::vector<Hit>& hits) {
 
 }  // namespace
 
-std::vector<float> BendingSearch::next_weights() {
+std::vector<float> BendingSearch::next_weights(float least) {
     std::vector<float> weights{chosen_, chosen_ / kWeightDown, chosen_ * kWeightUp};
     if (rounds_ == 0) weights.assign(std::begin(kFirstWeights), std::end(kFirstWeights));
     float least_of_round = kFirstLeastWeight;
     for (int i = 0; i < rounds_; ++i) least_of_round *= kLeastWeightDecay;
     ++rounds_;
-    const float least = std::max(least_of_round, kLastLeastWeight);
+    least = std::max({least, least_of_round, kLastLeastWeight});
     for (float& weight : weights) weight = std::max(weight, least);
     weights.erase(std::unique(weights.begin(), weights.end()), weights.end());
     return weights;
@@ -200,7 +201,7 @@ PerVertex<float> Fitter::examine_variances(const Surface& surface, const PointsB
 /// By Bayes' rule, as the least weight, but with the variance around each vertex.
 PerVertex<float> Fitter::stiffness_by(const PerVertex<float>& variances, const Surface& surface,
                                       const PointsByFace& points) const {
-    const float gap = kLikelyGapOfLayers * mean_edge_length(surface);
+    const float gap = kLikelyGap * mean_edge_length(surface);
     const float points_per_vertex = points.per_vertex(network_.vertex_count());
     const float per_variance = kLayerStiffness / (gap * gap * points_per_vertex);
     const bool stiff_by_places = stiff_rounds_ > 0 && !(layering_ > 0);
@@ -248,12 +249,16 @@ void Fitter::measure_noise(const Surface& surface, const PointsByFace& points) {
 
 /// By Bayes' rule: what gaps of likely length weigh, in points per vertex. At places with layers more.
 VertexNoise Fitter::noise_around(const Surface& surface, const PointsByFace& points) {
-    const float gap = kLikelyGap * mean_edge_length(surface);
-    const float per_variance = 1 / (gap * gap * points.per_vertex(network_.vertex_count()));
-    VertexNoise noise{variances_, variances_};
-    for (float& stiffness : noise.stiffness) stiffness *= per_variance;
+    VertexNoise noise;
+    if (noise_ != nullptr) {
+        const float gap = kLikelyGapByPlace * mean_edge_length(surface);
+        const float per_variance = 1 / (gap * gap * points.per_vertex(network_.vertex_count()));
+        noise = {variances_, variances_};
+        for (float& stiffness : noise.stiffness) stiffness *= per_variance;
+    }
     if (!layered_) return noise;
     const PerVertex<float> of_layers = stiffness_by(examine_variances(surface, points), surface, points);
+    noise.stiffness.resize(of_layers.size(), 0);
     for (VertexId v = 0; v < of_layers.size(); ++v)
         noise.stiffness[v] = std::max(noise.stiffness[v], of_layers[v]);
     return noise;
@@ -270,14 +275,18 @@ void Fitter::silence_strays(const Surface& surface, PointsByFace& points) {
     });
 }
 
-std::vector<float> Fitter::choose_weights() {
-    std::vector<float> weights = bending_.next_weights();
+std::vector<float> Fitter::choose_weights(const Surface& surface, const PointsByFace& points) {
+    const float points_per_vertex = points.per_vertex(network_.vertex_count());
+    const float gap =
+        (points_per_vertex < kFewPoints ? kLikelyGapOfFew : kLikelyGap) * mean_edge_length(surface);
+    const float least = noise_ != nullptr ? 0 : noise_variance_ / (gap * gap * points_per_vertex);
+    std::vector<float> weights = bending_.next_weights(least);
     if (stiff_rounds_ > 0 && layering_ > 0) weights = {kStiffWeight};
     return weights;
 }
 
 double Fitter::solve(const PointsByFace& points, Surface& surface, float hold) {
-    const std::vector<float> weights = choose_weights();
+    const std::vector<float> weights = choose_weights(surface, points);
     const Surface start = surface;
     const MoveLimits limits(network_, start, team_);
     const PointToPlaneSystem system(network_, surface, points, team_, noise_around(surface, points), hold);
@@ -318,8 +327,7 @@ void Fitter::place_vertices(const Surface& surface) {
 }
 
 void Fitter::move_to_creases(Surface& surface, const PointsByFace& points, CreaseMoves which) {
-    const PerVertex<Vector3> moves =
-        moves_to_creases(network_, surface, points, variances_, team_, which);
+    const PerVertex<Vector3> moves = moves_to_creases(network_, surface, points, variances_, team_, which);
     if (std::all_of(moves.begin(), moves.end(), [](const Vector3& way) { return way.isZero(0); })) return;
     const Surface start = surface;
     const MoveLimits limits(network_, start, team_);
@@ -328,7 +336,10 @@ void Fitter::move_to_creases(Surface& surface, const PointsByFace& points, Creas
 }
 
 LeastSplitGain Fitter::least_split_gain(const Surface& surface) const {
-    return {kMinSplitVariances, kMaxSplitVariances, 1 / kSmallNoise, mean_edge_length(surface)};
+    if (noise_ != nullptr)
+        return {kMinSplitVariances, kMaxSplitVariances, 1 / kSmallNoise, mean_edge_length(surface)};
+    return {kMinSplitVariances * noise_variance_, kMaxSplitVariances * noise_variance_,
+            std::sqrt(noise_variance_) / kSmallNoise, mean_edge_length(surface)};
 }
 
 /// Moves the starts of walks from removed vertices to the vertices they were collapsed into.
@@ -346,7 +357,7 @@ int Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& po
         std::max(1, static_cast<int>(kMovedShare * static_cast<double>(network_.vertex_count())));
     const std::vector<Collapse> collapses = find_collapses(network_, surface, points, team_);
     const std::vector<EdgeSplit> splits =
-        find_splits(network_, surface, points, least_split_gain(surface), team_, variances_);
+        find_splits(network_, surface, points, least_split_gain(surface), team_, by_place());
     const VertexMoves done = guarded(surface, [&](const PerVertex<char>& barred) {
         return redistribute(network_, collapses, splits, max_pairs, barred);
     });
@@ -363,7 +374,8 @@ int Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& po
 int Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
     points.update_feet(surface, team_);
     const std::vector<EdgeFlip> found =
-        find_flips(network_, surface, points, kFlipVariances, team_, variances_);
+        find_flips(network_, surface, points, noise_ != nullptr ? kFlipVariances : kFlipVariances * noise_variance_, team_,
+                   by_place());
     return guarded(surface, [&](const PerVertex<char>& barred) {
         return neuralmesh::flip_edges(network_, found, barred);
     });

@@ -26,8 +26,8 @@ namespace neuralmesh {
 /// still be assigned to wrong faces.
 class BendingSearch {
 public:
-    /// The weights to try. Starts a round.
-    std::vector<float> next_weights();
+    /// The weights to try, none below \p least, which the noise demands. Starts a round.
+    std::vector<float> next_weights(float least);
     /// \p weight was the best of them.
     void choose(float weight) { chosen_ = weight; }
 
@@ -42,7 +42,7 @@ public:
     /// Keeps references to \p network and \p team. \pre neither part of \p points is empty
     Fitter(Network& network, PointChoice points, ThreadTeam& team);
 
-    /// From now on takes the noise of the points from \p noise, which must outlive this.
+    /// From now on takes the noise of the points, place by place, from \p noise, which must outlive this.
     void know_noise(const NoiseByPlace& noise) { noise_ = &noise; }
     /// From now on leaves out points that StrayPoints tells, anew with each assignment.
     void expect_strays() { expects_strays_ = true; }
@@ -113,11 +113,16 @@ private:
     double with_bending(double error, const Surface& surface) const;
     void examine_layers(const Surface& surface, const PointsByFace& points, bool lags);
     void measure_noise(const Surface& surface, const PointsByFace& points);
+    /// The variances around the vertices where they are known; else none.
+    const PerVertex<float>& by_place() const {
+        static const PerVertex<float> none;
+        return noise_ != nullptr ? variances_ : none;
+    }
     VertexNoise noise_around(const Surface& surface, const PointsByFace& points);
     PerVertex<float> examine_variances(const Surface& surface, const PointsByFace& points);
     PerVertex<float> stiffness_by(const PerVertex<float>& variances, const Surface& surface,
                                   const PointsByFace& points) const;
-    std::vector<float> choose_weights();
+    std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
     LeastSplitGain least_split_gain(const Surface& surface) const;
     /// The standard deviation of the noise in mean edge lengths of \p surface.
     float noise_in_edges(const Surface& surface) const;
@@ -142,7 +147,7 @@ private:
     TrackedPoints fitted_;
     TrackedPoints set_aside_;  ///< fitted points that the reduction does not use
     HeldOut held_out_;
-    float outlier_distance_ = 0;         ///< from the first assignment; fixed, so that errors stay comparable
+    float outlier_distance_ = 0;  ///< from the first assignment; fixed, so that errors stay comparable
     const NoiseByPlace* noise_ = nullptr;
     float noise_variance_ = 0;           ///< from the last assignment
     PerVertex<float> variances_;         ///< of the noise around each vertex, from the last assignment

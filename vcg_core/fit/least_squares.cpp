@@ -83,8 +83,8 @@ PointToPlaneSystem::ChunksOfSums PointToPlaneSystem::sums_of_faces(const Surface
 }
 
 PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& surface,
-                                       const PointsByFace& points, ThreadTeam& team,
-                                       const VertexNoise& noise, float hold)
+                                       const PointsByFace& points, ThreadTeam& team, const VertexNoise& noise,
+                                       float hold)
     : network_(network),
       points_per_vertex_(points.per_vertex(network.vertex_count())),
       row_(network.slot_count() + 1, 0),
@@ -198,10 +198,10 @@ void PointToPlaneSystem::add_bending(const Surface& surface, const VertexNoise& 
     const float crease = std::max(kCrease * median(gaps), 1e-9F);
     for (std::size_t i = 0; i < gaps.size(); ++i) {
         BendingTerm& term = bending_terms_[i];
-        float squared_crease = crease * crease;
+        float scale = crease;
         if (!noise.variances.empty())
-            squared_crease = std::max(squared_crease, mean_of(noise.variances, term.corner));
-        term.weight = points_per_vertex_ / (1 + gaps[i] * gaps[i] / squared_crease);
+            scale = std::max(scale, std::sqrt(mean_of(noise.variances, term.corner)));
+        term.weight = points_per_vertex_ / (1 + (gaps[i] / scale) * (gaps[i] / scale));
         if (!noise.stiffness.empty()) stiffen(term, mean_of(noise.stiffness, term.corner));
         for (std::size_t k = 0; k < 4; ++k) {
             const float c = term.coefficient[k];

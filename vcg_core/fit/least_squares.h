@@ -41,8 +41,9 @@ struct VertexNoise {
 /// keep. gap_e is the vector between the points where the two diagonals of the edge's quad cross when the
 /// quad is unfolded into the plane: 0 exactly where the surface is flat, whatever the shape of the triangles.
 /// c_e falls where the gap is large among the gaps of the mesh, so that creases are not rounded, and longer
-/// than the deviation of the points there, which is no crease; c_v does the same at corners of the boundary. Points beyond a boundary edge count by their distance from the plane of
-/// its face only: the mean of their distances from the edge would leave it short of their end.
+/// than the deviation of the points there, which is no crease; c_v does the same at corners of the boundary.
+/// Points beyond a boundary edge count by their distance from the plane of its face only: the mean of their
+/// distances from the edge would leave it short of their end.
 class PointToPlaneSystem {
 public:
     /// The hold that makes the blocks regular, but hardly slows sliding.

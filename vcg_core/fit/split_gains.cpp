@@ -136,7 +136,8 @@ std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surfac
     for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) {
         EdgeSplit split = split_of(surface, points, sums, 0, target.a, target.b);
         add_boundary_gain(split, target);
-        if (split.gain >= least_for(target.a, target.b) * points.mean_weight(target.face, target.face)) splits.push_back(split);
+        if (split.gain >= least_for(target.a, target.b) * points.mean_weight(target.face, target.face))
+            splits.push_back(split);
     }
     std::stable_sort(splits.begin(), splits.end(),
                      [](const EdgeSplit& x, const EdgeSplit& y) { return x.gain > y.gain; });

@@ -39,7 +39,8 @@ struct LeastSplitGain {
 /// squares over the offset of the new vertex from the middle of its edge, along the mean normal of the edge's
 /// faces. The new vertex of a boundary edge also follows the edge's BoundaryTarget, which counts the distance
 /// between the boundary and where the points end; such an edge is that of a face (a, b, c). \p surface is
-/// that of the network, \p variances those of the noise around its vertices (empty: 1). O(points + vertices). The result does not depend on the number of threads.
+/// that of the network, \p variances those of the noise around its vertices (empty: 1). O(points + vertices).
+/// The result does not depend on the number of threads.
 std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surface, const PointsByFace& points,
                                    const LeastSplitGain& least_gain, ThreadTeam& team,
                                    const PerVertex<float>& variances = {});

@@ -15,7 +15,8 @@ namespace {
 /// tests/experiments/accuracy/scan_table.py.
 constexpr double kPointsPerCarried = 2;
 
-/// Within so many deviations a network that learns shows no direction along the surface, as the points do not.
+/// Within so many deviations a network that learns shows no direction along the surface, as the points do
+/// not.
 float least_squared_edge(float variance) { return kLeastDeviations * kLeastDeviations * variance; }
 
 std::vector<vcg::Point3f> positions_of(const SurfaceSurvey& survey) {
