@@ -21,9 +21,8 @@ using Place = NearestPoints::Place;
 constexpr float kSupport = 1.6F;
 constexpr int kPasses = 2;
 /// The radius grows in steps, up to 2.5 times.
-constexpr int kStepsOfNoise = 4, kMostSteps = 4;
+constexpr int kSteps = 4;
 constexpr float kGrowth = 1.35F;
-constexpr float kThin = 0.15F;
 
 /// Without noise points may be closer than the radius of a quadric, which needs a dozen of them.
 float thinning_radius(const SurveyedPlace& place) {
@@ -68,7 +67,7 @@ struct Grounded {
     float radius = 0;
 };
 
-/// Fits a quadric, and again around its foot. \return false if the points are as thick as wide, or a line
+/// Fits a quadric, and again around its foot. \return false if the points are as thick as wide
 bool fit_twice(const NearestPoints& cloud, const Point3f& place, float radius, std::vector<Point3f>& near,
                LocalQuadric& quadric) {
     Point3f at = place;
@@ -86,13 +85,9 @@ bool fit_twice(const NearestPoints& cloud, const Point3f& place, float radius, s
 Grounded grounded(const NearestPoints& cloud, const Point3f& place, float radius) {
     std::vector<Point3f> near;
     Grounded result{LocalQuadric(), radius};
-    int held = 0;
-    for (int step = 0; step < kMostSteps && held < kStepsOfNoise; ++step, result.radius *= kGrowth) {
+    for (int step = 0; step < kSteps; ++step, result.radius *= kGrowth) {
         if (!fit_twice(cloud, place, result.radius, near, result.quadric)) break;
-        if (!result.quadric.holds()) continue;
-        const bool thin = step < kStepsOfNoise || result.quadric.flatness < kThin;
-        if (thin && kLeastDeviations * result.quadric.deviation <= result.radius) return result;
-        ++held;
+        if (result.quadric.holds() && kLeastDeviations * result.quadric.deviation <= result.radius) return result;
     }
     return {LocalQuadric(), radius};
 }

@@ -104,7 +104,7 @@ void NearestPoints::nearest(Place place, int k, std::vector<Neighbour>& result) 
     visit_near(point(place), add, [&] { return bound; });
 }
 
-std::size_t NearestPoints::within(const vcg::Point3f& centre, float radius, std::size_t most,
+void NearestPoints::within(const vcg::Point3f& centre, float radius, std::size_t most,
                                   std::vector<vcg::Point3f>& result) const {
     std::vector<Place> places;
     const float limit = radius * radius;
@@ -119,7 +119,6 @@ std::size_t NearestPoints::within(const vcg::Point3f& centre, float radius, std:
     while (places.size() / stride > most) stride *= 2;
     result.clear();
     for (std::size_t i = 0; i < places.size(); i += stride) result.push_back(point(places[i]));
-    return places.size();
 }
 
 NearestPoints::Place NearestPoints::nearest_to(const vcg::Point3f& centre) const {

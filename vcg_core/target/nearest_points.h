@@ -54,8 +54,8 @@ public:
     bool any_within(const vcg::Point3f& centre, float radius, const Predicate& counts) const;
 
     /// The points within \p radius of \p centre, in the order of their places; where there are more than \p most,
-    /// every second, fourth, ... of them. \p result is overwritten. \return how many there are
-    std::size_t within(const vcg::Point3f& centre, float radius, std::size_t most,
+    /// every second, fourth, ... of them. \p result is overwritten.
+    void within(const vcg::Point3f& centre, float radius, std::size_t most,
                        std::vector<vcg::Point3f>& result) const;
     /// The place nearest to \p centre; of several the lowest.
     Place nearest_to(const vcg::Point3f& centre) const;

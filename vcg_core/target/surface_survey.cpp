@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
@@ -28,11 +27,6 @@ constexpr float kSupport = 1.6F;
 /// The radius grows by a factor in steps, to eight times at most.
 constexpr float kGrowth = 1.35F;
 constexpr int kSteps = 7;
-
-/// A place speaks for what is not farther than so many of its radii: places are some four apart. In the
-/// crowd of a denser surface, as between two depths, it has no say: a surface of its own has some 32 points.
-constexpr float kSpeaksFor = 8;
-constexpr std::size_t kCrowd = 96;
 
 std::vector<Place> chosen_places(const NearestPoints& cloud) {
     const std::size_t points = cloud.size();
@@ -57,9 +51,7 @@ void find_radius(const NearestPoints& cloud, std::vector<Point3f>& near, Surveye
     place.clutter = true;
     for (int step = 0; step < kSteps && place.clutter; ++step) {
         if (step > 0) place.radius *= kGrowth;
-        const std::size_t count =
-            cloud.within(place.position, kSupport * place.radius, kMostForQuadric, near);
-        if (step == 0) place.crowded = count > kCrowd;
+        cloud.within(place.position, kSupport * place.radius, kMostForQuadric, near);
         const LocalQuadric quadric = local_quadric(near, place.position, kSupport * place.radius);
         place.deviation = quadric.holds() ? quadric.deviation : place.radius;
         place.normal = quadric.normal;
@@ -77,23 +69,35 @@ void smooth(const NearestPoints& index, std::vector<SurveyedPlace>& places, floa
             ThreadTeam& team) {
     constexpr int kAtATime = 64;
     constexpr std::size_t kFewest = 3;
-    std::vector<float> smoothed(places.size()), reaches;
-    for (const SurveyedPlace& p : places) reaches.push_back(std::max(p.radius, kLeastSpacings * p.spacing));
+    std::vector<float> smoothed(places.size());
     parallel_for(static_cast<int>(places.size()), kAtATime, team, [&](int i) {
         std::vector<NearestPoints::Neighbour> near;
         index.nearest(static_cast<Place>(i), kPlacesAround, near);
         near.push_back({0, static_cast<Place>(i)});
         std::vector<float> values, orderly;
         for (const NearestPoints::Neighbour& n : near) {
-            const float reach = kSpeaksFor * reaches[n.place];
-            const bool speaks = places[static_cast<std::size_t>(i)].crowded || n.squared_distance <= reach * reach;
-            if (!speaks) continue;
             values.push_back(places[n.place].*number);
             if (!places[n.place].clutter) orderly.push_back(values.back());
         }
         smoothed[static_cast<std::size_t>(i)] = median(orderly.size() >= kFewest ? orderly : values);
     });
     for (std::size_t i = 0; i < places.size(); ++i) places[i].*number = smoothed[i];
+}
+
+/// The radius by its spacing alone that a quarter of the surface, its sparsest part, exceeds.
+float radius_of_sparse_part(const std::vector<SurveyedPlace>& places) {
+    constexpr double kBelow = 0.75;
+    std::vector<float> spacings;
+    double all = 0, below = 0;
+    for (const SurveyedPlace& p : places) {
+        spacings.push_back(p.spacing);
+        all += static_cast<double>(p.spacing) * static_cast<double>(p.spacing);
+    }
+    std::sort(spacings.begin(), spacings.end());
+    // All places stand for as many points, so for areas in proportion to their squared spacings.
+    for (const float h : spacings)
+        if ((below += static_cast<double>(h) * static_cast<double>(h)) >= kBelow * all) return kLeastSpacings * h;
+    return kLeastSpacings * spacings.back();
 }
 
 std::vector<Point3f> positions_of(const NearestPoints& cloud) {
@@ -117,6 +121,7 @@ SurfaceSurvey::SurfaceSurvey(const CloudSurvey& survey, ThreadTeam& team)
         place(i).position = index_.point(static_cast<Place>(i));
         place(i).spacing = spacing_at(cloud, chosen[index_.index(static_cast<Place>(i))], near);
     });
+    sparse_radius_ = radius_of_sparse_part(places_);
     smooth(index_, places_, &SurveyedPlace::spacing, team);
     parallel_for(count, kAtATime, team, [&](int i) {
         std::vector<Point3f> near;
@@ -136,20 +141,6 @@ double SurfaceSurvey::median_of(float SurveyedPlace::*number) const {
     std::vector<float> values;
     for (const SurveyedPlace& p : places_) values.push_back(p.*number);
     return static_cast<double>(median(std::move(values)));
-}
-
-double SurfaceSurvey::radius() const {
-    constexpr double kBelow = 0.75;
-    std::vector<std::pair<float, float>> areas;  // by radius; all places stand for as many points
-    double all = 0, below = 0;
-    for (const SurveyedPlace& p : places_) {
-        areas.emplace_back(p.radius, p.spacing * p.spacing);
-        all += static_cast<double>(areas.back().second);
-    }
-    std::sort(areas.begin(), areas.end());
-    for (const auto& [radius, area] : areas)
-        if ((below += static_cast<double>(area)) >= kBelow * all) return static_cast<double>(radius);
-    return static_cast<double>(areas.back().first);
 }
 
 LayerFigures SurfaceSurvey::layers() const {

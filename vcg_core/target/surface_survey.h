@@ -33,7 +33,6 @@ struct SurveyedPlace {
     float deviation = 0;
     float radius = 0;      ///< the least on which the points show a surface
     bool clutter = false;  ///< no radius shows one: leaves, grass, points between two depths
-    bool crowded = false;  ///< many more points are near than its own spacing lets expect
     bool on_curve = false;  ///< clutter whose points lie on a line or narrow curve
     float kurtosis = 3;    ///< as in LocalQuadric, on that radius
     float spread = 0;      ///< the same
@@ -66,13 +65,14 @@ public:
     /// The shares of the places that are clutter, and of those that lie on curves.
     double clutter() const { return share(&SurveyedPlace::clutter); }
     double curves() const { return share(&SurveyedPlace::on_curve); }
-    /// The radius that a quarter of the surface, its sparsest or noisiest part, exceeds.
-    double radius() const;
+    /// The radius, by the spacing alone, that a quarter of the surface exceeds: its sparsest part.
+    double sparse_radius() const { return static_cast<double>(sparse_radius_); }
     LayerFigures layers() const;
 
 private:
     double share(bool SurveyedPlace::*what) const;
     double median_of(float SurveyedPlace::*number) const;
+    float sparse_radius_ = 0;
     std::vector<SurveyedPlace> places_;  ///< in the order of index_
     NearestPoints index_;
 };
