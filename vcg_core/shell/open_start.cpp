@@ -35,7 +35,7 @@ using vcg::Point3f;
 constexpr int kHighestValence = 12;  // leaves room for what the reduction and the learning add
 /// The automatic bound for holes that are filled, in radii of the points around; and what is filled in any
 /// case, because it is a gap between points.
-constexpr float kGapRadii = 6, kLeastGapRadii = 3;
+constexpr float kGapRadii = 6, kLeastGapRadii = 4;
 /// Twice the width of a crack that is filled however long it is: the points on its sides have normals that
 /// contradict each other.
 constexpr float kCrackRadii = 1.5F;

@@ -63,24 +63,41 @@ void find_radius(const NearestPoints& cloud, std::vector<Point3f>& near, Surveye
     }
 }
 
-/// Replaces a number of every place by the median of the places around it that are no clutter: leaves above
-/// the ground say nothing of it. Where only clutter is around, by that of all.
-void smooth(const NearestPoints& index, std::vector<SurveyedPlace>& places, float SurveyedPlace::*number,
-            ThreadTeam& team) {
-    constexpr int kAtATime = 64;
-    constexpr std::size_t kFewest = 3;
-    std::vector<float> smoothed(places.size());
+/// For every place those around it, and itself, whose density is no other. A place is sparser than its
+/// surroundings by right if two others are so, too; one alone lies between two depths.
+std::vector<std::vector<Place>> places_around(const NearestPoints& index,
+                                              const std::vector<SurveyedPlace>& places, ThreadTeam& team) {
+    constexpr int kAtATime = 64, kCompany = 2;
+    constexpr float kOtherDensity = 3;  // in spacings
+    std::vector<std::vector<Place>> around(places.size());
     parallel_for(static_cast<int>(places.size()), kAtATime, team, [&](int i) {
         std::vector<NearestPoints::Neighbour> near;
         index.nearest(static_cast<Place>(i), kPlacesAround, near);
-        near.push_back({0, static_cast<Place>(i)});
-        std::vector<float> values, orderly;
+        std::vector<Place> all{static_cast<Place>(i)}, alike = all;
         for (const NearestPoints::Neighbour& n : near) {
-            values.push_back(places[n.place].*number);
-            if (!places[n.place].clutter) orderly.push_back(values.back());
+            all.push_back(n.place);
+            if (kOtherDensity * places[n.place].spacing > places[all.front()].spacing) alike.push_back(n.place);
         }
-        smoothed[static_cast<std::size_t>(i)] = median(orderly.size() >= kFewest ? orderly : values);
+        around[all.front()] = alike.size() > kCompany ? std::move(alike) : std::move(all);
     });
+    return around;
+}
+
+/// Replaces a number of every place by the median of the places \p around it that are no clutter: leaves above
+/// the ground say nothing of it. Where only clutter is around, by that of all.
+void smooth(const std::vector<std::vector<Place>>& around, std::vector<SurveyedPlace>& places,
+            float SurveyedPlace::*number) {
+    constexpr std::size_t kFewest = 3;
+    std::vector<float> smoothed, values, orderly;
+    for (const std::vector<Place>& of_place : around) {
+        values.clear();
+        orderly.clear();
+        for (const Place other : of_place) {
+            values.push_back(places[other].*number);
+            if (!places[other].clutter) orderly.push_back(values.back());
+        }
+        smoothed.push_back(median(orderly.size() >= kFewest ? orderly : values));
+    }
     for (std::size_t i = 0; i < places.size(); ++i) places[i].*number = smoothed[i];
 }
 
@@ -122,13 +139,14 @@ SurfaceSurvey::SurfaceSurvey(const CloudSurvey& survey, ThreadTeam& team)
         place(i).spacing = spacing_at(cloud, chosen[index_.index(static_cast<Place>(i))], near);
     });
     sparse_radius_ = radius_of_sparse_part(places_);
-    smooth(index_, places_, &SurveyedPlace::spacing, team);
+    const std::vector<std::vector<Place>> around = places_around(index_, places_, team);
+    smooth(around, places_, &SurveyedPlace::spacing);
     parallel_for(count, kAtATime, team, [&](int i) {
         std::vector<Point3f> near;
         find_radius(cloud, near, place(i));
     });
-    smooth(index_, places_, &SurveyedPlace::radius, team);
-    smooth(index_, places_, &SurveyedPlace::deviation, team);
+    smooth(around, places_, &SurveyedPlace::radius);
+    smooth(around, places_, &SurveyedPlace::deviation);
 }
 
 double SurfaceSurvey::share(bool SurveyedPlace::*what) const {

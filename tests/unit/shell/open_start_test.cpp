@@ -116,10 +116,10 @@ TEST(OpenStart, ClosesHolesUpToTheDiameterAskedFor) {
 }
 
 TEST(OpenStart, FollowsTheDensityOfTheCloud) {
-    // A square of 100 times as many points on one half as on the other.
+    // A square of ten times as many points on one half as on the other.
     Random random(1);
     const Cloud cloud = open_shapes::cut(shapes::plane_cloud(60000), [&](const vcg::Point3d& p) {
-        return p[0] < 0 || random.below(100) == 0;
+        return p[0] < 0 || random.below(10) == 0;
     });
     const OpenStart start = start_of(cloud);
     EXPECT_EQ(start.components, 1);
