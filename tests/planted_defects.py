@@ -78,8 +78,10 @@ def misplaced(defects, tree):
     for defect in defects:
         try:
             planted((tree / defect.file).read_text(encoding="utf-8"), defect)
-        except (PlaceError, FileNotFoundError) as error:
+        except PlaceError as error:
             yield str(error)
+        except FileNotFoundError:
+            yield f"{defect}: there is no such file. Change {DEFECTS.name} with the code."
 
 
 # --- building and running --------------------------------------------------------------------------------------------
