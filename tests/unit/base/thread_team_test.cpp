@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <thread>
 #include <vector>
@@ -55,6 +57,21 @@ TEST(ThreadTeam, HelpersTakePart) {
         }
     });
     EXPECT_TRUE(helped);
+}
+
+/// The caller waits in its first chunk until a helper is awake, so that all reach for the others at a time.
+TEST(ThreadTeam, NoTwoMembersTakeOneChunk) {
+    ThreadTeam team(4);
+    for (int round = 0; round < 3000; ++round) {
+        std::array<std::atomic<int>, ThreadTeam::kMost> done{};
+        std::atomic<bool> helped{false};
+        team.parallel(ThreadTeam::kMost, [&](int member, int chunk) {
+            ++done[static_cast<std::size_t>(chunk)];
+            if (member != 0) helped = true;
+            while (!helped) std::this_thread::yield();
+        });
+        for (const std::atomic<int>& times : done) ASSERT_EQ(times.load(), 1);
+    }
 }
 
 TEST(ThreadTeam, RunsABackgroundTaskOnce) {
