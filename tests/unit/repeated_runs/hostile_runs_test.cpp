@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -156,24 +158,31 @@ void expect_run_within_bound(const Cloud& cloud, Settings settings) {
     EXPECT_LE(learner.signals(), learner.signal_bound());
 }
 
+/// Whether to try the \p i-th setting in the \p j-th of \p count ways: each setting once, or in all ways.
+bool tried(std::size_t i, std::size_t j, std::size_t count) { return environment::full() || i % count == j; }
+
 TEST(Reconstruct, HostileSettingsEndWithinTheBound) {
     const auto all = hostile_clouds();
     const std::pair<const char*, Cloud> clouds[] = {
         all[0], all[1], all[3], all[6], {"sphere", shapes::sphere_cloud(3000)}};
-    for (const auto& settings : hostile_settings()) {
-        for (const auto& cloud : clouds) {
-            SCOPED_TRACE(testing::Message() << settings.first << ", " << cloud.first);
-            expect_run_within_bound(cloud.second, settings.second);
+    const auto settings = hostile_settings();
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+        for (std::size_t j = 0; j < std::size(clouds); ++j) {
+            if (!tried(i, j, std::size(clouds))) continue;
+            SCOPED_TRACE(testing::Message() << settings[i].first << ", " << clouds[j].first);
+            expect_run_within_bound(clouds[j].second, settings[i].second);
         }
     }
 }
 
 TEST(Reconstruct, HostileSettingsGiveSoundMeshes) {
     const Cloud cloud = shapes::torus_cloud(2000);
-    for (const auto& entry : hostile_settings()) {
+    const auto hostile = hostile_settings();
+    for (std::size_t i = 0; i < hostile.size(); ++i) {
         for (const int start : {kShell, kTetrahedron}) {
-            SCOPED_TRACE(testing::Message() << entry.first << ", start " << start);
-            Settings settings = entry.second;
+            if (!tried(i, start == kShell ? 0 : 1, 2)) continue;
+            SCOPED_TRACE(testing::Message() << hostile[i].first << ", start " << start);
+            Settings settings = hostile[i].second;
             settings.start_mesh = start;
             settings.fit_to_points = true;
             expect_exact(learn(cloud, settings), settings);
