@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace neuralmesh {
@@ -77,6 +78,18 @@ TEST(Nesting, IsThatOfMostOfAComponent) {
     Network network = octahedra({{o, 2}, {o, 1}});
     network.set_position(6, Point3f(2.5F, 0, 0));
     EXPECT_EQ(depths_of(network), (std::vector<int>{0, 1}));
+}
+
+TEST(Nesting, NothingIsWithinAnOpenSurface) {
+    const Point3f o(0, 0, 0);
+    Network network = octahedra({{o, 4}, {o, 1}});
+    // A face of the outer one behind the inner one, from where no ray comes: rays still meet the others.
+    const std::vector<Triangle> faces = network.faces();
+    const auto behind = std::find_if(faces.begin(), faces.end(), [](const Triangle& f) {
+        return std::find(f.begin(), f.end(), 1) != f.end();
+    });
+    network.exchange_faces({*behind}, {});
+    EXPECT_EQ(depths_of(network), (std::vector<int>{0, 0}));
 }
 
 TEST(Nesting, OrientsHollowsInward) {
