@@ -181,7 +181,8 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
     options.learned_briefly = learns_briefly(plan);
     options.calm = plan.calm || options.by_volume;
     // Growth by the noise of each place may end early.
-    const bool refines = plan.carried < settings.target_vertices || (task.noise_by_place && fills_up(task, settings));
+    const bool refines =
+        plan.carried < settings.target_vertices || (task.noise_by_place && fills_up(task, settings));
     options.refine_to = refines ? settings.target_vertices : 0;
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
     // error is largest at the rim, and vertices inserted there stick out.

@@ -147,10 +147,12 @@ void measure_noise(LearningTask& task, Survey& survey, const Settings& settings)
     const std::vector<vcg::Point3f>& points = task.target().positions();
     const int vertices = settings.target_vertices;
     task.noise = noise_in_edges(survey.of(points), static_cast<double>(points.size()) / vertices);
-    // Closed surfaces are learned from even samples mostly, which one number describes. With the noise of each
-    // place feline would have 1.15 times the error at .1 % of the diagonal (50,000 points, 2,000 vertices).
+    // Closed surfaces are learned from even samples mostly, which one number describes. With the noise of
+    // each place feline would have 1.15 times the error at .1 % of the diagonal (50,000 points, 2,000
+    // vertices).
     const bool open = task.network.boundary_loop_count() > 0;
-    if (!open || points.size() < static_cast<std::size_t>(LocalQuadric::kLeastPoints) || task.target().is_exact())
+    if (!open || points.size() < static_cast<std::size_t>(LocalQuadric::kLeastPoints) ||
+        task.target().is_exact())
         return;
     const SurfaceSurvey& surface = survey.surface_of(task.target())->surface;
     if (surface.clutter() < 1) task.noise_by_place = std::make_shared<NoiseByPlace>(surface);
@@ -205,8 +207,7 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, S
 /// Whether the cloud may be open: the shell closed wide openings, or a part of it has no space inside, and is
 /// no thin wall. A layer with faces is open where they end.
 /// \param radius on which the points are a surface, 0 if it is not known yet
-bool may_be_open(const Enclosure& shell, const TargetSpace& target, const Settings& settings,
-                 double radius) {
+bool may_be_open(const Enclosure& shell, const TargetSpace& target, const Settings& settings, double radius) {
     const bool chosen = settings.close_holes_up_to >= 0;
     const double asked = settings.close_holes_up_to / target.frame().diagonal;
     if (target.has_faces()) return widest_face_boundary(target) > (chosen ? asked : kWidestClosed);

@@ -374,8 +374,8 @@ int Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& po
 int Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
     points.update_feet(surface, team_);
     const std::vector<EdgeFlip> found =
-        find_flips(network_, surface, points, noise_ != nullptr ? kFlipVariances : kFlipVariances * noise_variance_, team_,
-                   by_place());
+        find_flips(network_, surface, points,
+                   noise_ != nullptr ? kFlipVariances : kFlipVariances * noise_variance_, team_, by_place());
     return guarded(surface, [&](const PerVertex<char>& barred) {
         return neuralmesh::flip_edges(network_, found, barred);
     });

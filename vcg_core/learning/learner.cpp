@@ -99,7 +99,8 @@ StopReason Learner::grow(Progress& progress) {
         if (!forced_ && schedule_.stalled(signals())) force_growth();
         if (schedule_.exhausted(signals())) return StopReason::cut_short;
         if (collapses && is_saturated()) {
-            const bool stop = state_.options.learn_topology && !stages.over() && !learn_topology(true, standing);
+            const bool stop =
+                state_.options.learn_topology && !stages.over() && !learn_topology(true, standing);
             if (stop) return StopReason::cancelled;
             return StopReason::target_reached;
         }

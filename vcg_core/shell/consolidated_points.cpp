@@ -87,7 +87,8 @@ Grounded grounded(const NearestPoints& cloud, const Point3f& place, float radius
     Grounded result{LocalQuadric(), radius};
     for (int step = 0; step < kSteps; ++step, result.radius *= kGrowth) {
         if (!fit_twice(cloud, place, result.radius, near, result.quadric)) break;
-        if (result.quadric.holds() && kLeastDeviations * result.quadric.deviation <= result.radius) return result;
+        if (result.quadric.holds() && kLeastDeviations * result.quadric.deviation <= result.radius)
+            return result;
     }
     return {LocalQuadric(), radius};
 }
@@ -107,10 +108,11 @@ ConsolidatedPoints consolidated_points(const NearestPoints& cloud, const Surface
     for (const Place place : shuffled(cloud.size(), random)) {
         if (gone[place] != 0) continue;
         kept.push_back(place);
-        cloud.any_within(place, std::max(least, thinning_radius(survey.places()[place_of[place]])), [&](Place other) {
-            gone[other] = 1;
-            return false;
-        });
+        cloud.any_within(place, std::max(least, thinning_radius(survey.places()[place_of[place]])),
+                         [&](Place other) {
+                             gone[other] = 1;
+                             return false;
+                         });
     }
     std::sort(kept.begin(), kept.end());
     std::vector<Grounded> found(kept.size());
@@ -127,8 +129,8 @@ ConsolidatedPoints consolidated_points(const NearestPoints& cloud, const Surface
         result.positions.push_back(quadric.foot);
         result.normals.push_back(quadric.normal);
         result.radii.push_back(std::max(least, found[i].radius));
-        result.tolerances.push_back(std::max(kLeastSpacings * survey.places()[place].spacing,
-                                             kLeastDeviations * quadric.deviation));
+        result.tolerances.push_back(
+            std::max(kLeastSpacings * survey.places()[place].spacing, kLeastDeviations * quadric.deviation));
     }
     return result;
 }

@@ -26,8 +26,8 @@ struct ConsolidatedPoints {
 };
 
 /// Takes points of \p cloud in random order, drops those within the surveyed radius of each, or within a
-/// greater one that leaves about \p most in all, and moves every one that is left to the local quadric. Points
-/// around which there is no surface are left out. O(points log points); 0.1 s for 250,000 points.
+/// greater one that leaves about \p most in all, and moves every one that is left to the local quadric.
+/// Points around which there is no surface are left out. O(points log points); 0.1 s for 250,000 points.
 ConsolidatedPoints consolidated_points(const NearestPoints& cloud, const SurfaceSurvey& survey, int most,
                                        Random& random, ThreadTeam& team);
 

@@ -45,7 +45,8 @@ constexpr double kMostWithoutSurface = 0.5;
 constexpr std::size_t kManyContradictions = 20;
 /// Fewer consolidated points do not show what the surface is like: bays of its boundary, parts beside it.
 constexpr int kFewestConsolidated = 15000;
-/// Handles around or through which a loop of so many edges leads are chance: a tube of six edges is hardly one.
+/// Handles around or through which a loop of so many edges leads are chance: a tube of six edges is hardly
+/// one.
 constexpr int kEdgesOfHandle = 8;
 /// The neighbours that normals are turned by.
 constexpr int kNeighbours = 12;
@@ -122,7 +123,7 @@ struct Sheet {
     IndexedMesh<float> mesh;
     std::vector<Point3f> normals;
     std::vector<float> radii, tolerances;  ///< as in ConsolidatedPoints
-    std::vector<Point3f> contradictions;  ///< where its two sides could not be told apart
+    std::vector<Point3f> contradictions;   ///< where its two sides could not be told apart
 };
 
 std::vector<std::pair<int, int>> neighbours_of(const ConsolidatedPoints& points) {
@@ -173,7 +174,8 @@ std::vector<int> vertices_of_points(const Surveys& surveys, const Sheet& sheet, 
         const std::size_t nearest = index.index(index.nearest_to(p));
         const Point3f way = p - sheet.mesh.positions[nearest];
         if (way.Norm() > kBelongs * sheet.radii[nearest]) return;
-        if (surveys.surface().at(p).clutter && std::abs(way * sheet.normals[nearest]) > sheet.tolerances[nearest])
+        if (surveys.surface().at(p).clutter &&
+            std::abs(way * sheet.normals[nearest]) > sheet.tolerances[nearest])
             return;
         vertices[at(i)] = static_cast<int>(nearest);
     });
@@ -263,17 +265,16 @@ void set_outliers(std::vector<std::uint8_t> outliers, bool learn, OpenStart& res
     const auto ignored = static_cast<std::size_t>(std::count(outliers.begin(), outliers.end(), 1));
     if (ignored == 0) return;
     result.warnings.push_back(
-        share_of_points(ignored, outliers.size()) + " show no surface, as leaves, points between two depths, or small groups do: " +
+        share_of_points(ignored, outliers.size()) +
+        " show no surface, as leaves, points between two depths, or small groups do: " +
         (learn ? "the start mesh leaves them out, but they are learned." : "they were left out."));
     if (!learn) result.outliers = std::move(outliers);
 }
 
-void warn_of_cuts(const TargetSpace& target, const std::vector<Point3f>& contradictions,
-                  OpenStart& result) {
+void warn_of_cuts(const TargetSpace& target, const std::vector<Point3f>& contradictions, OpenStart& result) {
     if (contradictions.size() < kManyContradictions) return;
     Point3f middle(0, 0, 0);
-    for (const Point3f& p : contradictions)
-        middle += p / static_cast<float>(contradictions.size());
+    for (const Point3f& p : contradictions) middle += p / static_cast<float>(contradictions.size());
     const auto nearest = std::min_element(contradictions.begin(), contradictions.end(),
                                           [&](const Point3f& a, const Point3f& b) {
                                               return (a - middle).SquaredNorm() < (b - middle).SquaredNorm();

@@ -18,7 +18,8 @@ namespace {
 
 using vcg::Point3f;
 
-/// Neighbours farther than so many radii, or more of them, are not looked at: a star reaches up to three radii.
+/// Neighbours farther than so many radii, or more of them, are not looked at: a star reaches up to three
+/// radii.
 constexpr float kReach = 3;
 constexpr int kMostNeighbours = 32;
 /// Circles through the corners of a triangle that are wider than so many radii lie in a gap.
@@ -125,7 +126,8 @@ void add_star(const Points& points, const NearestPoints& index, NearestPoints::P
         if (a.point < 0 || b.point < 0) continue;
         Candidate candidate{{own, a.point, b.point}, true};
         candidate.circle = circle_radius(points, candidate.corners);
-        const float radius = std::max({points.radii[at(own)], points.radii[at(a.point)], points.radii[at(b.point)]});
+        const float radius =
+            std::max({points.radii[at(own)], points.radii[at(a.point)], points.radii[at(b.point)]});
         if (candidate.circle > kWidestCircle * radius) continue;
         Triangle& c = candidate.corners;
         std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());

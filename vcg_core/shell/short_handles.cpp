@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A spanning tree of the vertices and one of the faces that crosses none of its edges leave two edges for each
-// handle; each closes a loop along the first tree that separates nothing (Eppstein, "Dynamic generators of
-// topologically embedded graphs", 2003). With a tree of shortest ways from a vertex, and a tree of faces that
-// takes the edges with the longest loops first, these are the shortest loops through the vertex (Erickson and
-// Whittlesey, "Greedy optimal homotopy and homology generators", 2005).
+// A spanning tree of the vertices and one of the faces that crosses none of its edges leave two edges for
+// each handle; each closes a loop along the first tree that separates nothing (Eppstein, "Dynamic generators
+// of topologically embedded graphs", 2003). With a tree of shortest ways from a vertex, and a tree of faces
+// that takes the edges with the longest loops first, these are the shortest loops through the vertex
+// (Erickson and Whittlesey, "Greedy optimal homotopy and homology generators", 2005).
 #include "vcg_core/shell/short_handles.h"
 
 #include <algorithm>
@@ -167,7 +167,8 @@ void remove_faces_at(const std::vector<int>& vertices, IndexedMesh<float>& mesh,
     std::vector<Triangle>& faces = mesh.faces;
     faces.erase(std::remove_if(faces.begin(), faces.end(),
                                [&](const Triangle& f) {
-                                   return std::any_of(f.begin(), f.end(), [&](int v) { return gone[at(v)] != 0; });
+                                   return std::any_of(f.begin(), f.end(),
+                                                      [&](int v) { return gone[at(v)] != 0; });
                                }),
                 faces.end());
     split_pinched_vertices(mesh, source);

@@ -13,15 +13,15 @@ namespace neuralmesh {
 
 /// What the points around a place say of the surface there.
 struct LocalQuadric {
-    int points = 0;        ///< that it was fitted to; it holds if there are kLeastPoints
-    float deviation = 0;   ///< of the points about the quadric, robust, corrected for its six coefficients
-    float spread = 0;      ///< of all of them: the root mean square of their distances to the quadric
+    int points = 0;       ///< that it was fitted to; it holds if there are kLeastPoints
+    float deviation = 0;  ///< of the points about the quadric, robust, corrected for its six coefficients
+    float spread = 0;     ///< of all of them: the root mean square of their distances to the quadric
     /// Fourth moment of these distances over the squared second one: 3 for normal noise, 1 for two layers.
     float kurtosis = 3;
-    float flatness = 0;    ///< spread across the plane over the smaller spread along it, 0 to 1
-    float width = 0;       ///< smaller spread along the plane over the larger one, 0 to 1; a line has 0
-    vcg::Point3f foot;     ///< of the place, along the normal of the plane
-    vcg::Point3f normal;   ///< of the quadric at the foot, of length 1, to either side
+    float flatness = 0;   ///< spread across the plane over the smaller spread along it, 0 to 1
+    float width = 0;      ///< smaller spread along the plane over the larger one, 0 to 1; a line has 0
+    vcg::Point3f foot;    ///< of the place, along the normal of the plane
+    vcg::Point3f normal;  ///< of the quadric at the foot, of length 1, to either side
     static constexpr int kLeastPoints = 12;
     bool holds() const { return points >= kLeastPoints; }
 };

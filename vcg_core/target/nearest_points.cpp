@@ -105,7 +105,7 @@ void NearestPoints::nearest(Place place, int k, std::vector<Neighbour>& result) 
 }
 
 void NearestPoints::within(const vcg::Point3f& centre, float radius, std::size_t most,
-                                  std::vector<vcg::Point3f>& result) const {
+                           std::vector<vcg::Point3f>& result) const {
     std::vector<Place> places;
     const float limit = radius * radius;
     visit_near(
@@ -124,7 +124,10 @@ void NearestPoints::within(const vcg::Point3f& centre, float radius, std::size_t
 NearestPoints::Place NearestPoints::nearest_to(const vcg::Point3f& centre) const {
     Neighbour best{std::numeric_limits<float>::infinity(), 0};
     visit_near(
-        centre, [&](Place p, float d) { best = std::min(best, Neighbour{d, p}); },
+        centre,
+        [&](Place p, float d) {
+            best = std::min(best, Neighbour{d, p});
+        },
         [&] { return best.squared_distance; });
     return best.place;
 }

@@ -53,10 +53,10 @@ public:
     template <class Predicate>
     bool any_within(const vcg::Point3f& centre, float radius, const Predicate& counts) const;
 
-    /// The points within \p radius of \p centre, in the order of their places; where there are more than \p most,
-    /// every second, fourth, ... of them. \p result is overwritten.
+    /// The points within \p radius of \p centre, in the order of their places; where there are more than \p
+    /// most, every second, fourth, ... of them. \p result is overwritten.
     void within(const vcg::Point3f& centre, float radius, std::size_t most,
-                       std::vector<vcg::Point3f>& result) const;
+                std::vector<vcg::Point3f>& result) const;
     /// The place nearest to \p centre; of several the lowest.
     Place nearest_to(const vcg::Point3f& centre) const;
 

@@ -77,8 +77,7 @@ void find_opposite_layers(const NearestPoints& cloud, NearestPoints::Place place
     };
     result.above = layer(above, below, kFarthest);
     result.below = layer(below, above, kFarthest);
-    result.on_thin_wall =
-        result.flat && (layer(above, below, kThin) > 0 || layer(below, above, kThin) > 0);
+    result.on_thin_wall = result.flat && (layer(above, below, kThin) > 0 || layer(below, above, kThin) > 0);
 }
 
 }  // namespace

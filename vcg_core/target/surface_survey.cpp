@@ -76,15 +76,16 @@ std::vector<std::vector<Place>> places_around(const NearestPoints& index,
         std::vector<Place> all{static_cast<Place>(i)}, alike = all;
         for (const NearestPoints::Neighbour& n : near) {
             all.push_back(n.place);
-            if (kOtherDensity * places[n.place].spacing > places[all.front()].spacing) alike.push_back(n.place);
+            if (kOtherDensity * places[n.place].spacing > places[all.front()].spacing)
+                alike.push_back(n.place);
         }
         around[all.front()] = alike.size() > kCompany ? std::move(alike) : std::move(all);
     });
     return around;
 }
 
-/// Replaces a number of every place by the median of the places \p around it that are no clutter: leaves above
-/// the ground say nothing of it. Where only clutter is around, by that of all.
+/// Replaces a number of every place by the median of the places \p around it that are no clutter: leaves
+/// above the ground say nothing of it. Where only clutter is around, by that of all.
 void smooth(const std::vector<std::vector<Place>>& around, std::vector<SurveyedPlace>& places,
             float SurveyedPlace::*number) {
     constexpr std::size_t kFewest = 3;
@@ -113,7 +114,8 @@ float radius_of_sparse_part(const std::vector<SurveyedPlace>& places) {
     std::sort(spacings.begin(), spacings.end());
     // All places stand for as many points, so for areas in proportion to their squared spacings.
     for (const float h : spacings)
-        if ((below += static_cast<double>(h) * static_cast<double>(h)) >= kBelow * all) return kLeastSpacings * h;
+        if ((below += static_cast<double>(h) * static_cast<double>(h)) >= kBelow * all)
+            return kLeastSpacings * h;
     return kLeastSpacings * spacings.back();
 }
 
@@ -150,8 +152,8 @@ SurfaceSurvey::SurfaceSurvey(const CloudSurvey& survey, ThreadTeam& team)
 }
 
 double SurfaceSurvey::share(bool SurveyedPlace::*what) const {
-    const auto with = std::count_if(places_.begin(), places_.end(),
-                                    [&](const SurveyedPlace& p) { return p.*what; });
+    const auto with =
+        std::count_if(places_.begin(), places_.end(), [&](const SurveyedPlace& p) { return p.*what; });
     return static_cast<double>(with) / static_cast<double>(places_.size());
 }
 

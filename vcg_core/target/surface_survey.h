@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What a cloud says of its surface, place by place: how dense and how noisy the points are there, and on which
-// scale they show a surface.
+// What a cloud says of its surface, place by place: how dense and how noisy the points are there, and on
+// which scale they show a surface.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -19,8 +19,8 @@ namespace neuralmesh {
 constexpr float kThick = 0.55F;
 /// Less wide than this the points lie on a line, as on one scan line, and more of them are needed.
 constexpr float kNarrow = 0.3F;
-/// The least radius in spacings, and in deviations: within five of them the points have all heights, and no direction along the
-/// surface.
+/// The least radius in spacings, and in deviations: within five of them the points have all heights, and no
+/// direction along the surface.
 constexpr float kLeastSpacings = 2, kLeastDeviations = 5;
 
 /// One of the places that were looked at. Lengths in the frame of the points.
@@ -31,15 +31,15 @@ struct SurveyedPlace {
     /// Standard deviation of the points about the local surface, a quadric: noise, without the bends of the
     /// surface on scales beyond \p radius.
     float deviation = 0;
-    float radius = 0;      ///< the least on which the points show a surface
-    bool clutter = false;  ///< no radius shows one: leaves, grass, points between two depths
+    float radius = 0;       ///< the least on which the points show a surface
+    bool clutter = false;   ///< no radius shows one: leaves, grass, points between two depths
     bool on_curve = false;  ///< clutter whose points lie on a line or narrow curve
-    float kurtosis = 3;    ///< as in LocalQuadric, on that radius
-    float spread = 0;      ///< the same
+    float kurtosis = 3;     ///< as in LocalQuadric, on that radius
+    float spread = 0;       ///< the same
 
-    /// The points lie in two layers, which this scale does not tell apart. Measured: scans and open and closed
-    /// models have a kurtosis of 2.8 to 3, a sheet of two noisy views 1.9, a cup whose wall is as thin as the
-    /// points are apart 1.4 to 1.7.
+    /// The points lie in two layers, which this scale does not tell apart. Measured: scans and open and
+    /// closed models have a kurtosis of 2.8 to 3, a sheet of two noisy views 1.9, a cup whose wall is as thin
+    /// as the points are apart 1.4 to 1.7.
     bool two_layers() const { return kurtosis < 1.75F; }
 };
 

@@ -118,9 +118,8 @@ TEST(OpenStart, ClosesHolesUpToTheDiameterAskedFor) {
 TEST(OpenStart, FollowsTheDensityOfTheCloud) {
     // A square of ten times as many points on one half as on the other.
     Random random(1);
-    const Cloud cloud = open_shapes::cut(shapes::plane_cloud(60000), [&](const vcg::Point3d& p) {
-        return p[0] < 0 || random.below(10) == 0;
-    });
+    const Cloud cloud = open_shapes::cut(
+        shapes::plane_cloud(60000), [&](const vcg::Point3d& p) { return p[0] < 0 || random.below(10) == 0; });
     const OpenStart start = start_of(cloud);
     EXPECT_EQ(start.components, 1);
     EXPECT_EQ(start.loops, 1);
