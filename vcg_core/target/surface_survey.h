@@ -29,7 +29,7 @@ struct SurveyedPlace {
     vcg::Point3f normal;  ///< of length 1, to either side
     float spacing = 0;    ///< between neighbouring points
     /// Standard deviation of the points about the local surface, a quadric: noise, without the bends of the
-    /// surface on scales beyond \p radius.
+    /// surface on scales beyond \p radius. A fifth too low where it is some spacings.
     float deviation = 0;
     float radius = 0;       ///< the least on which the points show a surface
     bool clutter = false;   ///< no radius shows one: leaves, grass, points between two depths

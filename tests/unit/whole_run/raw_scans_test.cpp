@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Whole runs on what comes out of sensors: one layer, towards the sensor, smooth where the points are noisy.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "tests/unit/support/depth_camera.h"
+#include "tests/unit/support/soundness.h"
+#include "vcg_core/mesh/self_crossings.h"
+#include "vcg_core/reconstruct.h"
+
+namespace neuralmesh {
+namespace {
+
+using shapes::Cloud;
+using vcg::Point3d;
+
+NeuralMesh learn(const Cloud& cloud, int vertices) {
+    Settings settings;
+    settings.target_vertices = vertices;
+    NoProgress progress;
+    const NeuralMesh mesh = reconstruct(soundness::target_of(cloud), settings, progress);
+    soundness::expect_exact(mesh, settings);
+    return mesh;
+}
+
+/// Of the faces of a mesh.
+struct Figures {
+    double median_angle = 0;  ///< to the surface of the scene, in degrees
+    double facing = 0;        ///< share of the area that faces the origin
+};
+
+Figures figures_of(const NeuralMesh& mesh) {
+    std::vector<double> angles;
+    double all = 0, facing = 0;
+    for (const auto& f : mesh.faces) {
+        const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(f[k])]; };
+        const Point3d across = (at(1) - at(0)) ^ (at(2) - at(0));
+        const double area = across.Norm();
+        if (!(area > 0)) continue;
+        const Point3d middle = (at(0) + at(1) + at(2)) / 3;
+        all += area;
+        facing += across * middle < 0 ? area : 0;
+        angles.push_back(sensors::angle_to_scene(middle, across / area));
+    }
+    std::nth_element(angles.begin(), angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2),
+                     angles.end());
+    return {angles[angles.size() / 2], facing / all};
+}
+
+int cut_faces_of(const NeuralMesh& mesh) {
+    shapes::Shape shape;
+    shape.positions = mesh.positions;
+    shape.faces = mesh.faces;
+    const Surface surface(referee::network_of(shape));
+    ThreadTeam team(1);
+    return static_cast<int>(self_crossings(surface, team).size());
+}
+
+TEST(RawScans, ADepthFrameIsOneLayerThatFacesTheCamera) {
+    double least = 90;
+    for (const int vertices : {1500, 3000, 6000}) {
+        const NeuralMesh mesh = learn(sensors::depth_frame(200), vertices);
+        EXPECT_LE(mesh.report.genus, 1) << vertices;
+        EXPECT_GE(mesh.report.boundary_loops, 1) << vertices;
+        EXPECT_EQ(cut_faces_of(mesh), 0) << vertices;
+        const Figures figures = figures_of(mesh);
+        EXPECT_GT(figures.facing, 0.9) << vertices;
+        // More vertices do not follow the noise, whose slopes between neighbouring points are 60 degrees.
+        EXPECT_LT(figures.median_angle, std::max(4.0, 1.2 * least)) << vertices;
+        least = std::min(least, figures.median_angle);
+    }
+}
+
+TEST(RawScans, TreesAreLeftOutAndTheGroundIsOneSheet) {
+    const Cloud cloud = sensors::aerial_scan(40000, 30);
+    const NeuralMesh mesh = learn(cloud, 3000);
+    EXPECT_EQ(mesh.report.genus, 0);
+    EXPECT_TRUE(soundness::has_warning(mesh, "show no surface"));
+    int above = 0, down = 0;
+    for (const auto& f : mesh.faces) {
+        const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(f[k])]; };
+        down += ((at(1) - at(0)) ^ (at(2) - at(0)))[2] < 0 ? 1 : 0;
+    }
+    for (const Point3d& p : mesh.positions)
+        above += p[2] - std::sin(p[0] / 6) - std::cos(p[1] / 5) > sensors::kTree / 3 ? 1 : 0;
+    EXPECT_LT(down, static_cast<int>(mesh.faces.size()) / 50);
+    EXPECT_LT(above, 30) << "vertices in the crowns";
+}
+
+TEST(RawScans, OnePlaneAndCrossingPlanesAreOpen) {
+    Cloud crossing = shapes::plane_cloud(20000, 1);
+    for (const Point3d& p : shapes::plane_cloud(20000, 2)) crossing.emplace_back(p[0], 0, p[1]);
+    EXPECT_GE(learn(crossing, 1000).report.boundary_loops, 1);
+    EXPECT_EQ(learn(shapes::plane_cloud(20000), 1000).report.boundary_loops, 1);
+}
+
+TEST(RawScans, APointAtTheSensorIsNotLearned) {
+    Cloud cloud = sensors::depth_frame(160);
+    cloud.emplace_back(0, 0, 0);
+    for (const Point3d& p : learn(cloud, 1500).positions) EXPECT_GT(p[2], 0.5);
+}
+
+}  // namespace
+}  // namespace neuralmesh
