@@ -84,25 +84,19 @@ class Survey {
 public:
     explicit Survey(int threads) : threads_(threads) {}
     const CloudSurvey& of(const std::vector<vcg::Point3f>& points) {
-        if (!survey_ || survey_->cloud.size() != points.size()) {
-            surface_.reset();
-            survey_.emplace(points, threads_);
-        }
-        return *survey_;
+        if (!surveys_ || surveys_->points().cloud.size() != points.size()) surveys_.emplace(points, threads_);
+        return surveys_->points();
     }
     /// Of a target without faces, whose points are its surface; else nothing.
-    std::optional<SurveyedCloud> surface_of(const TargetSpace& target) {
-        if (target.has_faces()) return {};
-        const CloudSurvey& points = of(target.positions());
-        ThreadTeam team(thread_count(threads_));
-        if (!surface_) surface_.emplace(points, team);
-        return SurveyedCloud{points, *surface_};
+    Surveys* of(const TargetSpace& target) {
+        if (target.has_faces()) return nullptr;
+        of(target.positions());
+        return &*surveys_;
     }
 
 private:
     int threads_;
-    std::optional<CloudSurvey> survey_;
-    std::optional<SurfaceSurvey> surface_;
+    std::optional<Surveys> surveys_;
 };
 
 Shell make_shell(const TargetSpace& target, const Settings& settings, Survey& survey, Progress& progress) {
@@ -154,7 +148,7 @@ void measure_noise(LearningTask& task, Survey& survey, const Settings& settings)
     if (!open || points.size() < static_cast<std::size_t>(LocalQuadric::kLeastPoints) ||
         task.target().is_exact())
         return;
-    const SurfaceSurvey& surface = survey.surface_of(task.target())->surface;
+    const SurfaceSurvey& surface = survey.of(task.target())->surface();
     if (surface.clutter() < 1) task.noise_by_place = std::make_shared<NoiseByPlace>(surface);
 }
 
@@ -201,7 +195,7 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, S
     options.use_normals = settings.use_normals;
     Random random(stream_seed(settings.random_seed, Stream::shell));
     options.threads = settings.threads;
-    return open_start(target, options, random, progress, survey.surface_of(target));
+    return open_start(target, options, random, progress, survey.of(target));
 }
 
 /// Whether the cloud may be open: the shell closed wide openings, or a part of it has no space inside, and is

@@ -163,8 +163,9 @@ void take(std::vector<float>& values, const std::vector<int>& source) {
 
 /// The vertex of \p sheet that each point of the cloud belongs to, by place; -1: none. Clutter belongs to one
 /// only where it is as close as the noise there.
-std::vector<int> vertices_of_points(const Surveys& surveys, const Sheet& sheet, ThreadTeam& team) {
+std::vector<int> vertices_of_points(Surveys& surveys, const Sheet& sheet, ThreadTeam& team) {
     const NearestPoints& cloud = surveys.points().cloud;
+    const SurfaceSurvey& survey = surveys.surface();
     constexpr int kAtATime = 1024;
     std::vector<int> vertices(cloud.size(), -1);
     if (sheet.mesh.positions.empty()) return vertices;
@@ -174,8 +175,7 @@ std::vector<int> vertices_of_points(const Surveys& surveys, const Sheet& sheet, 
         const std::size_t nearest = index.index(index.nearest_to(p));
         const Point3f way = p - sheet.mesh.positions[nearest];
         if (way.Norm() > kBelongs * sheet.radii[nearest]) return;
-        if (surveys.surface().at(p).clutter &&
-            std::abs(way * sheet.normals[nearest]) > sheet.tolerances[nearest])
+        if (survey.at(p).clutter && std::abs(way * sheet.normals[nearest]) > sheet.tolerances[nearest])
             return;
         vertices[at(i)] = static_cast<int>(nearest);
     });
@@ -184,7 +184,7 @@ std::vector<int> vertices_of_points(const Surveys& surveys, const Sheet& sheet, 
 
 /// Drops the parts of \p sheet that have too few points. \return 1 for each point of \p cloud, in the order
 /// given, that belongs to nothing that is kept
-std::vector<std::uint8_t> drop_small_parts(const Surveys& surveys, const Enough& enough, ThreadTeam& team,
+std::vector<std::uint8_t> drop_small_parts(Surveys& surveys, const Enough& enough, ThreadTeam& team,
                                            Sheet& sheet) {
     const Parts parts = parts_of(sheet.mesh);
     const std::vector<int> vertices = vertices_of_points(surveys, sheet, team);
@@ -316,14 +316,15 @@ void write_mesh(const Network& network, OpenStart& result) {
 }  // namespace
 
 OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options, Random& random,
-                     Progress& progress, const std::optional<SurveyedCloud>& given) {
+                     Progress& progress, Surveys* given) {
     check(options);
     progress(0.0, "Start mesh: surveying the cloud");
     const StartPoints start_points(target, options.samples, random);
     const std::vector<Point3f>& points = start_points.all();
     check_enough_points(points.size());
     ThreadTeam team(thread_count(options.threads));
-    const Surveys surveys(points, given, options.threads, team);
+    Surveys own(points, options.threads);
+    Surveys& surveys = given != nullptr ? *given : own;
     const SurfaceSurvey& surface = surveys.surface();
     check_for_surface(surface);
 

@@ -13,7 +13,6 @@
 #include <vcg/space/point3.h>
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -81,9 +80,9 @@ struct OpenStart {
 /// The open start mesh of \p target. The same target, options and state of \p random give the same mesh
 /// everywhere. \p progress gets fractions from 0 to 1; a
 /// wish to stop is not answered (0.3 s for 100,000 points).
-/// \param given of the points of a target without faces; empty: made here
+/// \param given of the points of a target without faces; nullptr: made here
 /// \throws InputError if the points show no surface: they lie on curves, are scattered, too noisy, or too few
 OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options, Random& random,
-                     Progress& progress, const std::optional<SurveyedCloud>& given = {});
+                     Progress& progress, Surveys* given = nullptr);
 
 }  // namespace neuralmesh

@@ -77,34 +77,27 @@ private:
     NearestPoints index_;
 };
 
-/// Both surveys of a cloud, which have to outlive it.
-struct SurveyedCloud {
-    const CloudSurvey& points;
-    const SurfaceSurvey& surface;
-};
-
-/// Surveys that a caller may have made already.
+/// Both surveys of a cloud, each made when it is first asked for.
 class Surveys {
 public:
-    /// Makes those of \p points unless they are \p given.
-    Surveys(const std::vector<vcg::Point3f>& points, const std::optional<SurveyedCloud>& given, int threads,
-            ThreadTeam& team) {
-        if (!given) {
-            points_.emplace(points, threads);
-            surface_.emplace(*points_, team);
-        }
-        surveyed_.emplace(given ? *given : SurveyedCloud{*points_, *surface_});
-    }
-    Surveys(const Surveys&) = delete;
-    Surveys& operator=(const Surveys&) = delete;
+    /// Of \p points, which must stay until points() has been called.
+    Surveys(const std::vector<vcg::Point3f>& points, int threads) : given_(points), threads_(threads) {}
 
-    const CloudSurvey& points() const { return surveyed_->points; }
-    const SurfaceSurvey& surface() const { return surveyed_->surface; }
+    const CloudSurvey& points() {
+        if (!points_) points_.emplace(given_, threads_);
+        return *points_;
+    }
+    const SurfaceSurvey& surface() {
+        ThreadTeam team(thread_count(threads_));
+        if (!surface_) surface_.emplace(points(), team);
+        return *surface_;
+    }
 
 private:
+    const std::vector<vcg::Point3f>& given_;
+    int threads_;
     std::optional<CloudSurvey> points_;
     std::optional<SurfaceSurvey> surface_;
-    std::optional<SurveyedCloud> surveyed_;
 };
 
 }  // namespace neuralmesh
