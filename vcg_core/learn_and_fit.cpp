@@ -151,7 +151,7 @@ bool follows_noise(const LearningTask& task, const Settings& settings) {
 LearnerOptions learner_options(const LearningTask& task, const Settings& settings, const Plan& plan) {
     LearnerOptions options = learner_options_from(settings);
     options.grow_to = plan.grow_to;
-    if (fills_up(task, settings)) options.noise = task.noise_by_place.get();
+    if (task.noise_by_place && fills_up(task, settings)) options.noise = &*task.noise_by_place;
     if (learns_briefly(plan) || follows_noise(task, settings))
         options.signals_per_split = std::max(1, options.signals_per_split / 2);
     // As many signals as for those that stay settle them well enough; half as many where most of them stay:
@@ -175,7 +175,7 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
               Progress& progress) {
     FitOptions options;
     options.expect_strays = task.outliers > 0;
-    options.noise = task.noise_by_place.get();
+    options.noise = task.noise_by_place ? &*task.noise_by_place : nullptr;
     options.reduce_to = plan.carried;
     options.by_volume = plan.by_volume && network.vertex_count() > plan.carried;
     options.learned_briefly = learns_briefly(plan);

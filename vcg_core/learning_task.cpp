@@ -149,7 +149,7 @@ void measure_noise(LearningTask& task, Survey& survey, const Settings& settings)
         task.target().is_exact())
         return;
     const SurfaceSurvey& surface = survey.of(task.target())->surface();
-    if (surface.clutter() < 1) task.noise_by_place = std::make_shared<NoiseByPlace>(surface);
+    if (surface.clutter() < 1) task.noise_by_place.emplace(surface);
 }
 
 /// Whether the points have normals that are to be used; a warning, if theirs cannot.
@@ -247,7 +247,6 @@ int vertices_needed(const Start& start, const Settings& settings) {
 
 /// The start mesh of one layer of a cloud that may be open, or whose shell encloses no space; nothing if its
 /// shell is the better start.
-/// \throws InputError if the cloud has none and encloses no space either, unless it is to be closed
 std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& shell, const Settings& settings,
                                         Survey& survey, Progress& progress) {
     const TargetSpace& target = task.target();
@@ -261,8 +260,6 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& she
         const bool fits = vertices_needed(start, settings) <= settings.target_vertices;
         if ((open && (fits || !shell.encloses_space)) || (fits && encloses_more(start, shell))) return start;
     } catch (const InputError&) {
-        const bool few = target.positions().size() < static_cast<std::size_t>(OpenStartOptions::kLeastCloud);
-        if (automatic && !shell.encloses_space && !few) throw;
     }
     return {};
 }

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,7 +40,7 @@ struct LearningTask {
     /// faces, where it is not known.
     double noise = std::numeric_limits<double>::infinity();
     /// Of target(). Nothing if the points are exact, too few, or show no surface anywhere.
-    std::shared_ptr<const NoiseByPlace> noise_by_place;
+    std::optional<NoiseByPlace> noise_by_place;
     TopologyRules topology_rules;    ///< with settings.learn_topology
     double topology_confidence = 0;  ///< as in Report
     int parts_faced_by_normals = 0;  ///< components of the network that face the side of the points' normals

@@ -93,7 +93,8 @@ int wanted_vertices(std::size_t points, const OpenStartOptions& options) {
 void check_for_surface(const SurfaceSurvey& survey) {
     if (survey.curves() > kMostWithoutSurface)
         throw InputError(
-            "The points lie on curves, not on a surface: there is nothing to span an open surface over.");
+            "The points lie on curves, not on a surface: there is nothing to span an open surface over. "
+            "Choose surface 1 (closed) for a skin around them.");
     if (survey.clutter() > kMostWithoutSurface)
         throw InputError(
             "The points are scattered in space, or too noisy beside their spacing: an open surface cannot be found. "

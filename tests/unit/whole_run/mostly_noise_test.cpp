@@ -14,9 +14,8 @@ namespace {
 
 using shapes::Cloud;
 
-NeuralMesh mesh_of(const Cloud& cloud, int vertices, int seed = 1, int surface = kAutomatic) {
+NeuralMesh mesh_of(const Cloud& cloud, int vertices, int seed = 1) {
     Settings settings;
-    settings.surface = surface;
     settings.target_vertices = vertices;
     settings.random_seed = seed;
     settings.threads = 1;
@@ -51,10 +50,9 @@ TEST(MostlyNoise, IsLearnedIfTheOtherPointsSpanNoSurface) {
     Random random(3);
     for (int i = 0; i < 2000; ++i) cloud.emplace_back(shapes::signed_unit(random), 0.0, 0.0);
     for (int i = 0; i < 20; ++i) cloud.push_back(shapes::in_cube(random));
-    const NeuralMesh mesh = mesh_of(cloud, 200, 1, kClosedSurface);
+    const NeuralMesh mesh = mesh_of(cloud, 200);
     EXPECT_TRUE(soundness::has_warning(mesh, "20 of 2020 points (1.0 %) look like outliers"));
     EXPECT_TRUE(soundness::has_warning(mesh, "all points were learned"));
-    EXPECT_THROW(mesh_of(cloud, 200), InputError) << "a line is no surface";
 }
 
 }  // namespace
