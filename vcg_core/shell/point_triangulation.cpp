@@ -27,7 +27,7 @@ constexpr float kWidestCircle = 1.5F;
 /// A point belongs to another layer if its normal differs by more than a right angle and a bit, or if it lies
 /// above the tangent plane rather than beside it.
 constexpr float kLeastCosine = -0.2F, kMostAcross = 0.8F;
-constexpr float kPi = 3.1415927F;
+constexpr float kHalfTurn = 2;  // in the measure of angle()
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -47,11 +47,15 @@ struct Points {
     const std::vector<Point3f>& normals;
     const std::vector<float>& radii;
 
-    /// The direction from one point to another, as an angle in the tangent plane of the first.
+    /// The direction from one point to another, in the tangent plane of the first: grows with the angle,
+    /// by 2 for half a turn.
     float angle(int from, int to) const {
         const Plane plane(normals[at(from)]);
         const Point3f way = positions[at(to)] - positions[at(from)];
-        return std::atan2(way * plane.y, way * plane.x);
+        const float x = way * plane.x, y = way * plane.y;
+        const float part = y / std::max(std::abs(x) + std::abs(y), 1e-30F);
+        if (x < 0) return 2 - part;
+        return y < 0 ? 4 + part : part;
     }
 };
 
@@ -192,12 +196,12 @@ private:
         bool contains(float direction) const { return angle(from, direction) < angle(from, to); }
         static float angle(float from, float to) {
             const float a = to - from;
-            return a < 0 ? a + 2 * kPi : a;
+            return a < 0 ? a + 2 * kHalfTurn : a;
         }
     };
 
     bool fits(int v, const Wedge& wedge) const {
-        if (Wedge::angle(wedge.from, wedge.to) >= kPi) return false;
+        if (Wedge::angle(wedge.from, wedge.to) >= kHalfTurn) return false;
         for (const Wedge& other : wedges_[at(v)]) {
             if (other.first == wedge.first || other.last == wedge.last) return false;
             if (other.first != wedge.last && wedge.contains(other.from)) return false;

@@ -55,7 +55,8 @@ HeightField height_field(const std::vector<vcg::Point3f>& points, const Vector3d
     Vector3d sum = Vector3d::Zero();
     for (const vcg::Point3f& p : points) {
         const Vector3d d = to_eigen(p) - place;
-        field.gauss.push_back(std::exp(-2 * d.squaredNorm() / (radius * radius)));
+        const double x = d.squaredNorm() / (radius * radius);
+        field.gauss.push_back(1 / (1 + 2 * x * (1 + x)));  // about e^(-2 x)
         total += field.gauss.back();
         sum += field.gauss.back() * d;
     }

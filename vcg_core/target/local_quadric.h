@@ -29,7 +29,7 @@ struct LocalQuadric {
 /// More points tell no more of six coefficients.
 constexpr std::size_t kMostForQuadric = 120;
 
-/// Least squares over the plane of \p points, with Gaussian weights that fall to e^-2 at \p radius from \p
+/// Least squares over the plane of \p points, with weights that fall to a fifth at \p radius from \p
 /// place and two passes of Cauchy weights, which take outliers out. Does not hold for fewer than
 /// LocalQuadric::kLeastPoints points or where the points lie on a line. O(points).
 LocalQuadric local_quadric(const std::vector<vcg::Point3f>& points, const vcg::Point3f& place, float radius);
