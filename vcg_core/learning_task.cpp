@@ -254,7 +254,7 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& she
     try {
         OpenStart start = make_open_start(target, settings, survey, progress);
         warn_of_thin_walls(task, start.layers, shell.encloses_space ? kSidesMayCross : kOneSheetClosed);
-        const bool open = automatic && start.loops > 0 && !start.layers.two &&
+        const bool open = automatic && start.loops > 0 && !start.layers.two && !start.misses_surface &&
                           (target.has_faces() || may_be_open(shell, target, settings, start.radius)) &&
                           (settings.close_holes_up_to >= 0 || start.widest_loop > widest_closed(target));
         const bool fits = vertices_needed(start, settings) <= settings.target_vertices;

@@ -214,6 +214,20 @@ std::vector<std::uint8_t> drop_small_parts(Surveys& surveys, const Enough& enoug
     return out;
 }
 
+/// \param out as drop_small_parts() returns it
+bool misses_surface(Surveys& surveys, const std::vector<std::uint8_t>& out) {
+    // Scans miss up to .03, slabs as thick as their points are apart .09 and .16; a tree misses .14, and has
+    // .35 of clutter, which is not sharply told from its surface.
+    constexpr double kMost = 0.05;
+    const NearestPoints& cloud = surveys.points().cloud;
+    const SurfaceSurvey& survey = surveys.surface();
+    std::size_t count = 0;
+    for (NearestPoints::Place place = 0; place < cloud.size(); ++place)
+        if (out[cloud.index(place)] != 0 && !survey.at(cloud.point(place)).clutter) ++count;
+    const double share = static_cast<double>(count) / static_cast<double>(cloud.size());
+    return share > std::max(kMost, survey.clutter());
+}
+
 double diameter_of(const std::vector<VertexId>& loop, const std::vector<Point3f>& positions) {
     std::vector<Point3f> points;
     for (const VertexId v : loop) points.push_back(positions[at(v)]);
@@ -342,6 +356,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
             "No part of the cloud holds enough points for an open surface: choose surface 1 (closed), or add "
             "points.");
     OpenStart result;
+    result.misses_surface = misses_surface(surveys, out);
     fill_small_holes(sheet, options, result);
 
     progress(0.8, "Start mesh: reducing it");

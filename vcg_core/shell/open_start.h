@@ -70,6 +70,9 @@ struct OpenStart {
     double widest_loop = 0;
     double radius = 0;         ///< on which the points are a surface, in its sparser parts
     double widest_filled = 0;  ///< diameter of the widest hole that was filled
+    /// More of the points whose surroundings show a surface were left out than chance and clutter account
+    /// for: the mesh is not theirs. So are the narrow sides of a thin slab.
+    bool misses_surface = false;
     LayerFigures layers;       ///< whether most of the points lie on the two sides of a thin wall
     /// 1 for each point of the cloud that is not to be learned; empty if there are none, or if the target has
     /// faces.

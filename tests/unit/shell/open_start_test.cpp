@@ -146,6 +146,12 @@ TEST(OpenStart, LeavesOutSpecks) {
     EXPECT_TRUE(warns(start, "30 of 5030 points (0.6 %) show no surface"));
 }
 
+TEST(OpenStart, SaysIfItMissesTheNarrowSidesOfASlab) {
+    EXPECT_TRUE(start_of(shapes::box_cloud(3000, {1, 0.7, 0.1})).misses_surface);
+    EXPECT_FALSE(start_of(shapes::box_cloud(12000, {1, 0.7, 0.1})).misses_surface);
+    EXPECT_FALSE(start_of(shapes::plane_cloud(5000)).misses_surface);
+}
+
 TEST(OpenStart, RefusesWhatIsNoSurface) {
     const auto refusal = [](const Cloud& cloud) -> std::string {
         try {
