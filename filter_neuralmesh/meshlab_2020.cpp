@@ -108,3 +108,5 @@ bool FilterNeuralMeshPlugin::applyFilter(QAction* action, MeshDocument& document
 }
 
 MESHLAB_PLUGIN_NAME_EXPORTER(FilterNeuralMeshPlugin)
+
+#include "moc_meshlab_2020.cpp"  // with this file, not by itself: it reads the same headers

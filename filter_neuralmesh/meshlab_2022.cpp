@@ -95,3 +95,5 @@ std::map<std::string, QVariant> FilterNeuralMeshPlugin::applyFilter(const QActio
 }
 
 MESHLAB_PLUGIN_NAME_EXPORTER(FilterNeuralMeshPlugin)
+
+#include "moc_meshlab_2022.cpp"  // with this file, not by itself: it reads the same headers

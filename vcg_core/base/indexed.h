@@ -12,6 +12,9 @@
 
 namespace neuralmesh {
 
+/// An int as index of a std::vector.
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
 /// std::vector with int indices: values[v] instead of values[static_cast<std::size_t>(v)]. An index out of
 /// range is undefined behaviour, caught by assert().
 template <class T, class Allocator = std::allocator<T>>

@@ -19,7 +19,7 @@ namespace neuralmesh {
 
 namespace {
 
-constexpr int kChunk = 128;
+constexpr int kCostChunk = 128;
 constexpr int kStarPoints = 64;         ///< about as many points of a star are measured
 constexpr float kExaminedShare = 0.4F;  ///< of the vertices
 constexpr int kTries = 3;               ///< neighbours to collapse into
@@ -206,7 +206,7 @@ std::vector<Collapse> find_collapses(const Network& network, const Surface& surf
     const Support support(network, surface, points);
     const CollapseCosts costs(network, surface, points, support);
     PerVertex<float> estimates(network.slot_count());
-    parallel_for(estimates.size(), kChunk, team, [&](VertexId v) {
+    parallel_for(estimates.size(), kCostChunk, team, [&](VertexId v) {
         estimates[v] = network.alive(v) ? costs.estimate(v) : Collapse::kForbidden;
     });
     std::vector<float> sorted = estimates.vector();
@@ -214,7 +214,7 @@ std::vector<Collapse> find_collapses(const Network& network, const Surface& surf
                                            kExaminedShare * static_cast<float>(network.vertex_count()));
     std::nth_element(sorted.begin(), last, sorted.end());
     std::vector<Collapse> collapses(sorted.size());
-    parallel_for(estimates.size(), kChunk, team, [&](VertexId v) {
+    parallel_for(estimates.size(), kCostChunk, team, [&](VertexId v) {
         collapses[static_cast<std::size_t>(v)] =
             estimates[v] <= *last ? costs.cheapest(v) : Collapse{Collapse::kForbidden, v, -1};
     });

@@ -34,7 +34,7 @@ constexpr int kRingPoints = 256;
 constexpr int kRefinements = 4;
 constexpr float kHopeless = 4;  ///< times the largest squared error, after which no refinement helps
 constexpr int kVerticesAtATime = 64;
-constexpr int kFacesAtATime = 512;
+constexpr int kCreaseChunk = 512;
 
 /// The two planes around one vertex after another.
 class PlanesOfPoints {
@@ -288,7 +288,7 @@ PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surfa
                                     ThreadTeam& team, CreaseMoves which) {
     PerVertex<Vector3> moves(network.slot_count(), Vector3::Zero());
     PerFace<PlanesOfPoints::Side> sides(surface.face_count());
-    parallel_for(sides.size(), kFacesAtATime, team, [&](int f) {
+    parallel_for(sides.size(), kCreaseChunk, team, [&](int f) {
         const Vector3 along = area_vector(surface, f);
         const float area = along.norm();
         sides[f] = {along / area, area, f};

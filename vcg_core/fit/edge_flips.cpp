@@ -16,7 +16,7 @@ namespace neuralmesh {
 
 namespace {
 
-constexpr int kChunk = 256;
+constexpr int kFlipChunk = 256;
 /// Rise of the cosine between the normals of folded neighbours that makes a flip worth while by itself.
 constexpr float kUnfolding = 0.3F;
 /// Where the quad is flat, by the cosine between its normals, and the distances rise by less than this share
@@ -153,7 +153,7 @@ std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface,
     const Support support(network, surface, points);
     const FlipGains gains(surface, points, support);
     std::vector<EdgeFlip> flips = parallel_collect<EdgeFlip>(
-        network.slot_count(), kChunk, team, [&](VertexId a, std::vector<EdgeFlip>& found) {
+        network.slot_count(), kFlipChunk, team, [&](VertexId a, std::vector<EdgeFlip>& found) {
             const Ring& ring = network.ring(a);
             for (int i = 0; i < ring.valence; ++i) {
                 const VertexId b = ring[i];

@@ -33,7 +33,7 @@ constexpr float kOutlierEdges = 0.5F;
 /// tests/experiments/accuracy/scan_table.py --groups outliers.
 constexpr float kStrayDeviations = 4;
 constexpr float kFirstStrayDeviations = 2.5F;
-constexpr int kFacesAtATime = 128;
+constexpr int kFitChunk = 128;
 /// Bending weights of the first round, and factors from the last choice to those on either side of it.
 constexpr float kFirstWeights[] = {0.01F, 0.1F, 1.0F, 8.0F, 50.0F};
 constexpr float kWeightDown = 8;
@@ -49,9 +49,9 @@ constexpr float kLastLeastWeight = 1e-3F;
 /// Likely gap of an edge (see PointToPlaneSystem) on a surface without noise, in edge lengths. By Bayes' rule
 /// it determines the least bending weight under noise.
 constexpr float kLikelyGap = 0.05F;
-/// The same with fewer points per vertex than kFewPoints, where it rarely takes a bend for noise.
+/// The same with fewer points per vertex than kFewPerVertex, where it rarely takes a bend for noise.
 constexpr float kLikelyGapOfFew = 0.1F;
-constexpr float kFewPoints = 5;
+constexpr float kFewPerVertex = 5;
 /// The same where the noise of each place is known. A frame of a depth camera in a room has normals that are
 /// 2.3 degrees off with .05 and 2.8 with .07 (2,500 vertices), 3.8 with .1 (10,000).
 constexpr float kLikelyGapByPlace = 0.06F;
@@ -171,7 +171,7 @@ void Fitter::examine_layers(const Surface& surface, const PointsByFace& points, 
     stiff_rounds_ = 0;
     if (excludes_layers_) return;
     const float points_per_vertex = points.per_vertex(network_.vertex_count());
-    if (points_per_vertex < kFewPoints) return;
+    if (points_per_vertex < kFewPerVertex) return;
     const PerVertex<float> variances = examine_variances(surface, points);
     layering_ = layering(network_, surface, widest_variances_, points_per_vertex);
     const PerVertex<float> local = local_layering(network_, surface, widest_variances_);
@@ -220,7 +220,7 @@ PointsByFace Fitter::assign_faces(const Surface& surface) {
 /// Points beyond the boundary keep their influence: the surface has to reach them.
 void Fitter::weaken_outliers(const Surface& surface, PointsByFace& points) const {
     const float squared = outlier_distance_ * outlier_distance_;
-    parallel_for(surface.face_count(), kFacesAtATime, team_, [&](int face) {
+    parallel_for(surface.face_count(), kFitChunk, team_, [&](int face) {
         for (PointsByFace::Assignment& a : points.of(face))
             if (!is_beyond_boundary(surface, {face, a.foot}))
                 a.influence *= std::min(1.0F, squared / std::max(a.foot.squared_distance, 1e-20F));
@@ -240,7 +240,7 @@ void Fitter::measure_noise(const Surface& surface, const PointsByFace& points) {
     variances_.assign(network_.slot_count(), noise_variance_);
     if (noise_ == nullptr) return;
     const PerVertex<float> about_faces = local_variances(network_, surface, points);
-    parallel_for(network_.slot_count(), kFacesAtATime, team_, [&](VertexId v) {
+    parallel_for(network_.slot_count(), kFitChunk, team_, [&](VertexId v) {
         if (!network_.alive(v)) return;
         variances_[v] = noise_->variance_at(network_.position(v));
         if (about_faces[v] > 0) variances_[v] = std::min(variances_[v], kMostOfLocal * about_faces[v]);
@@ -269,7 +269,7 @@ VertexNoise Fitter::noise_around(const Surface& surface, const PointsByFace& poi
 void Fitter::silence_strays(const Surface& surface, PointsByFace& points) {
     const StrayPoints strays(network_, surface, points, solved_ ? kStrayDeviations : kFirstStrayDeviations,
                              team_);
-    parallel_for(surface.face_count(), kFacesAtATime, team_, [&](int face) {
+    parallel_for(surface.face_count(), kFitChunk, team_, [&](int face) {
         for (PointsByFace::Assignment& a : points.of(face))
             if (strays.contain(a, face)) a.influence = 0;
     });
@@ -278,7 +278,7 @@ void Fitter::silence_strays(const Surface& surface, PointsByFace& points) {
 std::vector<float> Fitter::choose_weights(const Surface& surface, const PointsByFace& points) {
     const float points_per_vertex = points.per_vertex(network_.vertex_count());
     const float gap =
-        (points_per_vertex < kFewPoints ? kLikelyGapOfFew : kLikelyGap) * mean_edge_length(surface);
+        (points_per_vertex < kFewPerVertex ? kLikelyGapOfFew : kLikelyGap) * mean_edge_length(surface);
     const float least = noise_ != nullptr ? 0 : noise_variance_ / (gap * gap * points_per_vertex);
     std::vector<float> weights = bending_.next_weights(least);
     if (stiff_rounds_ > 0 && layering_ > 0) weights = {kStiffWeight};

@@ -13,7 +13,7 @@ namespace neuralmesh {
 
 namespace {
 
-constexpr std::size_t kChunk = 512;
+constexpr std::size_t kHeldOutChunk = 512;
 
 /// Vertex normals averaged twice over the rings, which takes out most of the noise.
 PerVertex<Vector3> smoothed_normals(const Network& network, const Surface& surface) {
@@ -69,7 +69,7 @@ void HeldOut::relocate(const Surface& surface, ThreadTeam& team) {
 void HeldOut::set_directions(const Network& network, const Surface& surface, ThreadTeam& team) {
     const PerVertex<Vector3> normals = smoothed_normals(network, surface);
     directions_.resize(tracked_.points.size());
-    for_chunks(directions_.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(directions_.size(), kHeldOutChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Hit hit = walk_to_nearest(surface, tracked_.points[i], tracked_.last_hit[i]);
             const Triangle& f = surface.faces[hit.face];
@@ -83,7 +83,7 @@ void HeldOut::set_directions(const Network& network, const Surface& surface, Thr
 
 double HeldOut::rms_error(const Surface& surface, float outlier_distance, ThreadTeam& team) const {
     std::vector<float> squared(tracked_.points.size());
-    for_chunks(squared.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(squared.size(), kHeldOutChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             squared[i] =
                 squared_distance_along(directions_[i], surface, tracked_.points[i], tracked_.last_hit[i]);

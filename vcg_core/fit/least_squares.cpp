@@ -30,7 +30,7 @@ constexpr float kBoundaryBending = 0.05F;
 /// An edge counts as a crease from this many times the median gap.
 constexpr float kCrease = 4.0F;
 
-constexpr int kChunk = 256;
+constexpr int kSystemChunk = 256;
 
 float mean_of(const PerVertex<float>& values, const std::array<VertexId, 4>& corners) {
     return (values[corners[0]] + values[corners[1]] + values[corners[2]] + values[corners[3]]) / 4;
@@ -73,8 +73,8 @@ PointToPlaneSystem::ChunksOfSums PointToPlaneSystem::sums_of_faces(const Surface
                                                                    const PointsByFace& points, float hold,
                                                                    ThreadTeam& team) {
     const auto faces = static_cast<std::size_t>(surface.face_count());
-    ChunksOfSums chunks((faces + kChunk - 1) / kChunk);
-    for_chunks(faces, kChunk, team, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    ChunksOfSums chunks((faces + kSystemChunk - 1) / kSystemChunk);
+    for_chunks(faces, kSystemChunk, team, [&](std::size_t c, std::size_t begin, std::size_t end) {
         chunks[c].reserve(end - begin);
         for (std::size_t f = begin; f < end; ++f)
             chunks[c].push_back(sum_over(surface, points, hold, static_cast<int>(f)));
@@ -94,7 +94,7 @@ PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& su
     block_.resize(row_.back());
     const PerVertex<float> missing = missing_points_at_vertices(network, surface, points);
     const ChunksOfSums sums = sums_of_faces(surface, points, hold, team);
-    parallel_for(network.slot_count(), kChunk, team, [&](VertexId v) {
+    parallel_for(network.slot_count(), kSystemChunk, team, [&](VertexId v) {
         if (!network.alive(v)) return;
         gather(sums, surface, v);
         regularise(surface, missing[v], v);
@@ -124,7 +124,7 @@ void PointToPlaneSystem::gather(const ChunksOfSums& sums, const Surface& surface
         const VertexId next = face[k == 2 ? 0 : k + 1];
         const VertexId previous = face[before];
         const auto i = static_cast<std::size_t>(f);
-        const FaceSums& of_face = sums[i / kChunk][i % kChunk];
+        const FaceSums& of_face = sums[i / kSystemChunk][i % kSystemChunk];
         diagonal_[v].add(of_face.pair[k], 1);
         row(v)[ring.find(next)].add(of_face.pair[3 + k], 1);
         row(v)[ring.find(previous)].add(of_face.pair[3 + before], 1);
@@ -189,10 +189,10 @@ void PointToPlaneSystem::add_bending(const Surface& surface, const VertexNoise& 
             found.push_back(term);
         }
     };
-    bending_terms_ = parallel_collect<BendingTerm>(network_.slot_count(), kChunk, team, find);
+    bending_terms_ = parallel_collect<BendingTerm>(network_.slot_count(), kSystemChunk, team, find);
     if (bending_terms_.empty()) return;
     std::vector<float> gaps(bending_terms_.size());
-    for_chunks(gaps.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(gaps.size(), kSystemChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) gaps[i] = bending_terms_[i].gap.norm();
     });
     const float crease = std::max(kCrease * median(gaps), 1e-9F);

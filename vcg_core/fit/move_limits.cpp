@@ -13,7 +13,7 @@ namespace neuralmesh {
 namespace {
 
 constexpr float kMaxMove = 0.25F;  ///< in mean lengths of the vertex's edges
-constexpr int kChunk = 512;
+constexpr int kLimitChunk = 512;
 constexpr int kHalvings = 5;  ///< of a displacement before it is set to 0
 
 float quality_of(const Surface& surface, int f, const PerVertex<Vector3>& positions) {
@@ -29,14 +29,14 @@ MoveLimits::MoveLimits(const Network& network, const Surface& surface, ThreadTea
       qualities_(surface.face_count(), 0),
       folded_(surface.face_count(), 0),
       max_move_(network.slot_count(), 0) {
-    parallel_for(surface.face_count(), kChunk, team, [&](int f) {
+    parallel_for(surface.face_count(), kLimitChunk, team, [&](int f) {
         normals_[f] = unit_normal(surface_, f);
         qualities_[f] = quality_of(surface_, f, surface_.positions);
     });
     neighbours_ = parallel_collect<Neighbours>(
-        surface.face_count(), kChunk, team,
+        surface.face_count(), kLimitChunk, team,
         [this](int f, std::vector<Neighbours>& found) { look_across_edges(f, found); });
-    parallel_for(network.slot_count(), kChunk, team, [&](VertexId v) {
+    parallel_for(network.slot_count(), kLimitChunk, team, [&](VertexId v) {
         if (!network.alive(v)) return;
         float length = 0;
         for (VertexId u : network.ring(v)) length += (surface_.positions[u] - surface_.positions[v]).norm();

@@ -13,9 +13,9 @@ namespace {
 // Chosen by tests/experiments/accuracy/open_table.py.
 constexpr float kWidest = -0.2F;     ///< cosine of the widest angle of a notch
 constexpr float kNarrow = 0.7F;      ///< cosine of the angle below which a notch need not hold points ...
-constexpr float kFewPoints = 4;      ///< ... if no more than these are expected
+constexpr float kFewInNotch = 4;     ///< ... if no more than these are expected
 constexpr float kLeastShare = 0.5F;  ///< of the points expected
-constexpr float kFlat = 0.5F;        ///< least cosine between the normals of the new face and its neighbours
+constexpr float kFlatNotch = 0.5F;   ///< least cosine between the normals of the new face and its neighbours
 
 /// The face that would fill the notch at v: v and its neighbours before and after it.
 struct Notch {
@@ -40,8 +40,8 @@ struct Notch {
         const auto at = [&](int i) { return surface.positions[ring[i]]; };
         const int last = ring.valence - 1;
         const Vector3 normal = area.normalized();
-        return normal.dot(unit_normal(here, at(0), at(1))) > kFlat &&
-               normal.dot(unit_normal(here, at(last - 1), at(last))) > kFlat &&
+        return normal.dot(unit_normal(here, at(0), at(1))) > kFlatNotch &&
+               normal.dot(unit_normal(here, at(last - 1), at(last))) > kFlatNotch &&
                triangle_quality(here, at(last), at(0)) > kFlipRules.sliver;
     }
 };
@@ -52,7 +52,7 @@ bool is_notch(const Network& network, const Surface& surface, const PointsByFace
     const Notch notch(surface, network.ring(v), v);
     if (!(notch.cosine() > kWidest) || !notch.is_sound(surface, network.ring(v))) return false;
     const float expected = density * notch.area.norm() / 2;
-    if (notch.cosine() > kNarrow && expected < kFewPoints) return true;
+    if (notch.cosine() > kNarrow && expected < kFewInNotch) return true;
     int count = 0;
     for (int f : surface.faces_around(v))
         for (const PointsByFace::Assignment& assigned : points.of(f))

@@ -12,7 +12,7 @@ namespace neuralmesh {
 
 namespace {
 
-constexpr std::size_t kChunk = 512;
+constexpr std::size_t kPointChunk = 512;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ std::vector<Hit> nearest_by_tree(const Surface& surface, const TrackedPoints& tr
 
 std::vector<Hit> nearest_by_walk(const Surface& surface, const TrackedPoints& tracked, ThreadTeam& team) {
     std::vector<Hit> hits(tracked.points.size());
-    for_chunks(hits.size(), kChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_chunks(hits.size(), kPointChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             hits[i] = walk_to_nearest(surface, tracked.points[i], tracked.last_hit[i]);
     });
@@ -53,7 +53,7 @@ float PointsByFace::mean_weight(int f, int g) const {
 }
 
 void PointsByFace::update_feet(const Surface& surface, ThreadTeam& team) {
-    parallel_for(surface.face_count(), kChunk, team, [&](int face) {
+    parallel_for(surface.face_count(), kPointChunk, team, [&](int face) {
         for (Assignment& a : of(face))
             a.foot = foot_on_triangle(a.point, surface.corner(face, 0), surface.corner(face, 1),
                                       surface.corner(face, 2));
@@ -64,7 +64,7 @@ PointsByFace group_by_face(const Surface& surface, TrackedPoints& tracked, const
                            ThreadTeam& team) {
     PointsByFace result(surface, tracked, hits);
     tracked.last_hit.resize(hits.size());
-    parallel_for(surface.face_count(), kChunk, team, [&](int face) {
+    parallel_for(surface.face_count(), kPointChunk, team, [&](int face) {
         auto i = static_cast<std::size_t>(result.of(face).begin() - result.all().data());
         for (const PointsByFace::Assignment& a : result.of(face)) {
             tracked.points[i] = a.point;

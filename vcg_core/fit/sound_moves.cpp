@@ -18,7 +18,7 @@ namespace {
 /// Moves through a wall as thick as its edges are long take four to eight.
 constexpr int kMostSteps = 12;
 /// The steps end when one covers less than this share of the way that is left: what is left is held up.
-constexpr float kLeastShare = 0.02F;
+constexpr float kLeastGain = 0.02F;
 
 float total_length(const PerVertex<Vector3>& moves) {
     float sum = 0;
@@ -38,7 +38,7 @@ void move_soundly(Network& network, PerVertex<Vector3> moves, ThreadTeam& team) 
         surface.positions = MoveLimits(network, start, team).without_crossings(moves, guard, team);
         for (const VertexId v : network.vertices()) moves[v] -= surface.positions[v] - start.positions[v];
         const float before = std::exchange(left, total_length(moves));
-        if (before - left < kLeastShare * before) break;
+        if (before - left < kLeastGain * before) break;
     }
     for (const VertexId v : network.vertices()) network.set_position(v, to_vcg(surface.positions[v]));
 }

@@ -16,7 +16,7 @@ namespace neuralmesh {
 
 namespace {
 
-constexpr int kChunk = 128;
+constexpr int kSplitChunk = 128;
 constexpr float kMaxOffset = 0.3F;  ///< in edge lengths
 
 /// Sums over points for the least squares of one offset.
@@ -121,7 +121,7 @@ std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surfac
         return least_gain.of((surface.positions[a] - surface.positions[b]).squaredNorm(), variance);
     };
     PerFace<FaceHatSums> sums(surface.face_count());
-    parallel_for(sums.size(), kChunk, team, [&](int f) { sums[f] = hat_sums(surface, points, f); });
+    parallel_for(sums.size(), kSplitChunk, team, [&](int f) { sums[f] = hat_sums(surface, points, f); });
     const auto find = [&](VertexId a, std::vector<EdgeSplit>& found) {
         if (!network.alive(a)) return;
         const Ring& ring = network.ring(a);
@@ -132,7 +132,8 @@ std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surfac
             if (split.gain >= 0) found.push_back(split);
         }
     };
-    std::vector<EdgeSplit> splits = parallel_collect<EdgeSplit>(network.slot_count(), kChunk, team, find);
+    std::vector<EdgeSplit> splits =
+        parallel_collect<EdgeSplit>(network.slot_count(), kSplitChunk, team, find);
     for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) {
         EdgeSplit split = split_of(surface, points, sums, 0, target.a, target.b);
         add_boundary_gain(split, target);

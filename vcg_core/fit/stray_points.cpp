@@ -29,7 +29,7 @@ constexpr float kLeastEdges = 0.06F;
 constexpr std::size_t kNearest = 8;
 constexpr int kCompany = 3;
 constexpr float kComparable = 0.3F;
-constexpr int kChunk = 128;
+constexpr int kStrayChunk = 128;
 
 float spread_at(const Surface& surface, const PointsByFace& points, VertexId v) {
     std::vector<float> squared;
@@ -58,9 +58,10 @@ StrayPoints::StrayPoints(const Network& network, const Surface& surface, const P
                          float deviations, ThreadTeam& team)
     : network_(network), surface_(surface), points_(points), limit_(surface.positions.size(), 0) {
     PerVertex<float> spread(surface.positions.size(), 0);
-    parallel_for(spread.size(), kChunk, team, [&](VertexId v) { spread[v] = spread_at(surface, points, v); });
+    parallel_for(spread.size(), kStrayChunk, team,
+                 [&](VertexId v) { spread[v] = spread_at(surface, points, v); });
     const float least = kLeastEdges * mean_edge_length(surface);
-    parallel_for(spread.size(), kChunk, team, [&](VertexId v) {
+    parallel_for(spread.size(), kStrayChunk, team, [&](VertexId v) {
         if (!network.alive(v)) return;
         // A vertex with few points would take the height of a stray one for the spread; its neighbours do
         // not.

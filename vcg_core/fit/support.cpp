@@ -19,9 +19,9 @@ constexpr float kFacePseudoPoints = 2;
 constexpr float kLikelyDistance = 0.25F;
 /// A change may add this many missing points per sampled point.
 constexpr float kTolerance = 0.5F;
-/// Faces with fewer points than kFewPoints say nothing of the density, so their area may not grow by more
+/// Faces with fewer points than kFewOnFace say nothing of the density, so their area may not grow by more
 /// than this factor.
-constexpr int kFewPoints = 6;
+constexpr int kFewOnFace = 6;
 constexpr float kStretch = 1.02F;
 
 // Of vertices.
@@ -63,7 +63,7 @@ float Support::missing_points(const Triangle& face, float twice_area, float poin
 
 float Support::cost_of_change(const Patch& before, const Patch& after, int points_per_sample) const {
     const float rise = after.missing_points - before.missing_points;
-    const bool stretched = before.points < kFewPoints && after.twice_area > kStretch * before.twice_area;
+    const bool stretched = before.points < kFewOnFace && after.twice_area > kStretch * before.twice_area;
     if (rise > kTolerance * static_cast<float>(points_per_sample) || (stretched && !(rise < 0)))
         return kForbidden;
     return rise < 0 ? rise * cost_per_point_ : 0.0F;

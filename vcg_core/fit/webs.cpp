@@ -11,7 +11,7 @@ namespace neuralmesh {
 namespace {
 
 // Tried with tests/experiments/accuracy/open_table.py, one value each.
-constexpr int kSpreads = 3;           ///< of the density, over the rings
+constexpr int kRingsOfWeb = 3;        ///< of the density, over the rings
 constexpr float kFewestExpected = 8;  ///< fewer say nothing
 constexpr float kMostShare = 0.1F;    ///< of the points expected
 
@@ -33,7 +33,7 @@ PerVertex<float> supported_density(const Network& network, const Surface& surfac
         const Supported of_face{static_cast<float>(points.of(f).size()), area_vector(surface, f).norm() / 2};
         for (const VertexId v : surface.faces[f]) sums[v] += of_face;
     }
-    spread_over_rings(network, sums, kSpreads);
+    spread_over_rings(network, sums, kRingsOfWeb);
     PerVertex<float> density(sums.size(), 0);
     for (VertexId v = 0; v < sums.size(); ++v)
         if (sums[v].area > 0) density[v] = sums[v].points / sums[v].area;

@@ -13,11 +13,11 @@ namespace {
 using vcg::Point3f;
 
 // Chosen by tests/experiments/paper/features.py, whose results hardly change around these values.
-constexpr float kReach = 1.5F;  ///< a face this many edges away has half the weight
+constexpr float kPlaneReach = 1.5F;  ///< a face this many edges away has half the weight
 constexpr int kRefinements = 2;
-constexpr float kWidth = 0.05F;     ///< of similarity() within a plane, in squared differences of the two
-constexpr float kOpposite = -0.9F;  ///< cosine below which normals belong to the two sides of a thin part
-constexpr float kTiny = 1e-30F;     ///< keeps a vertex without edge length from dividing zero by zero
+constexpr float kPlaneWidth = 0.05F;  ///< of similarity() within a plane, in squared differences of the two
+constexpr float kOpposite = -0.9F;    ///< cosine below which normals belong to the two sides of a thin part
+constexpr float kTiny = 1e-30F;       ///< keeps a vertex without edge length from dividing zero by zero
 
 }  // namespace
 
@@ -48,7 +48,7 @@ Crease TwoPlanes::crease_near(const Point3f& x, float edge, VertexId v) {
 void TwoPlanes::collect(const Point3f& x, VertexId v) {
     ++collection_;
     members_.clear();
-    const float reach = kReach * mean_edge_at(network_, v);
+    const float reach = kPlaneReach * mean_edge_at(network_, v);
     add_faces_around(v, x, reach);
     for (const VertexId u : network_.ring(v)) add_faces_around(u, x, reach);
 }
@@ -81,7 +81,7 @@ bool TwoPlanes::choose_seeds(float least_cosine) {
 /// Assigns each face to the plane with the more similar normal, then recomputes both planes. False if one has
 /// no face left.
 bool TwoPlanes::refine() {
-    const float width = kWidth * (normals_[0] - normals_[1]).SquaredNorm() + 1e-9F;
+    const float width = kPlaneWidth * (normals_[0] - normals_[1]).SquaredNorm() + 1e-9F;
     Point3f normals[2] = {{0, 0, 0}, {0, 0, 0}};
     Point3f points[2] = {{0, 0, 0}, {0, 0, 0}};
     float weights[2] = {0, 0};

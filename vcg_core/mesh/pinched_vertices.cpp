@@ -13,12 +13,12 @@ namespace neuralmesh {
 namespace {
 
 /// The corners of the faces around each vertex, by vertex.
-struct Corners {
+struct CornersByVertex {
     std::vector<int> first, corner;
 };
 
-Corners corners_of(const IndexedMesh<float>& mesh) {
-    Corners result;
+CornersByVertex corners_of(const IndexedMesh<float>& mesh) {
+    CornersByVertex result;
     result.first.assign(mesh.positions.size() + 1, 0);
     for (const Triangle& f : mesh.faces)
         for (const VertexId v : f) ++result.first[static_cast<std::size_t>(v) + 1];
@@ -61,7 +61,7 @@ std::vector<std::vector<int>> fans_of(const IndexedMesh<float>& mesh, std::vecto
 }  // namespace
 
 void split_pinched_vertices(IndexedMesh<float>& mesh, std::vector<int>& source) {
-    const Corners corners = corners_of(mesh);
+    const CornersByVertex corners = corners_of(mesh);
     for (std::size_t v = 0; v + 1 < corners.first.size(); ++v) {
         const auto begin = corners.corner.begin();
         const std::vector<std::vector<int>> fans =

@@ -18,7 +18,7 @@ namespace neuralmesh {
 
 namespace {
 
-constexpr int kChunk = 128;
+constexpr int kCrossingChunk = 128;
 
 /// Six times the signed volume of the tetrahedron a b c d.
 float volume(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
@@ -59,7 +59,7 @@ bool intersect(const Surface& surface, int f, int g) {
 class Faces {
 public:
     Faces(const Surface& surface, ThreadTeam& team) : surface_(surface), area_vectors_(surface.face_count()) {
-        parallel_for(surface.face_count(), kChunk, team,
+        parallel_for(surface.face_count(), kCrossingChunk, team,
                      [&](int f) { area_vectors_[f] = area_vector(surface, f); });
     }
 
@@ -166,7 +166,8 @@ std::vector<SelfCrossing> self_crossings(const Surface& surface, ThreadTeam& tea
         });
         tested += pairs;
     };
-    std::vector<SelfCrossing> all = parallel_collect<SelfCrossing>(tree.group_count(), kChunk, team, find);
+    std::vector<SelfCrossing> all =
+        parallel_collect<SelfCrossing>(tree.group_count(), kCrossingChunk, team, find);
     std::sort(all.begin(), all.end());
     if (tested_pairs != nullptr) *tested_pairs = tested;
     return all;
@@ -182,7 +183,7 @@ std::vector<SelfCrossing> update_self_crossings(const Surface& surface, const Su
         is_changed[f] = 1;
         if (faces.has_area(f)) changed.push_back(f);
     };
-    std::vector<int> changed = parallel_collect<int>(surface.face_count(), kChunk, team, examine);
+    std::vector<int> changed = parallel_collect<int>(surface.face_count(), kCrossingChunk, team, examine);
     const FaceTree tree(surface, std::move(changed), team);
     const auto find = [&](int f, std::vector<SelfCrossing>& found) {
         if (!faces.has_area(f)) return;
@@ -191,7 +192,8 @@ std::vector<SelfCrossing> update_self_crossings(const Surface& surface, const Su
             if (is_changed[f] == 0 || f < g) faces.append_crossing(f, g, found);
         });
     };
-    std::vector<SelfCrossing> all = parallel_collect<SelfCrossing>(surface.face_count(), kChunk, team, find);
+    std::vector<SelfCrossing> all =
+        parallel_collect<SelfCrossing>(surface.face_count(), kCrossingChunk, team, find);
     std::sort(all.begin(), all.end());
     const auto found = static_cast<std::ptrdiff_t>(all.size());
     for (const SelfCrossing& c : known)

@@ -16,7 +16,7 @@ namespace neuralmesh {
 namespace {
 
 using vcg::Point3f;
-using Edge = std::array<std::size_t, 2>;
+using PlaceEdge = std::array<std::size_t, 2>;
 
 /// By corner, the first corner at the same place.
 std::vector<std::size_t> places_of(const std::vector<Point3f>& corners) {
@@ -35,11 +35,11 @@ std::vector<std::size_t> places_of(const std::vector<Point3f>& corners) {
 
 /// Edges by the number of their faces; faces without area have none.
 struct Edges {
-    std::vector<Edge> of_one, of_many;  ///< many: three or more
+    std::vector<PlaceEdge> of_one, of_many;  ///< many: three or more
 };
 
 Edges edges_of(const std::vector<std::size_t>& places) {
-    std::vector<Edge> edges;
+    std::vector<PlaceEdge> edges;
     for (std::size_t f = 0; f + 2 < places.size(); f += 3) {
         const std::array<std::size_t, 3> at{places[f], places[f + 1], places[f + 2]};
         if (at[0] == at[1] || at[1] == at[2] || at[2] == at[0]) continue;
@@ -67,12 +67,12 @@ double widest_face_boundary(const TargetSpace& target) {
         while (root[v] != v) v = root[v] = root[root[v]];
         return v;
     };
-    for (const Edge& edge : edges.of_one) root[find(edge[0])] = find(edge[1]);
+    for (const PlaceEdge& edge : edges.of_one) root[find(edge[0])] = find(edge[1]);
     std::vector<char> of_fin(corners.size(), 0);  // by root
-    for (const Edge& edge : edges.of_many)
+    for (const PlaceEdge& edge : edges.of_many)
         for (const std::size_t v : edge) of_fin[find(v)] = 1;
     std::vector<std::array<std::size_t, 2>> members;  // root and place
-    for (const Edge& edge : edges.of_one)
+    for (const PlaceEdge& edge : edges.of_one)
         for (const std::size_t v : edge)
             if (of_fin[find(v)] == 0) members.push_back({find(v), v});
     std::sort(members.begin(), members.end());

@@ -17,7 +17,7 @@ namespace neuralmesh {
 
 namespace {
 
-using Edge = std::pair<int, int>;
+using CornerPair = std::pair<int, int>;
 
 /// A vertex that is split lets its twin move this share of the way to the middle of the twin's neighbours.
 constexpr float kTwinStep = 0.25F;
@@ -75,7 +75,7 @@ void check_faces(const std::vector<Triangle>& faces, const Words& words) {
 }
 
 void check_edges(const std::vector<Triangle>& faces, const Words& words) {
-    std::vector<Edge> directed, plain;
+    std::vector<CornerPair> directed, plain;
     for (const Triangle& f : faces)
         for (std::size_t k = 0; k < 3; ++k) {
             directed.emplace_back(f[k], f[(k + 1) % 3]);
@@ -92,11 +92,11 @@ void check_edges(const std::vector<Triangle>& faces, const Words& words) {
 }
 
 /// A face of a vertex: around the vertex, neighbour \p to follows \p from.
-struct Link {
+struct FaceLink {
     int from, to;
     std::size_t face;
 };
-using Links = std::vector<std::vector<Link>>;
+using Links = std::vector<std::vector<FaceLink>>;
 
 Links links_of(const IndexedMesh<float>& mesh) {
     Links links(mesh.positions.size());
@@ -114,19 +114,19 @@ struct Fan {
     std::vector<std::size_t> faces;
 };
 
-Fan fan_of(const std::vector<Link>& links) {
-    const auto find = [&](int v, int Link::*end) {
-        return std::find_if(links.begin(), links.end(), [&](const Link& l) { return l.*end == v; });
+Fan fan_of(const std::vector<FaceLink>& links) {
+    const auto find = [&](int v, int FaceLink::*end) {
+        return std::find_if(links.begin(), links.end(), [&](const FaceLink& l) { return l.*end == v; });
     };
     auto link = std::find_if(links.begin(), links.end(),
-                             [&](const Link& l) { return find(l.from, &Link::to) == links.end(); });
+                             [&](const FaceLink& l) { return find(l.from, &FaceLink::to) == links.end(); });
     if (link == links.end()) link = links.begin();
     Fan fan{{link->from}, {}};
     while (link != links.end()) {
         fan.faces.push_back(link->face);
         if (link->to == fan.neighbours.front()) break;
         fan.neighbours.push_back(link->to);
-        link = find(link->to, &Link::from);
+        link = find(link->to, &FaceLink::from);
     }
     return fan;
 }
@@ -135,7 +135,7 @@ void check_vertices(const IndexedMesh<float>& mesh, const Words& words) {
     if (mesh.faces.size() > 1 && 3 * mesh.faces.size() == mesh.positions.size())
         refuse(words, mesh.faces.size(), "faces", "of which no two share a vertex", "Merge Close Vertices");
     std::size_t pinched = 0;
-    for (const std::vector<Link>& links : links_of(mesh))
+    for (const std::vector<FaceLink>& links : links_of(mesh))
         pinched += fan_of(links).faces.size() < links.size() ? 1 : 0;
     if (pinched > 0)
         refuse(words, pinched, "vertices", "where parts of the surface only touch",

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "vcg_core/base/indexed.h"
+
 namespace neuralmesh {
 namespace {
 
@@ -15,8 +17,6 @@ using vcg::Point3f;
 
 /// Planes that differ by less than this continue each other without doubt.
 constexpr float kSureWeight = 0.1F;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Two points side by side and whether their normals agree.
 struct Link {

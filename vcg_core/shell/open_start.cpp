@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "vcg_core/base/disjoint_sets.h"
+#include "vcg_core/base/indexed.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/base/text.h"
 #include "vcg_core/mesh/boundary_loops.h"
@@ -61,8 +62,6 @@ constexpr int kVerticesOfSheet = 3;
 /// The least share of the points that such a part may have, times the vertices asked for. It takes three of
 /// them, so more small parts than that would leave none for the others.
 constexpr double kLeastPartVertices = 0.3;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 void check(const OpenStartOptions& o) {
     if (o.wanted_vertices < 4 || o.target_vertices < 4 || o.samples < 4 ||

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "vcg_core/base/indexed.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/mesh/pinched_vertices.h"
 #include "vcg_core/mesh/ring.h"
@@ -28,8 +29,6 @@ constexpr float kWidestCircle = 1.5F;
 /// above the tangent plane rather than beside it.
 constexpr float kLeastCosine = -0.2F, kMostAcross = 0.8F;
 constexpr float kHalfTurn = 2;  // in the measure of angle()
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 struct Plane {
     Point3f x, y;

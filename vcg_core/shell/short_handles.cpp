@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "vcg_core/base/disjoint_sets.h"
+#include "vcg_core/base/indexed.h"
 #include "vcg_core/mesh/boundary_loops.h"
 #include "vcg_core/mesh/pinched_vertices.h"
 #include "vcg_core/mesh/ring.h"
@@ -23,8 +24,6 @@ namespace {
 
 /// Roots that are tried in all.
 constexpr int kMostRoots = 200;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// An edge, with the faces, or holes, on its two sides.
 struct Edge {

@@ -16,13 +16,13 @@ namespace {
 using vcg::Point3f;
 using Place = NearestPoints::Place;
 
-constexpr std::size_t kPlaces = 1000;
-constexpr int kNeighbours[] = {12, 36, 108};
+constexpr std::size_t kNormalPlaces = 1000;
+constexpr int kNormalNeighbours[] = {12, 36, 108};
 /// Points are flat if their variance across the plane is less than this share of the smaller one along it.
 constexpr double kFlat = 0.1;
 constexpr float kWithin30Degrees = 0.8660254F;
 /// Most of the places; random directions fit at 13 % of them.
-constexpr double kMost = 0.5;
+constexpr double kMostFitting = 0.5;
 /// If each normal is flipped with the probability p, 2 p (1 - p) of the pairs are opposite: here p is .15.
 constexpr double kMostOpposite = 0.25;
 /// Neighbours lower than this over the plane, in their distances, are on its side.
@@ -36,7 +36,7 @@ double share(int part, int all) { return all > 0 ? static_cast<double>(part) / a
 /// neighbours.
 std::optional<Point3f> plane_at(const NearestPoints& cloud, Place place,
                                 std::vector<NearestPoints::Neighbour>& near) {
-    for (const int wanted : kNeighbours) {
+    for (const int wanted : kNormalNeighbours) {
         cloud.nearest(place, wanted, near);
         if (near.size() < static_cast<std::size_t>(wanted)) return {};
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(neighbour_scatter(cloud, place, near));
@@ -74,12 +74,12 @@ void compare_sides(const NearestPoints& cloud, const std::vector<PackedNormal>& 
 
 double NormalSurvey::share_fitting() const { return share(fitting, places); }
 double NormalSurvey::share_opposite() const { return share(opposite, pairs); }
-bool NormalSurvey::fits() const { return share_fitting() > kMost; }
+bool NormalSurvey::fits() const { return share_fitting() > kMostFitting; }
 bool NormalSurvey::has_sides() const { return pairs > 0 && share_opposite() < kMostOpposite; }
 
 NormalSurvey survey_of_normals(const CloudSurvey& survey, const std::vector<PackedNormal>& normals) {
     const NearestPoints& cloud = survey.cloud;
-    const std::size_t step = std::max<std::size_t>(1, cloud.size() / kPlaces);
+    const std::size_t step = std::max<std::size_t>(1, cloud.size() / kNormalPlaces);
     std::vector<NearestPoints::Neighbour> near;
     NormalSurvey result;
     for (std::size_t i = step / 2; i < cloud.size(); i += step) {

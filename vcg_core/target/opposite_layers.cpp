@@ -16,8 +16,8 @@ namespace {
 
 using vcg::Point3f;
 
-constexpr std::size_t kPlaces = 1000;
-constexpr int kNeighbours = 12;
+constexpr std::size_t kLayerPlaces = 1000;
+constexpr int kLayerNeighbours = 12;
 /// In radii of the circle around the neighbours, which is about two spacings wide: how far the other layer is
 /// looked for, and on thin walls, how wide the column is in which it is, and how much of the column is empty
 /// between the layers.
@@ -85,15 +85,15 @@ void find_opposite_layers(const NearestPoints& cloud, NearestPoints::Place place
 std::vector<LayerPlace> layer_places(const CloudSurvey& survey, ThreadTeam& team) {
     constexpr int kPlacesAtATime = 16;
     const NearestPoints& cloud = survey.cloud;
-    const std::size_t step = std::max<std::size_t>(1, cloud.size() / kPlaces);
+    const std::size_t step = std::max<std::size_t>(1, cloud.size() / kLayerPlaces);
     const std::size_t count = (cloud.size() + step - 1 - step / 2) / step;
     return parallel_collect<LayerPlace>(
         static_cast<int>(count), kPlacesAtATime, team, [&](int i, std::vector<LayerPlace>& places) {
             const auto place =
                 static_cast<NearestPoints::Place>(step / 2 + static_cast<std::size_t>(i) * step);
             std::vector<NearestPoints::Neighbour> near;
-            cloud.nearest(place, kNeighbours, near);
-            if (near.size() < static_cast<std::size_t>(kNeighbours)) return;
+            cloud.nearest(place, kLayerNeighbours, near);
+            if (near.size() < static_cast<std::size_t>(kLayerNeighbours)) return;
             LayerPlace found = place_at(cloud, place, near);
             find_opposite_layers(cloud, place, std::sqrt(near.back().squared_distance), found);
             places.push_back(found);

@@ -23,7 +23,7 @@ constexpr double kLow = 0.1, kHigh = 0.8;
 constexpr float kUneven = 2.5F;
 /// Bound on the ratio of an area to the median: the few points of the far end of a room must not draw all
 /// signals. Room scans have 1000:1 and more between the percentiles.
-constexpr float kMostRatio = 100;
+constexpr float kMostAreaRatio = 100;
 
 /// The median of each value and those before and after it.
 std::vector<float> smoothed(const std::vector<float>& values) {
@@ -61,7 +61,7 @@ Spread spread_of(std::vector<float> areas) {
 void normalise(std::vector<float>& of_run, float median, std::size_t points) {
     double sum = 0;
     for (std::size_t r = 0; r < of_run.size(); ++r) {
-        of_run[r] = std::min(std::max(of_run[r] / median, 1 / kMostRatio), kMostRatio);
+        of_run[r] = std::min(std::max(of_run[r] / median, 1 / kMostAreaRatio), kMostAreaRatio);
         const std::size_t in_run = std::min(PointAreas::kRun, points - r * PointAreas::kRun);
         sum += static_cast<double>(of_run[r]) * static_cast<double>(in_run);
     }

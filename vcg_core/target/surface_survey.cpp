@@ -19,7 +19,7 @@ using Place = NearestPoints::Place;
 constexpr std::size_t kPointsPerPlace = 60, kFewestPlaces = 500, kMostPlaces = 4000;
 /// The circle through the seventh neighbour holds seven points.
 constexpr int kNeighbour = 7;
-constexpr float kPi = 3.1415927F;
+constexpr float kPiF = 3.1415927F;
 /// The median over so many places around takes out what is chance at one of them.
 constexpr int kPlacesAround = 12;
 /// A quadric takes the points within this many radii.
@@ -41,7 +41,7 @@ std::vector<Place> chosen_places(const NearestPoints& cloud) {
 float spacing_at(const NearestPoints& cloud, Place place, std::vector<NearestPoints::Neighbour>& near) {
     cloud.nearest(place, kNeighbour, near);
     if (near.empty()) return 0;
-    return std::sqrt(kPi * near.back().squared_distance / static_cast<float>(near.size()));
+    return std::sqrt(kPiF * near.back().squared_distance / static_cast<float>(near.size()));
 }
 
 /// The least radius on which the points around a place show a surface.

@@ -19,7 +19,7 @@ namespace neuralmesh {
 namespace {
 
 /// If the box of most points has a smaller share of the diagonal, the frame is centred on it.
-constexpr double kSmallShare = 1e-3;
+constexpr double kSmallExtent = 1e-3;
 /// If a larger share of the points are duplicates, they are removed.
 constexpr double kMaxDuplicates = 0.1;
 /// Size of the samples that estimate this share.
@@ -101,7 +101,7 @@ void TargetSpace::set_frame(const vcg::Box3d& box, std::size_t not_finite, std::
 
 void TargetSpace::centre_on(const vcg::Box3d& most) {
     const double diagonal = (most.max - most.min).Norm();
-    off_centre_ = diagonal > 0 && diagonal < kSmallShare * frame_.diagonal;
+    off_centre_ = diagonal > 0 && diagonal < kSmallExtent * frame_.diagonal;
     if (off_centre_) frame_.centre = most.min / 2 + most.max / 2;
 }
 

@@ -26,7 +26,7 @@ namespace {
 /// Membranes with more rims have too many reconnections to try: one or two membranes, and three or more.
 constexpr std::size_t kMostRims = 4, kMostOfGroup = 5;
 /// Rings by which membranes are widened.
-constexpr std::size_t kWidest = 2;
+constexpr std::size_t kWidestWeb = 2;
 /// A reconnection that loses more signals than this as the membranes are gains none with wider ones.
 constexpr float kHopeless = -60;
 /// A reconnection gains enough if it explains this share of what the membranes lack, and this many signals.
@@ -205,7 +205,7 @@ bool Search::make(Membrane& membrane, std::vector<int> faces) const {
 
 /// Adds the same membrane with the faces around, and around those.
 void Search::widen(Wide& wide) const {
-    while (wide.size() <= kWidest) {
+    while (wide.size() <= kWidestWeb) {
         std::vector<int> faces;
         for (const int f : wide.back().faces)
             for (const VertexId v : surface_.faces[f])
@@ -238,7 +238,7 @@ float least_gain(float missing) { return std::max(kLeastGain, kLeastShare * miss
 Reconnection Search::of(const Group& group) const {
     Reconnection found;
     found.gain = std::numeric_limits<float>::lowest();
-    for (std::size_t ring = 0; ring <= kWidest; ++ring) {
+    for (std::size_t ring = 0; ring <= kWidestWeb; ++ring) {
         std::vector<Membrane> membranes;
         for (const int i : group) membranes.push_back(wide_[i][std::min(ring, wide_[i].size() - 1)]);
         if (group.size() > 2 && !take_apart(surface_, support_, membranes)) continue;

@@ -18,7 +18,7 @@ namespace {
 
 using shapes::Cloud;
 
-constexpr double kEdge = 0.15;  // of icosphere(3) of radius 1
+constexpr double kEdgeLength = 0.15;  // of icosphere(3) of radius 1
 constexpr int kPoints = 20000;
 
 /// Six views of the unit sphere, each from the height of -.3 up, seen along an axis and moved by \p shift.
@@ -48,27 +48,27 @@ float layering_of(const Cloud& cloud) {
 }
 
 TEST(Layers, AreTheViewsThatDoNotMeet) {
-    EXPECT_GT(layering_of(views(0.8 * kEdge, 0.05 * kEdge)), 0.9F);
-    EXPECT_GT(layering_of(views(0.5 * kEdge, 0.2 * kEdge)), 0.5F);
+    EXPECT_GT(layering_of(views(0.8 * kEdgeLength, 0.05 * kEdgeLength)), 0.9F);
+    EXPECT_GT(layering_of(views(0.5 * kEdgeLength, 0.2 * kEdgeLength)), 0.5F);
 }
 
 TEST(Layers, AreNeitherNoiseNorCleanPoints) {
     for (const double noise : {0.0, 0.05, 0.2, 0.4}) {
-        EXPECT_EQ(layering_of(shapes::sphere_cloud(kPoints, noise * kEdge)), 0) << noise;
-        EXPECT_EQ(layering_of(views(0, noise * kEdge)), 0) << noise;
+        EXPECT_EQ(layering_of(shapes::sphere_cloud(kPoints, noise * kEdgeLength)), 0) << noise;
+        EXPECT_EQ(layering_of(views(0, noise * kEdgeLength)), 0) << noise;
     }
-    EXPECT_EQ(layering_of(views(0.05 * kEdge, 0)), 0) << "close to the surface";
+    EXPECT_EQ(layering_of(views(0.05 * kEdgeLength, 0)), 0) << "close to the surface";
 }
 
 TEST(Layers, AreNotTheChanceOfFewPoints) {
     constexpr int kFew = 6000;  // for 642 vertices
     for (const double noise : {0.3, 0.4, 0.5})
-        EXPECT_EQ(layering_of(shapes::sphere_cloud(kFew, noise * kEdge)), 0) << noise;
+        EXPECT_EQ(layering_of(shapes::sphere_cloud(kFew, noise * kEdgeLength)), 0) << noise;
 }
 
 // As points throughout a body do.
 TEST(Layers, AreNotPointsThatFillASpace) {
-    EXPECT_EQ(layering_of(views(2 * kEdge, 0.5 * kEdge)), 0);
+    EXPECT_EQ(layering_of(views(2 * kEdgeLength, 0.5 * kEdgeLength)), 0);
     Cloud cube;
     Random random(1);
     for (int i = 0; i < kPoints; ++i) {
@@ -89,7 +89,7 @@ Cloud two_views_on_top(double shift, double noise) {
 
 TEST(Layers, AreFoundWhereTheyAre) {
     const FitScene scene(referee::network_of(shapes::icosphere(3)),
-                         two_views_on_top(0.8 * kEdge, 0.05 * kEdge));
+                         two_views_on_top(0.8 * kEdgeLength, 0.05 * kEdgeLength));
     const PerVertex<float> variances = local_variances(scene.network, scene.surface, scene.points);
     EXPECT_EQ(layering(scene.network, scene.surface, variances, points_per_vertex(scene)), 0)
         << "not over most of the surface";
@@ -113,7 +113,7 @@ float most_local_layering_of(const Cloud& cloud) {
 
 TEST(Layers, AreNowhereInNoise) {
     for (const double noise : {0.0, 0.05, 0.2, 0.4})
-        EXPECT_EQ(most_local_layering_of(shapes::sphere_cloud(kPoints, noise * kEdge)), 0) << noise;
+        EXPECT_EQ(most_local_layering_of(shapes::sphere_cloud(kPoints, noise * kEdgeLength)), 0) << noise;
 }
 
 // Points that fill a space are spread unevenly, but hardly less widely anywhere.
@@ -128,7 +128,7 @@ TEST(Layers, AreNotOfAPartWhereMostIsSpreadWidely) {
 TEST(Layers, AreNotRipplesThatTheMeshDoesNotFollow) {
     Cloud cloud = shapes::sphere_cloud(kPoints);
     for (vcg::Point3d& p : cloud) {
-        const double height = 0.5 * kEdge * (1 + p[2]) / 2;
+        const double height = 0.5 * kEdgeLength * (1 + p[2]) / 2;
         p *= 1 + height * std::sin(40 * p[0]) * std::sin(40 * p[1]);
     }
     EXPECT_EQ(most_local_layering_of(cloud), 0);
@@ -147,8 +147,9 @@ TEST(Layers, GapsAreThoseOfTheBends) {
     EXPECT_NEAR(mean_squared_gap(Surface(referee::network_of(shapes::grid(8, 8)))), 0, 1e-9);
     const double smooth = mean_squared_gap(Surface(referee::network_of(shapes::icosphere(3))));
     // Neighbouring faces of a sphere of radius r bend by the gap edge^2 / 4 r.
-    EXPECT_NEAR(std::sqrt(smooth), kEdge * kEdge / 4, 0.3 * kEdge * kEdge / 4);
-    EXPECT_GT(mean_squared_gap(Surface(referee::network_of(shapes::icosphere(3), 0.3 * kEdge))), 5 * smooth);
+    EXPECT_NEAR(std::sqrt(smooth), kEdgeLength * kEdgeLength / 4, 0.3 * kEdgeLength * kEdgeLength / 4);
+    EXPECT_GT(mean_squared_gap(Surface(referee::network_of(shapes::icosphere(3), 0.3 * kEdgeLength))),
+              5 * smooth);
 }
 
 /// Mean angle in degrees between the faces of \p network and a sphere around the origin.
@@ -180,16 +181,16 @@ Roughness fitted_to(const Cloud& cloud, double roughness_of_learning) {
 }
 
 TEST(Layers, AreCrossedSmoothly) {
-    const Roughness found = fitted_to(views(1.2 * kEdge, 0.1 * kEdge), 0.4 * kEdge);
+    const Roughness found = fitted_to(views(1.2 * kEdgeLength, 0.1 * kEdgeLength), 0.4 * kEdgeLength);
     EXPECT_LT(found.after, 10) << found.before << " before";
 }
 
 // The points are nearest to a surface that runs from one layer to the next and back, at 40 to 50 degrees.
 TEST(Layers, OfAPartAreCrossedSmoothly) {
     for (const double shift : {0.4, 0.8}) {
-        const Cloud cloud = two_views_on_top(shift * kEdge, 0.1 * kEdge);
-        EXPECT_LT(fitted_to(cloud, 0.1 * kEdge).after, 6) << shift;
-        const Roughness found = fitted_to(cloud, 0.4 * kEdge);
+        const Cloud cloud = two_views_on_top(shift * kEdgeLength, 0.1 * kEdgeLength);
+        EXPECT_LT(fitted_to(cloud, 0.1 * kEdgeLength).after, 6) << shift;
+        const Roughness found = fitted_to(cloud, 0.4 * kEdgeLength);
         EXPECT_LT(found.after, 0.9 * found.before) << shift << ": " << found.before;
     }
 }

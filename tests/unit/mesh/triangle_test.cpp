@@ -17,7 +17,7 @@
 namespace neuralmesh {
 namespace {
 
-Vector3 in_cube(Random& random) { return to_eigen(vcg::Point3f::Construct(shapes::in_cube(random))); }
+Vector3 corner_in_cube(Random& random) { return to_eigen(vcg::Point3f::Construct(shapes::in_cube(random))); }
 
 /// The least squared distance of \p p from a lattice of points on the triangle.
 double sampled_squared_distance(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c,
@@ -52,18 +52,19 @@ void expect_foot(const Vector3& p, const Vector3& a, const Vector3& b, const Vec
 TEST(FootOnTriangle, IsTheNearestOfManySamples) {
     Random random(1);
     for (int i = 0; i < 500; ++i)
-        expect_foot(2 * in_cube(random), in_cube(random), in_cube(random), in_cube(random), 1e-5);
+        expect_foot(2 * corner_in_cube(random), corner_in_cube(random), corner_in_cube(random),
+                    corner_in_cube(random), 1e-5);
 }
 
 // The corners of a needle lie on a line only up to rounding.
 TEST(FootOnTriangle, IsRightOnDegenerateTriangles) {
     Random random(2);
     for (int i = 0; i < 100; ++i) {
-        const Vector3 a = in_cube(random);
-        const Vector3 b = in_cube(random);
-        expect_foot(2 * in_cube(random), a, b, 0.25F * a + 0.75F * b, 1e-3);
-        expect_foot(2 * in_cube(random), a, b, b, 1e-3);
-        expect_foot(2 * in_cube(random), a, a, a, 1e-5);
+        const Vector3 a = corner_in_cube(random);
+        const Vector3 b = corner_in_cube(random);
+        expect_foot(2 * corner_in_cube(random), a, b, 0.25F * a + 0.75F * b, 1e-3);
+        expect_foot(2 * corner_in_cube(random), a, b, b, 1e-3);
+        expect_foot(2 * corner_in_cube(random), a, a, a, 1e-5);
     }
 }
 
@@ -89,7 +90,7 @@ Vector3 on_lattice(Random& random) {
 TEST(SquaredDistanceToTriangle, HasTheBitsOfTheFoot) {
     Random random(11);
     for (int run = 0; run < 20000; ++run) {
-        const auto place = [&] { return run % 2 == 0 ? on_lattice(random) : in_cube(random); };
+        const auto place = [&] { return run % 2 == 0 ? on_lattice(random) : corner_in_cube(random); };
         const Vector3 ab = place(), ac = place();
         std::array<Vector3, 8> points;
         EightVectors lanes;

@@ -59,7 +59,7 @@ int best_of_all_flips(const Network& network, int max_valence) {
     return best;
 }
 
-std::vector<vcg::Point3f> positions_of(const Network& network) {
+std::vector<vcg::Point3f> all_positions(const Network& network) {
     std::vector<vcg::Point3f> positions;
     for (const VertexId v : network.vertices()) positions.push_back(network.position(v));
     return positions;
@@ -71,7 +71,7 @@ TEST(ValenceFlips, LowerTheIrregularityUntilNoFlipDoes) {
         SCOPED_TRACE(start.name);
         Network network = with_random_flips(referee::network_of(start.shape), 200);
         const referee::Census topology = referee::census(network.faces());
-        const auto positions = positions_of(network);
+        const auto positions = all_positions(network);
         for (int done = 1; done > 0; flips += done) {
             const int before = irregularity(network);
             done = flip_edges_for_valence(network, {always});
@@ -80,7 +80,7 @@ TEST(ValenceFlips, LowerTheIrregularityUntilNoFlipDoes) {
             if (HasFatalFailure()) return;
         }
         EXPECT_EQ(best_of_all_flips(network, Ring::kMaxValence), irregularity(network));
-        EXPECT_EQ(positions_of(network), positions);
+        EXPECT_EQ(all_positions(network), positions);
     }
     EXPECT_GT(flips, 50);
 }

@@ -24,7 +24,7 @@ using shapes::Cloud;
 using soundness::expect_exact;
 using soundness::expect_sound;
 using soundness::target_of;
-using watched_runs::learn;
+using watched_runs::learn_watched;
 using watched_runs::Watch;
 using watched_runs::with_target;
 
@@ -48,7 +48,7 @@ TEST(Reconstruct, GivesTheExactCountAsAClosedOutwardSurface) {
             for (const int vertices : counts_of(run++)) {
                 SCOPED_TRACE(testing::Message() << cloud.first << ", start " << start << ", " << vertices);
                 const Settings settings = with_target(vertices, start);
-                const NeuralMesh mesh = learn(cloud.second, settings);
+                const NeuralMesh mesh = learn_watched(cloud.second, settings);
                 expect_exact(mesh, settings);
                 EXPECT_GT(referee::enclosed_volume(mesh), 0);
             }
@@ -107,7 +107,7 @@ TEST(Reconstruct, HostileCloudsStillGiveTheExactCount) {
         for (const int start : {kShell, kTetrahedron}) {
             SCOPED_TRACE(testing::Message() << cloud.first << ", start " << start);
             const Settings settings = with_target(200, start);
-            expect_exact(learn(cloud.second, settings), settings);
+            expect_exact(learn_watched(cloud.second, settings), settings);
         }
     }
 }
@@ -185,7 +185,7 @@ TEST(Reconstruct, HostileSettingsGiveSoundMeshes) {
             Settings settings = hostile[i].second;
             settings.start_mesh = start;
             settings.fit_to_points = true;
-            expect_exact(learn(cloud, settings), settings);
+            expect_exact(learn_watched(cloud, settings), settings);
         }
     }
 }

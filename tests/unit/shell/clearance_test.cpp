@@ -15,15 +15,15 @@
 namespace neuralmesh {
 namespace {
 
-constexpr int kMaxRadius = 5;
+constexpr int kLargestRadius = 5;
 
 TEST(Clearance, DistancesAreThoseOfBruteForce) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
         const Lattice lattice = small_lattice();
         const PerNode<std::uint32_t> counts = random_counts(lattice, seed, 200);
-        const PerNode<SquaredRadius> distances = squared_distances(lattice, counts, kMaxRadius);
+        const PerNode<SquaredRadius> distances = squared_distances(lattice, counts, kLargestRadius);
         for_each_node(lattice, [&](int x, int y, int z) {
-            int best = kMaxRadius * kMaxRadius + 1;
+            int best = kLargestRadius * kLargestRadius + 1;
             for_each_node(lattice, [&](int a, int b, int c) {
                 if (counts[lattice.index(a, b, c)] != 0)
                     best = std::min(best, (a - x) * (a - x) + (b - y) * (b - y) + (c - z) * (c - z));
@@ -58,15 +58,16 @@ TEST(Clearance, IsTheFixedPointOfRelaxation) {
         for (const std::uint32_t one_in : {3U, 12U, 200U}) {
             const Lattice lattice = small_lattice();
             const PerNode<SquaredRadius> distances =
-                squared_distances(lattice, random_counts(lattice, seed, one_in), kMaxRadius);
+                squared_distances(lattice, random_counts(lattice, seed, one_in), kLargestRadius);
             const PerNode<SquaredRadius> relaxed = relaxed_clearances(lattice, distances);
-            EXPECT_EQ(clearances(lattice, distances, kMaxRadius, {}), relaxed) << one_in;
+            EXPECT_EQ(clearances(lattice, distances, kLargestRadius, {}), relaxed) << one_in;
             // The same node by node, as with an inside: of a node that no path crosses.
             NodeSet inside(lattice.size(), 0);
             PerNode<SquaredRadius> closed = distances;
             closed[lattice.index(6, 6, 6)] = 0;
             inside[lattice.index(6, 6, 6)] = 1;
-            EXPECT_EQ(clearances(lattice, closed, kMaxRadius, inside), relaxed_clearances(lattice, closed));
+            EXPECT_EQ(clearances(lattice, closed, kLargestRadius, inside),
+                      relaxed_clearances(lattice, closed));
         }
 }
 
@@ -84,7 +85,7 @@ TEST(Clearance, FollowsACorridorToItsEnd) {
             distances[lattice.index(x, y, z)] = static_cast<SquaredRadius>(4 + (x + y) % 3);
     });
     distances[lattice.index(6, 0, 2)] = distances[lattice.index(6, 1, 2)] = 5;  // the door
-    const PerNode<SquaredRadius> found = clearances(lattice, distances, kMaxRadius, {});
+    const PerNode<SquaredRadius> found = clearances(lattice, distances, kLargestRadius, {});
     EXPECT_EQ(found, relaxed_clearances(lattice, distances));
     EXPECT_GT(found[lattice.index(6, 10, 10)], 0);
 }

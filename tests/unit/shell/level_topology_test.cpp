@@ -15,7 +15,7 @@
 namespace neuralmesh {
 namespace {
 
-constexpr int kMaxRadius = 5;
+constexpr int kFarthestNode = 5;
 
 /// The mesh of {clearance <= level}, with a layer of nodes outside added on all sides.
 Network mesh_of_level(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level) {
@@ -37,11 +37,11 @@ TEST(LevelTopology, IsThatOfTheMesh) {
     for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
         const Lattice lattice = small_lattice();
         const PerNode<std::uint32_t> counts = random_counts(lattice, seed, 20);
-        const PerNode<SquaredRadius> distances = squared_distances(lattice, counts, kMaxRadius);
-        const PerNode<SquaredRadius> clearance = clearances(lattice, distances, kMaxRadius, {});
+        const PerNode<SquaredRadius> distances = squared_distances(lattice, counts, kFarthestNode);
+        const PerNode<SquaredRadius> clearance = clearances(lattice, distances, kFarthestNode, {});
         const PerLevel<LevelTopology> topologies =
-            topology_of_levels(lattice, clearance, counts, kMaxRadius, 0);
-        ASSERT_EQ(topologies.size(), kMaxRadius * kMaxRadius + 1);
+            topology_of_levels(lattice, clearance, counts, kFarthestNode, 0);
+        ASSERT_EQ(topologies.size(), kFarthestNode * kFarthestNode + 1);
         for (int level = 0; level < 4; ++level) {
             const Network network = mesh_of_level(lattice, clearance, level);
             ASSERT_EQ(network.validate(), "");
@@ -59,9 +59,9 @@ TEST(LevelTopology, HasTheEulerCharacteristicOfEachSolid) {
         const Lattice lattice = small_lattice();
         const PerNode<std::uint32_t> counts = random_counts(lattice, seed, 20);
         const PerNode<SquaredRadius> clearance =
-            clearances(lattice, squared_distances(lattice, counts, kMaxRadius), kMaxRadius, {});
+            clearances(lattice, squared_distances(lattice, counts, kFarthestNode), kFarthestNode, {});
         const PerLevel<LevelTopology> topologies =
-            topology_of_levels(lattice, clearance, counts, kMaxRadius, 2);
+            topology_of_levels(lattice, clearance, counts, kFarthestNode, 2);
         for (int level = 0; level < topologies.size(); ++level) {
             NodeSet solid(lattice.size());
             for (NodeId i = 0; i < solid.size(); ++i) solid[i] = clearance[i] <= level ? 1 : 0;
@@ -75,9 +75,9 @@ TEST(LevelTopology, SmallComponentsCountAsSpecks) {
     PerNode<std::uint32_t> counts(lattice.size(), 0);
     counts[lattice.index(2, 2, 2)] = 10;
     counts[lattice.index(8, 8, 8)] = 3;
-    const PerNode<SquaredRadius> distances = squared_distances(lattice, counts, kMaxRadius);
-    const PerLevel<LevelTopology> topologies =
-        topology_of_levels(lattice, clearances(lattice, distances, kMaxRadius, {}), counts, kMaxRadius, 5);
+    const PerNode<SquaredRadius> distances = squared_distances(lattice, counts, kFarthestNode);
+    const PerLevel<LevelTopology> topologies = topology_of_levels(
+        lattice, clearances(lattice, distances, kFarthestNode, {}), counts, kFarthestNode, 5);
     EXPECT_EQ(topologies[1].components, 1);
     EXPECT_EQ(topologies[1].specks, 1);
     EXPECT_EQ(topologies[1].speck_points, 3);

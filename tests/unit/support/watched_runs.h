@@ -36,7 +36,7 @@ private:
     double last_ = 0;
 };
 
-inline NeuralMesh learn(const shapes::Cloud& cloud, const Settings& settings) {
+inline NeuralMesh learn_watched(const shapes::Cloud& cloud, const Settings& settings) {
     NoProgress progress;
     return reconstruct(targets::target_of(cloud), settings, progress);
 }

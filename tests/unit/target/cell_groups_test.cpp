@@ -17,7 +17,7 @@
 namespace neuralmesh {
 namespace {
 
-using Cloud = std::vector<vcg::Point3f>;
+using FloatCloud = std::vector<vcg::Point3f>;
 using Place = NearestPoints::Place;
 
 std::array<int, 3> coordinates(std::uint64_t code, int level) {
@@ -71,7 +71,7 @@ std::vector<std::size_t> plainly_connected(const NearestPoints& cloud, const std
     return label;
 }
 
-void expect_the_same(const Cloud& points, std::size_t every_out) {
+void expect_the_same(const FloatCloud& points, std::size_t every_out) {
     const NearestPoints cloud(points);
     std::vector<std::uint8_t> out(points.size());
     for (std::size_t i = 0; i < out.size(); i += every_out) out[i] = 1;
@@ -84,7 +84,7 @@ void expect_the_same(const Cloud& points, std::size_t every_out) {
 
 TEST(CellGroups, AreThoseOfAllPairsOfPoints) {
     Random random(1);
-    Cloud box, sphere, mixed;
+    FloatCloud box, sphere, mixed;
     for (int i = 0; i < 800; ++i) box.push_back(vcg::Point3f::Construct(shapes::in_cube(random)));
     for (const vcg::Point3d& p : shapes::sphere_cloud(1000)) sphere.push_back(vcg::Point3f::Construct(p));
     mixed = sphere;
@@ -93,14 +93,14 @@ TEST(CellGroups, AreThoseOfAllPairsOfPoints) {
         for (int i = 0; i < 60; ++i)
             mixed.push_back(centre + vcg::Point3f::Construct(shapes::in_cube(random)) * 0.02F);
     }
-    for (const Cloud& cloud : {box, sphere, mixed}) {
+    for (const FloatCloud& cloud : {box, sphere, mixed}) {
         expect_the_same(cloud, cloud.size() + 1);
         expect_the_same(cloud, 3);
     }
 }
 
 TEST(CellGroups, PartsWhatTouchesOnlyByItsCells) {
-    Cloud cloud;  // two planes that are 1.4 cells apart at level 4 and share neighbouring cells
+    FloatCloud cloud;  // two planes that are 1.4 cells apart at level 4 and share neighbouring cells
     for (int i = 0; i < 32; ++i)
         for (int j = 0; j < 32; ++j)
             for (const float z : {0.01F, 0.01F + 1.4F / 16})
@@ -120,7 +120,7 @@ TEST(CellGroups, PartsWhatTouchesOnlyByItsCells) {
 // Neighbouring cells whose points are far apart: of many points in both, a finer level tells.
 TEST(CellGroups, DoNotComparePointsOfFullCells) {
     for (const int count : {90, 150}) {
-        Cloud cloud{{0, 0, 0}, {1, 1, 1}};
+        FloatCloud cloud{{0, 0, 0}, {1, 1, 1}};
         for (int i = 0; i < count; ++i)
             for (const float x : {0.51F, 0.735F})
                 cloud.emplace_back(x + 0.00003F * static_cast<float>(i), 0.55F, 0.55F);

@@ -14,37 +14,39 @@
 namespace neuralmesh {
 namespace {
 
-using Cloud = std::vector<vcg::Point3f>;
+using FloatCloud = std::vector<vcg::Point3f>;
 using Neighbours = std::vector<NearestPoints::Neighbour>;
 
-Cloud cube(std::size_t count, float side, const vcg::Point3f& corner, Random& random) {
-    Cloud cloud;
+FloatCloud cube(std::size_t count, float side, const vcg::Point3f& corner, Random& random) {
+    FloatCloud cloud;
     for (std::size_t i = 0; i < count; ++i)
         cloud.push_back(corner + vcg::Point3f(random.unit(), random.unit(), random.unit()) * side);
     return cloud;
 }
 
-void append(Cloud& cloud, const Cloud& more) { cloud.insert(cloud.end(), more.begin(), more.end()); }
+void append(FloatCloud& cloud, const FloatCloud& more) {
+    cloud.insert(cloud.end(), more.begin(), more.end());
+}
 
 /// Every kind of density that a scan may have, and worse.
-std::vector<Cloud> clouds() {
+std::vector<FloatCloud> clouds() {
     Random random(1);
-    std::vector<Cloud> all = {cube(700, 1, {-0.5F, -0.5F, -0.5F}, random)};
-    Cloud uneven = cube(300, 1, {0, 0, 0}, random);
+    std::vector<FloatCloud> all = {cube(700, 1, {-0.5F, -0.5F, -0.5F}, random)};
+    FloatCloud uneven = cube(300, 1, {0, 0, 0}, random);
     append(uneven, cube(300, 1e-3F, {0.3F, 0.3F, 0.3F}, random));
     append(uneven, cube(300, 1e-6F, {0.7F, 0.2F, 0.1F}, random));
     all.push_back(uneven);
-    Cloud with_far = cube(500, 1e-5F, {0, 0, 0}, random);
+    FloatCloud with_far = cube(500, 1e-5F, {0, 0, 0}, random);
     with_far.emplace_back(1.0F, 0.0F, 0.0F);
     all.push_back(with_far);
-    Cloud repeated = cube(100, 1, {0, 0, 0}, random);
-    for (int i = 0; i < 2; ++i) append(repeated, Cloud(repeated));
+    FloatCloud repeated = cube(100, 1, {0, 0, 0}, random);
+    for (int i = 0; i < 2; ++i) append(repeated, FloatCloud(repeated));
     all.push_back(repeated);
-    Cloud line;
+    FloatCloud line;
     for (int i = 0; i < 400; ++i) line.emplace_back(static_cast<float>(i), 0.0F, 0.0F);
     all.push_back(line);
     all.push_back({{0, 0, 0}});
-    all.push_back(Cloud(40, {1, 2, 3}));
+    all.push_back(FloatCloud(40, {1, 2, 3}));
     return all;
 }
 
@@ -58,7 +60,7 @@ Neighbours by_looking_at_all(const NearestPoints& index, NearestPoints::Place pl
 }
 
 TEST(NearestPoints, AreThoseOfABruteForceSearch) {
-    for (const Cloud& cloud : clouds()) {
+    for (const FloatCloud& cloud : clouds()) {
         const NearestPoints index(cloud);
         Neighbours found;
         for (NearestPoints::Place p = 0; p < index.size(); p += 3)
@@ -75,7 +77,7 @@ TEST(NearestPoints, AreThoseOfABruteForceSearch) {
 }
 
 TEST(NearestPoints, AnyWithinAgreesWithBruteForce) {
-    for (const Cloud& cloud : clouds()) {
+    for (const FloatCloud& cloud : clouds()) {
         const NearestPoints index(cloud);
         const auto counts = [](NearestPoints::Place q) { return q % 5 == 0; };
         for (NearestPoints::Place p = 0; p < index.size(); p += 7)
@@ -90,7 +92,7 @@ TEST(NearestPoints, AnyWithinAgreesWithBruteForce) {
 }
 
 TEST(NearestPoints, EveryPointHasOnePlaceAndCellsAscend) {
-    for (const Cloud& cloud : clouds()) {
+    for (const FloatCloud& cloud : clouds()) {
         const NearestPoints index(cloud);
         std::vector<int> seen(cloud.size());
         for (NearestPoints::Place p = 0; p < index.size(); ++p) ++seen[index.index(p)];

@@ -13,14 +13,14 @@
 namespace neuralmesh {
 namespace {
 
-constexpr int kPoints = 20000;
+constexpr int kPointsOfPlane = 20000;
 constexpr float kSpacing = 0.014142F;  // of as many points on the square of side 2
 
 /// A flat square: points with x > 0 are \p noise off it, to either side by chance.
 NoiseByPlace half_noisy(float noise) {
     Random random(1);
     std::vector<vcg::Point3f> points;
-    for (int i = 0; i < kPoints; ++i) {
+    for (int i = 0; i < kPointsOfPlane; ++i) {
         const float x = 2 * random.unit() - 1, y = 2 * random.unit() - 1;
         // The sum of twelve has a deviation of 1.
         float z = -6;
@@ -39,10 +39,11 @@ TEST(NoiseByPlace, IsWhereThePointsAreNoisy) {
 }
 
 TEST(NoiseByPlace, LetsPointsCarryFewerVertices) {
-    EXPECT_NEAR(static_cast<double>(half_noisy(0).carried_by(kPoints)), kPoints / 2, 0.02 * kPoints);
-    const double noisy = static_cast<double>(half_noisy(kSpacing).carried_by(kPoints));
-    EXPECT_LT(noisy, 0.32 * kPoints) << "hardly any on the noisy half";
-    EXPECT_GT(noisy, 0.2 * kPoints) << "as many as before on the other";
+    EXPECT_NEAR(static_cast<double>(half_noisy(0).carried_by(kPointsOfPlane)), kPointsOfPlane / 2,
+                0.02 * kPointsOfPlane);
+    const double noisy = static_cast<double>(half_noisy(kSpacing).carried_by(kPointsOfPlane));
+    EXPECT_LT(noisy, 0.32 * kPointsOfPlane) << "hardly any on the noisy half";
+    EXPECT_GT(noisy, 0.2 * kPointsOfPlane) << "as many as before on the other";
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace neuralmesh {
 namespace {
 
-constexpr int kPoints = 20000;
+constexpr int kPointsOfWall = 20000;
 
 double share_of(const shapes::Cloud& cloud) {
     std::vector<vcg::Point3f> points;
@@ -23,12 +23,12 @@ double share_of(const shapes::Cloud& cloud) {
     return share_with_opposite_layer(layer_places(CloudSurvey(points, 1), team));
 }
 
-/// A sphere of \p kPoints points and another one within it, \p spacings spacings of the points away.
+/// A sphere of \p kPointsOfWall points and another one within it, \p spacings spacings of the points away.
 shapes::Cloud two_spheres(double spacings) {
-    const double spacing = std::sqrt(4 * M_PI / kPoints);
-    shapes::Cloud cloud = shapes::sphere_cloud(kPoints);
+    const double spacing = std::sqrt(4 * M_PI / kPointsOfWall);
+    shapes::Cloud cloud = shapes::sphere_cloud(kPointsOfWall);
     // In another order, so that no point lies above its like.
-    for (const vcg::Point3d& p : shapes::sphere_cloud(kPoints))
+    for (const vcg::Point3d& p : shapes::sphere_cloud(kPointsOfWall))
         cloud.emplace_back(vcg::Point3d(-p[1], p[2], p[0]) * (1 - spacings * spacing));
     return cloud;
 }
@@ -43,11 +43,11 @@ TEST(OppositeLayers, AreNotFoundWhereTheyAreFarOrOne) {
 }
 
 TEST(OppositeLayers, OfOneLayerAreNone) {
-    EXPECT_LT(share_of(shapes::sphere_cloud(kPoints)), 0.01);
-    EXPECT_LT(share_of(shapes::plane_cloud(kPoints)), 0.01);
-    const double spacing = std::sqrt(4 * M_PI / kPoints);
+    EXPECT_LT(share_of(shapes::sphere_cloud(kPointsOfWall)), 0.01);
+    EXPECT_LT(share_of(shapes::plane_cloud(kPointsOfWall)), 0.01);
+    const double spacing = std::sqrt(4 * M_PI / kPointsOfWall);
     for (const double noise : {0.5, 1.0, 2.0})
-        EXPECT_LT(share_of(shapes::sphere_cloud(kPoints, noise * spacing)), 0.2) << noise;
+        EXPECT_LT(share_of(shapes::sphere_cloud(kPointsOfWall, noise * spacing)), 0.2) << noise;
 }
 
 TEST(OppositeLayers, DoNotDependOnTheThreads) {

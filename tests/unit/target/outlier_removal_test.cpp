@@ -17,9 +17,9 @@
 namespace neuralmesh {
 namespace {
 
-using Cloud = std::vector<vcg::Point3f>;
+using FloatCloud = std::vector<vcg::Point3f>;
 
-std::vector<std::uint8_t> outliers_of(const Cloud& cloud, int threads) {
+std::vector<std::uint8_t> outliers_of(const FloatCloud& cloud, int threads) {
     return find_outliers(CloudSurvey(cloud, threads), threads);
 }
 
@@ -33,8 +33,8 @@ vcg::Point3f direction(Random& random) {
 }
 
 /// Points of a sphere of radius .3 around the origin.
-Cloud sphere(std::size_t count, Random& random) {
-    Cloud cloud;
+FloatCloud sphere(std::size_t count, Random& random) {
+    FloatCloud cloud;
     for (std::size_t i = 0; i < count; ++i) cloud.push_back(direction(random) * 0.3F);
     return cloud;
 }
@@ -49,8 +49,8 @@ std::size_t count_of(const std::vector<std::uint8_t>& out, std::size_t begin, st
 
 /// A sphere of \p count points, then \p more points: how many of them are found; no point of the sphere may
 /// be.
-std::size_t found_beside_a_sphere(const Cloud& more, Random& random, std::size_t count = 20000) {
-    Cloud cloud = sphere(count, random);
+std::size_t found_beside_a_sphere(const FloatCloud& more, Random& random, std::size_t count = 20000) {
+    FloatCloud cloud = sphere(count, random);
     cloud.insert(cloud.end(), more.begin(), more.end());
     const std::vector<std::uint8_t> out = outliers_of(cloud, 1);
     EXPECT_LE(count_of(out, 0, count), count / 1000) << "at most .1 % of the surface";
@@ -61,8 +61,8 @@ TEST(OutlierRemoval, FindsNoneInCleanClouds) {
     Random random(1);
     EXPECT_TRUE(outliers_of(sphere(20000, random), 1).empty());
     EXPECT_TRUE(outliers_of(sphere(kFewestForOutliers, random), 1).empty());
-    EXPECT_TRUE(outliers_of(Cloud(2), 1).empty());
-    Cloud noisy = sphere(20000, random);
+    EXPECT_TRUE(outliers_of(FloatCloud(2), 1).empty());
+    FloatCloud noisy = sphere(20000, random);
     for (vcg::Point3f& p : noisy) p *= 1 + 0.02F * (random.unit() + random.unit() - 1);
     EXPECT_LE(count_of(outliers_of(noisy, 1), 0, noisy.size()), 20u) << "noise of several spacings";
 }
@@ -70,7 +70,7 @@ TEST(OutlierRemoval, FindsNoneInCleanClouds) {
 TEST(OutlierRemoval, FindsScatteredPointsFarFromTheSurface) {
     Random random(2);
     for (const std::size_t count : {20u, 200u, 2000u}) {
-        Cloud far;
+        FloatCloud far;
         while (far.size() < count) {
             const vcg::Point3f p = anywhere(random);
             if (std::abs(p.Norm() - 0.3F) > 0.03F) far.push_back(p);  // more than five spacings
@@ -81,7 +81,7 @@ TEST(OutlierRemoval, FindsScatteredPointsFarFromTheSurface) {
 
 TEST(OutlierRemoval, KeepsANoisySurfaceBesideManyOutliers) {
     Random random(12);
-    Cloud cloud = sphere(20000, random);
+    FloatCloud cloud = sphere(20000, random);
     for (vcg::Point3f& p : cloud) {
         const float noise = random.unit() + random.unit() + random.unit() + random.unit() - 2;
         p *= 1 + 0.02F * noise;  // standard deviation .0035, half a spacing
@@ -94,8 +94,8 @@ TEST(OutlierRemoval, KeepsANoisySurfaceBesideManyOutliers) {
 
 TEST(OutlierRemoval, FindsPairsAndClumps) {
     Random random(3);
-    Cloud pairs;
-    Cloud clumps;
+    FloatCloud pairs;
+    FloatCloud clumps;
     while (clumps.size() < 20 * 30) {
         const vcg::Point3f centre = anywhere(random);
         if (std::abs(centre.Norm() - 0.3F) < 0.06F) continue;
@@ -113,7 +113,7 @@ TEST(OutlierRemoval, FindsPairsAndClumps) {
 TEST(OutlierRemoval, FindsClumpsThreeSpacingsOffTheSurface) {
     Random random(12);
     constexpr float kRadius = 0.008F, kGap = 0.019F;
-    Cloud clumps;
+    FloatCloud clumps;
     for (int clump = 0; clump < 16; ++clump) {
         const float height = (static_cast<float>(clump) - 7.5F) / 8, turn = 2.4F * static_cast<float>(clump);
         const float ring = std::sqrt(1 - height * height);
@@ -127,14 +127,14 @@ TEST(OutlierRemoval, FindsClumpsThreeSpacingsOffTheSurface) {
 
 TEST(OutlierRemoval, KeepsAWire) {
     Random random(4);
-    Cloud wire;  // its points are three spacings of the sphere apart
+    FloatCloud wire;  // its points are three spacings of the sphere apart
     for (int i = 0; i < 60; ++i) wire.emplace_back(0.3F + 0.008F * static_cast<float>(i), 0.0F, 0.0F);
     EXPECT_LE(found_beside_a_sphere(wire, random), 3u);
 }
 
 TEST(OutlierRemoval, KeepsABlade) {
     Random random(5);
-    Cloud blade;
+    FloatCloud blade;
     for (int i = 0; i < 300; ++i)
         blade.emplace_back(0.3F + 0.4F * random.unit(), 0.05F * random.unit(), 0.0F);
     EXPECT_LE(found_beside_a_sphere(blade, random), 3u);
@@ -143,7 +143,7 @@ TEST(OutlierRemoval, KeepsABlade) {
 TEST(OutlierRemoval, KeepsASmallBentSheetUnderNoise) {
     // Half a sphere whose noise is as wide as its points are apart.
     Random random(1);
-    Cloud sheet;
+    FloatCloud sheet;
     while (sheet.size() < 900) {
         const vcg::Point3f p =
             direction(random) * (0.05F + 0.005F * static_cast<float>(shapes::signed_unit(random)));
@@ -154,7 +154,7 @@ TEST(OutlierRemoval, KeepsASmallBentSheetUnderNoise) {
 
 TEST(OutlierRemoval, KeepsTheRowsOfASparseView) {
     Random random(6);
-    Cloud rows;  // dense along each row, ten times as far from one to the next
+    FloatCloud rows;  // dense along each row, ten times as far from one to the next
     for (int row = 0; row < 8; ++row)
         for (int i = 0; i < 50; ++i)
             rows.emplace_back(0.31F + 0.05F * static_cast<float>(row), 0.005F * static_cast<float>(i - 25),
@@ -164,7 +164,7 @@ TEST(OutlierRemoval, KeepsTheRowsOfASparseView) {
 
 TEST(OutlierRemoval, KeepsAHalfThatIsAThousandTimesSparser) {
     Random random(7);
-    Cloud cloud;
+    FloatCloud cloud;
     int below = 0;
     for (const vcg::Point3f& p : sphere(400000, random))
         if (p[2] >= 0 || ++below % 1000 == 0) cloud.push_back(p);
@@ -174,7 +174,7 @@ TEST(OutlierRemoval, KeepsAHalfThatIsAThousandTimesSparser) {
 
 TEST(OutlierRemoval, KeepsTheFarEndOfAFloorSeenFromOnePlace) {
     Random random(8);
-    Cloud floor;  // a scanner at height 1 over the origin: spacing grows with the square of the distance
+    FloatCloud floor;  // a scanner at height 1 over the origin: spacing grows with the square of the distance
     for (int ring = 0; ring < 150; ++ring)
         for (int i = 0; i < 200; ++i) {
             const double down = 1.4 - 0.009 * ring,
@@ -189,7 +189,7 @@ TEST(OutlierRemoval, KeepsTheFarEndOfAFloorSeenFromOnePlace) {
 
 TEST(OutlierRemoval, DoesNotDependOnThreadsNorOnScale) {
     Random random(9);
-    Cloud cloud = sphere(20000, random);
+    FloatCloud cloud = sphere(20000, random);
     for (int i = 0; i < 500; ++i) cloud.push_back(anywhere(random));
     const std::vector<std::uint8_t> one = outliers_of(cloud, 1);
     EXPECT_EQ(outliers_of(cloud, 2), one);
@@ -200,7 +200,7 @@ TEST(OutlierRemoval, DoesNotDependOnThreadsNorOnScale) {
 
 TEST(OutlierRemoval, OneFarPointDoesNotHideTheOthers) {
     Random random(10);
-    Cloud cloud = sphere(20000, random);
+    FloatCloud cloud = sphere(20000, random);
     for (int i = 0; i < 100; ++i) cloud.push_back(direction(random) * (0.05F + 0.15F * random.unit()));
     cloud.emplace_back(1e5F, 0.0F, 0.0F);
     const std::vector<std::uint8_t> out = outliers_of(cloud, 1);
@@ -210,10 +210,10 @@ TEST(OutlierRemoval, OneFarPointDoesNotHideTheOthers) {
 
 TEST(OutlierRemoval, CopesWithCoincidingPoints) {
     Random random(11);
-    Cloud cloud = sphere(5000, random);
+    FloatCloud cloud = sphere(5000, random);
     for (int i = 0; i < 400; ++i) cloud.emplace_back(0.3F, 0.0F, 0.0F);
     EXPECT_LE(count_of(outliers_of(cloud, 1), 0, cloud.size()), 5u);
-    EXPECT_TRUE(outliers_of(Cloud(1000, {1, 1, 1}), 1).empty());
+    EXPECT_TRUE(outliers_of(FloatCloud(1000, {1, 1, 1}), 1).empty());
 }
 
 }  // namespace

@@ -35,7 +35,8 @@ Settings settings_of(int threads = 1) {
     return settings;
 }
 
-NeuralMesh learn(const Cloud& cloud, const Settings& settings, const IndexedMesh<double>& start = {}) {
+NeuralMesh learn_topology(const Cloud& cloud, const Settings& settings,
+                          const IndexedMesh<double>& start = {}) {
     NoProgress progress;
     return reconstruct(target_of(cloud), settings, progress, start);
 }
@@ -54,7 +55,7 @@ TEST(LearnedTopology, PartsThatTheStartMeshJoinsComeApart) {
     Settings settings = settings_of();
     settings.start_mesh = kTetrahedron;
     const Cloud cloud = two_spheres(20000, 3);
-    const NeuralMesh apart = learn(cloud, settings);
+    const NeuralMesh apart = learn_topology(cloud, settings);
     EXPECT_EQ(apart.report.components, 2);
     EXPECT_EQ(apart.report.genus, 0);
     EXPECT_EQ(apart.report.boundary_loops, 0);
@@ -62,13 +63,13 @@ TEST(LearnedTopology, PartsThatTheStartMeshJoinsComeApart) {
     EXPECT_NE(apart.report.notes.back().find("Membranes were given up"), std::string::npos);
     soundness::expect_exact(apart, settings);
     settings.learn_topology = false;
-    EXPECT_EQ(learn(cloud, settings).report.components, 1);
+    EXPECT_EQ(learn_topology(cloud, settings).report.components, 1);
 }
 
 TEST(LearnedTopology, AGivenMeshKeepsItsTopology) {
     Settings settings = settings_of();
     settings.start_mesh = kGivenMesh;
-    EXPECT_EQ(learn(two_spheres(20000, 3), settings, ball(3)).report.components, 1);
+    EXPECT_EQ(learn_topology(two_spheres(20000, 3), settings, ball(3)).report.components, 1);
 }
 
 TEST(LearnedTopology, FindsTheHandleOfATorusFromTheTetrahedron) {
@@ -77,13 +78,13 @@ TEST(LearnedTopology, FindsTheHandleOfATorusFromTheTetrahedron) {
     const Cloud cloud = shapes::torus_cloud(60000);
     for (const int seed : {1, 2, 3}) {
         settings.random_seed = seed;
-        const NeuralMesh ring = learn(cloud, settings);
+        const NeuralMesh ring = learn_topology(cloud, settings);
         EXPECT_EQ(ring.report.genus, 1) << seed;
         EXPECT_EQ(ring.report.components, 1) << seed;
         soundness::expect_exact(ring, settings);
     }
     settings.learn_topology = false;
-    EXPECT_EQ(learn(cloud, settings).report.genus, 0);
+    EXPECT_EQ(learn_topology(cloud, settings).report.genus, 0);
 }
 
 /// The part of a unit sphere below z = .6.
@@ -97,7 +98,7 @@ TEST(LearnedTopology, OpensWhereTheCloudEndsFromTheTetrahedron) {
     const Cloud cloud = bowl(30000);
     for (const int seed : {1, 2, 3, 4}) {
         settings.random_seed = seed;
-        const NeuralMesh open = learn(cloud, settings);
+        const NeuralMesh open = learn_topology(cloud, settings);
         EXPECT_EQ(open.report.boundary_loops, 1) << seed;
         soundness::expect_exact(open, settings);
         double highest = -1, outward = 0;
@@ -111,18 +112,18 @@ TEST(LearnedTopology, OpensWhereTheCloudEndsFromTheTetrahedron) {
         EXPECT_GT(outward, 0.99 * static_cast<double>(open.faces.size())) << seed;
     }
     settings.surface = kClosedSurface;
-    EXPECT_EQ(learn(cloud, settings).report.boundary_loops, 0);
+    EXPECT_EQ(learn_topology(cloud, settings).report.boundary_loops, 0);
 }
 
 TEST(LearnedTopology, TellsOfOpenings) {
     Settings settings = settings_of();
     settings.start_mesh = kTetrahedron;
     settings.surface = kOpenSurface;
-    const NeuralMesh open = learn(bowl(30000), settings);
+    const NeuralMesh open = learn_topology(bowl(30000), settings);
     ASSERT_FALSE(open.report.notes.empty());
     EXPECT_NE(open.report.notes.back().find("genus 0 with 1 boundary loop(s)."), std::string::npos);
     EXPECT_TRUE(open.report.warnings.empty());
-    const NeuralMesh closed = learn(shapes::sphere_cloud(30000), settings);
+    const NeuralMesh closed = learn_topology(shapes::sphere_cloud(30000), settings);
     EXPECT_EQ(closed.report.boundary_loops, 0);
     ASSERT_EQ(closed.report.warnings.size(), 1U);
     EXPECT_NE(closed.report.warnings.back().find("The surface is closed"), std::string::npos);
@@ -132,10 +133,10 @@ TEST(LearnedTopology, TheBytesDoNotDependOnTheThreads) {
     Settings settings = settings_of(1);
     settings.start_mesh = kTetrahedron;
     const Cloud cloud = two_spheres(10000, 3);
-    const NeuralMesh one = learn(cloud, settings);
+    const NeuralMesh one = learn_topology(cloud, settings);
     EXPECT_EQ(one.report.components, 2);
     settings.threads = 3;
-    const NeuralMesh three = learn(cloud, settings);
+    const NeuralMesh three = learn_topology(cloud, settings);
     EXPECT_EQ(one.positions, three.positions);
     EXPECT_EQ(one.faces, three.faces);
 }
@@ -143,9 +144,9 @@ TEST(LearnedTopology, TheBytesDoNotDependOnTheThreads) {
 TEST(LearnedTopology, WithoutMembranesNothingChanges) {
     Settings settings = settings_of();
     const Cloud cloud = shapes::torus_cloud(20000);
-    const NeuralMesh with = learn(cloud, settings);
+    const NeuralMesh with = learn_topology(cloud, settings);
     settings.learn_topology = false;
-    const NeuralMesh without = learn(cloud, settings);
+    const NeuralMesh without = learn_topology(cloud, settings);
     EXPECT_EQ(with.positions, without.positions);
     EXPECT_EQ(with.faces, without.faces);
 }
@@ -154,9 +155,9 @@ TEST(LearnedTopology, WithoutMembranesNothingChanges) {
 TEST(LearnedTopology, SharpEdgesAreNoWebs) {
     Settings settings = settings_of();
     const Cloud cloud = shapes::box_cloud(20000, {2, 2, 2});
-    const NeuralMesh with = learn(cloud, settings);
+    const NeuralMesh with = learn_topology(cloud, settings);
     settings.learn_topology = false;
-    EXPECT_EQ(with.positions, learn(cloud, settings).positions);
+    EXPECT_EQ(with.positions, learn_topology(cloud, settings).positions);
 }
 
 TEST(LearnedTopology, HostileCloudsGiveSoundMeshes) {
@@ -175,7 +176,7 @@ TEST(LearnedTopology, HostileCloudsGiveSoundMeshes) {
             settings.surface = kClosedSurface;
             settings.start_mesh = start;
             settings.target_vertices = 1000;
-            const NeuralMesh mesh = learn(cloud, settings);
+            const NeuralMesh mesh = learn_topology(cloud, settings);
             soundness::expect_exact(mesh, settings);
             EXPECT_EQ(mesh.report.boundary_loops, 0);
         }

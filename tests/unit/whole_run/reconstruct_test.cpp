@@ -22,13 +22,13 @@ using shapes::Cloud;
 using soundness::expect_exact;
 using soundness::expect_sound;
 using soundness::target_of;
-using watched_runs::learn;
+using watched_runs::learn_watched;
 using watched_runs::Watch;
 using watched_runs::with_target;
 
 TEST(Reconstruct, LiesOnTheSphereItLearned) {
     for (const int start : {kShell, kTetrahedron}) {
-        const NeuralMesh mesh = learn(shapes::sphere_cloud(20000), with_target(1000, start));
+        const NeuralMesh mesh = learn_watched(shapes::sphere_cloud(20000), with_target(1000, start));
         const double sphere = 4.0 / 3 * shapes::kPi;
         EXPECT_NEAR(referee::enclosed_volume(mesh), sphere, 0.02 * sphere);
         for (const vcg::Point3d& p : mesh.positions) EXPECT_NEAR(p.Norm(), 1, 0.05);
@@ -44,7 +44,7 @@ TEST(Reconstruct, FollowsNoNoiseOfFewPoints) {
     for (const std::uint64_t seed : {1, 4, 9}) {
         Settings settings = with_target(2000);
         settings.random_seed = static_cast<int>(seed);
-        const NeuralMesh mesh = learn(shapes::sphere_cloud(4000, of_ball, seed), settings);
+        const NeuralMesh mesh = learn_watched(shapes::sphere_cloud(4000, of_ball, seed), settings);
         double squares = 0;
         for (const vcg::Point3d& p : mesh.positions) squares += (p.Norm() - 1) * (p.Norm() - 1);
         EXPECT_LT(std::sqrt(squares / 2000), 0.4 * kDeviation) << seed;
@@ -65,7 +65,7 @@ TEST(Reconstruct, LearnsFromFaces) {
 // From the shell the fit keeps 2,000 of some 6,700 vertices, on a sphere almost at random.
 TEST(Reconstruct, MostValencesAreRegular) {
     for (const auto& [start, share] : {std::pair(kShell, 0.85), std::pair(kTetrahedron, 0.95)}) {
-        const NeuralMesh mesh = learn(shapes::sphere_cloud(20000), with_target(2000, start));
+        const NeuralMesh mesh = learn_watched(shapes::sphere_cloud(20000), with_target(2000, start));
         int regular = 0;
         for (const auto& entry : referee::census(mesh.faces).valence)
             regular += entry.second >= 5 && entry.second <= 7 ? 1 : 0;
@@ -118,14 +118,14 @@ TEST(Reconstruct, CountsTheSignalsOfADiscardedGrowth) {
 TEST(Reconstruct, StopsWhenConverged) {
     Settings settings = with_target(5000);
     settings.stop_below_mean_counter = 1000;
-    const NeuralMesh mesh = learn(shapes::sphere_cloud(3000), settings);
+    const NeuralMesh mesh = learn_watched(shapes::sphere_cloud(3000), settings);
     EXPECT_EQ(mesh.report.stop_reason, StopReason::converged);
     EXPECT_LT(mesh.report.vertices, 5000);
     expect_sound(mesh);
 }
 
 TEST(Reconstruct, EdgesFollowCreases) {
-    const NeuralMesh mesh = learn(shapes::box_cloud(20000), with_target(1500));
+    const NeuralMesh mesh = learn_watched(shapes::box_cloud(20000), with_target(1500));
     expect_sound(mesh);
     // .0104 if no vertex moves to a crease for the sake of flips.
     EXPECT_LT(mesh.report.rms_error, 0.008);
@@ -139,7 +139,7 @@ TEST(Reconstruct, SettlesWithAllSignalsWithoutTheFit) {
         Settings settings = with_target(kVertices);
         settings.fit_to_points = false;
         settings.settling_signals_per_vertex = settling_signals_per_vertex;
-        return learn(sphere, settings).report.signals;
+        return learn_watched(sphere, settings).report.signals;
     };
     EXPECT_EQ(signals_with(kSignalsPerVertex) - signals_with(0), kVertices * kSignalsPerVertex);
 }
@@ -148,7 +148,8 @@ TEST(Reconstruct, LearnsBrieflyWhereTheFitFollowsAndTheNoiseIsLarge) {
     const auto signals = [](double noise, bool fit) {
         Settings settings = with_target(1000);
         settings.fit_to_points = fit;
-        return static_cast<double>(learn(shapes::sphere_cloud(20000, noise), settings).report.signals);
+        return static_cast<double>(
+            learn_watched(shapes::sphere_cloud(20000, noise), settings).report.signals);
     };
     // In a ball of this radius: across the surface .45 of it. The edges of 1,000 vertices are .12 long.
     EXPECT_LT(signals(0.08, true), 0.75 * signals(0.02, true));
@@ -157,7 +158,7 @@ TEST(Reconstruct, LearnsBrieflyWhereTheFitFollowsAndTheNoiseIsLarge) {
 
 TEST(Reconstruct, RefusesSettingsOutOfRange) {
     Settings settings = with_target(3);
-    EXPECT_THROW(learn(shapes::sphere_cloud(100), settings), SettingError);
+    EXPECT_THROW(learn_watched(shapes::sphere_cloud(100), settings), SettingError);
 }
 
 TEST(Reconstruct, FeatureThresholdSelectsByTheMean) {
@@ -165,9 +166,9 @@ TEST(Reconstruct, FeatureThresholdSelectsByTheMean) {
     settings.settling_signals_per_vertex = 10;
     settings.select_by = kFeatureCounter;
     settings.feature_threshold = 0;
-    const NeuralMesh all = learn(shapes::box_cloud(3000), settings);
+    const NeuralMesh all = learn_watched(shapes::box_cloud(3000), settings);
     settings.feature_threshold = 1000;
-    const NeuralMesh none = learn(shapes::box_cloud(3000), settings);
+    const NeuralMesh none = learn_watched(shapes::box_cloud(3000), settings);
     EXPECT_GT(all.report.feature_vertices, 290);
     EXPECT_EQ(none.report.feature_vertices, 0);
     double sum = 0;
@@ -180,9 +181,9 @@ TEST(Reconstruct, SelectsByOneMeasureAndShowsTheOther) {
     Settings settings = with_target(300);
     const Cloud box = shapes::box_cloud(3000);
     settings.feature_measure = settings.select_by = kFeatureCounter;
-    const NeuralMesh counter = learn(box, settings);
+    const NeuralMesh counter = learn_watched(box, settings);
     settings.feature_measure = settings.select_by = kCreaseMeasure;
-    const NeuralMesh crease = learn(box, settings);
+    const NeuralMesh crease = learn_watched(box, settings);
     EXPECT_NE(counter.counters, crease.counters);
     EXPECT_NE(counter.features, crease.features);
     for (std::size_t i = 0; i < crease.features.size(); ++i)
@@ -191,13 +192,13 @@ TEST(Reconstruct, SelectsByOneMeasureAndShowsTheOther) {
         for (const int selecting : {kFeatureCounter, kCreaseMeasure}) {
             settings.feature_measure = shown;
             settings.select_by = selecting;
-            const NeuralMesh mesh = learn(box, settings);
+            const NeuralMesh mesh = learn_watched(box, settings);
             EXPECT_EQ(mesh.counters, (shown == kCreaseMeasure ? crease : counter).counters);
             EXPECT_EQ(mesh.features, (selecting == kCreaseMeasure ? crease : counter).features);
             EXPECT_EQ(mesh.positions, counter.positions);
         }
     }
-    EXPECT_EQ(learn(box, with_target(300)).features, crease.features) << "not the default";
+    EXPECT_EQ(learn_watched(box, with_target(300)).features, crease.features) << "not the default";
 }
 
 }  // namespace

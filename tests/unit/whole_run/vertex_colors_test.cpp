@@ -20,7 +20,7 @@ using shapes::Cloud;
 
 constexpr Color kRed{255, 0, 0}, kBlue{0, 0, 255};
 
-NeuralMesh learn(const TargetSpace& target, int vertex_color) {
+NeuralMesh learn_colored(const TargetSpace& target, int vertex_color) {
     Settings settings;
     settings.target_vertices = 300;
     settings.vertex_color = vertex_color;
@@ -43,7 +43,7 @@ TargetSpace red_ball_in_blue_dust() {
 }
 
 TEST(VertexColors, OfOutliersDoNotCount) {
-    const NeuralMesh mesh = learn(red_ball_in_blue_dust(), kCloudColors);
+    const NeuralMesh mesh = learn_colored(red_ball_in_blue_dust(), kCloudColors);
     EXPECT_TRUE(soundness::has_warning(mesh, "repeat others"));
     EXPECT_GT(mesh.report.outliers, 20);
     ASSERT_EQ(mesh.colors.size(), mesh.positions.size());
@@ -56,15 +56,15 @@ TEST(VertexColors, OfOutliersDoNotCount) {
 
 TEST(VertexColors, GiveWayToTheCounterOrToNone) {
     const TargetSpace red = red_ball_in_blue_dust();
-    const NeuralMesh counter = learn(red, kCounterColors);
+    const NeuralMesh counter = learn_colored(red, kCounterColors);
     const Cloud plain = shapes::sphere_cloud(2000);
-    const NeuralMesh without = learn(targets::target_of(plain), kCloudColors);
+    const NeuralMesh without = learn_colored(targets::target_of(plain), kCloudColors);
     ASSERT_EQ(without.report.notes.size(), 1U);
     EXPECT_EQ(without.report.notes.front().find("The layer has no colours"), 0U);
-    EXPECT_EQ(without.colors, learn(targets::target_of(plain), kCounterColors).colors);
+    EXPECT_EQ(without.colors, learn_colored(targets::target_of(plain), kCounterColors).colors);
     EXPECT_EQ(counter.colors.size(), counter.positions.size());
     EXPECT_NE(counter.colors, std::vector<Color>(counter.colors.size(), counter.colors.front()));
-    EXPECT_TRUE(learn(red, kNoColors).colors.empty());
+    EXPECT_TRUE(learn_colored(red, kNoColors).colors.empty());
 }
 
 }  // namespace
