@@ -24,11 +24,11 @@ constexpr double kDeviationPerMedian = 1.4826;
 /// Points beyond so many deviations weigh less than half (Cauchy).
 constexpr double kCauchy = 2.5;
 
-Vector3d to_eigen(const vcg::Point3f& p) {
+Vector3d in_double(const vcg::Point3f& p) {
     return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
 
-vcg::Point3f to_vcg(const Vector3d& v) {
+vcg::Point3f in_float(const Vector3d& v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
@@ -54,7 +54,7 @@ HeightField height_field(const std::vector<vcg::Point3f>& points, const Vector3d
     double total = 0;
     Vector3d sum = Vector3d::Zero();
     for (const vcg::Point3f& p : points) {
-        const Vector3d d = to_eigen(p) - place;
+        const Vector3d d = in_double(p) - place;
         const double x = d.squaredNorm() / (radius * radius);
         field.gauss.push_back(1 / (1 + 2 * x * (1 + x)));  // about e^(-2 x)
         total += field.gauss.back();
@@ -63,7 +63,7 @@ HeightField height_field(const std::vector<vcg::Point3f>& points, const Vector3d
     field.middle = place + sum / total;
     Matrix3d scatter = Matrix3d::Zero();
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const Vector3d d = to_eigen(points[i]) - field.middle;
+        const Vector3d d = in_double(points[i]) - field.middle;
         scatter += field.gauss[i] * d * d.transpose();
     }
     const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(scatter);
@@ -73,7 +73,7 @@ HeightField height_field(const std::vector<vcg::Point3f>& points, const Vector3d
     field.flatness = field.on_line ? 1 : std::sqrt(spread[0] / spread[1]);
     field.width = std::sqrt(spread[1] / std::max(spread[2], 1e-300));
     for (const vcg::Point3f& p : points) {
-        const Vector3d d = field.axes.transpose() * (to_eigen(p) - field.middle);
+        const Vector3d d = field.axes.transpose() * (in_double(p) - field.middle);
         field.heights.push_back(d[0]);
         field.at.push_back(monomials(d[1] / radius, d[2] / radius));
     }
@@ -118,7 +118,7 @@ LocalQuadric local_quadric(const std::vector<vcg::Point3f>& points, const vcg::P
     LocalQuadric result;
     if (points.size() < static_cast<std::size_t>(LocalQuadric::kLeastPoints)) return result;
     const double r = static_cast<double>(radius);
-    const Vector3d centre = to_eigen(place);
+    const Vector3d centre = in_double(place);
     const HeightField field = height_field(points, centre, r);
     result.flatness = static_cast<float>(field.flatness);
     result.width = static_cast<float>(field.width);
@@ -140,10 +140,10 @@ LocalQuadric local_quadric(const std::vector<vcg::Point3f>& points, const vcg::P
     const Vector3d at = field.axes.transpose() * (centre - field.middle);
     const double u = at[1] / r, v = at[2] / r;
     const Vector3d foot(quadric.dot(monomials(u, v)), at[1], at[2]);
-    result.foot = to_vcg(field.middle + field.axes * foot);
+    result.foot = in_float(field.middle + field.axes * foot);
     const Vector3d slope(1, -(quadric[1] + 2 * quadric[3] * u + quadric[4] * v) / r,
                          -(quadric[2] + quadric[4] * u + 2 * quadric[5] * v) / r);
-    result.normal = to_vcg(field.axes * slope.normalized());
+    result.normal = in_float(field.axes * slope.normalized());
     return result;
 }
 
