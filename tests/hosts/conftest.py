@@ -62,7 +62,7 @@ def in_hosts(names, few):
             for host in hosts for name in names]
 
 
-def of_libraries(values, first=()):
+def few_of(values, first=()):
     """`values` for parametrize, of the second tier but for those in `first`."""
     return [pytest.param(value, marks=() if value in first else FULL) for value in values]
 

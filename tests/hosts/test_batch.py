@@ -20,7 +20,7 @@ import meshlabserver
 import numpy as np
 import psutil
 import pytest
-from conftest import FULL, ROOT, write_points
+from conftest import FULL, ROOT, few_of, write_points
 from many_clouds import records
 
 TIMEOUT = 120  # seconds, on a busy machine
@@ -134,6 +134,7 @@ def test_200_clouds_with_corrupt_ones_and_kills(command, batch, tmp_path):
     assert len(named) <= killed
 
 
+@FULL
 def test_a_process_killed_before_its_first_cloud_is_started_again(command, few, tmp_path):
     driver = command(few, "--out", tmp_path, "--workers", 1, *many_clouds.SETTINGS)
     process = psutil.Process(driver.pid)
@@ -144,7 +145,7 @@ def test_a_process_killed_before_its_first_cloud_is_started_again(command, few, 
     assert status == 0 and len(meshes(tmp_path)) == 8, text
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", few_of([signal.SIGINT, signal.SIGTERM], [signal.SIGINT]))
 def test_interrupted_it_ends_and_the_next_start_goes_on(command, batch, few, tmp_path, number):
     words = (few, "--out", tmp_path, "--workers", 1, *many_clouds.SETTINGS)
     driver = command(*words)
@@ -160,6 +161,7 @@ def test_interrupted_it_ends_and_the_next_start_goes_on(command, batch, few, tmp
     assert sorted(done(tmp_path)) == sorted(meshes(tmp_path)) == sorted(path.name for path in few.iterdir())
 
 
+@FULL
 def test_limits_of_time_memory_and_file_size(batch, few, tmp_path):
     cloud = few / "cloud_0000.ply"
     status, text = batch(cloud, "--out", tmp_path, "--time-limit", .3, "target_vertices=60",

@@ -17,7 +17,7 @@ import models
 import numpy as np
 import pytest
 import shapes
-from conftest import FULL, in_hosts, of_libraries, out_of_range, parameters, write_points
+from conftest import FULL, in_hosts, few_of, out_of_range, parameters, write_points
 from input_hosts import state
 from library_hosts import RELEASES
 
@@ -142,7 +142,7 @@ def run_library(build, release, layer, tmp_path, mode):
     return library_hosts.outcomes(library_hosts.run(build, release, plugin, file, tmp_path / "out.txt", mode))
 
 
-@pytest.mark.parametrize("release", of_libraries(RELEASES))
+@pytest.mark.parametrize("release", few_of(RELEASES))
 def test_a_host_that_asks_to_stop_gets_the_values_so_far(build, tmp_path, release):
     first, *stopped = run_library(build, release, ball_layer(), tmp_path, "cancel")
     assert first["stop_reason"] == 0 and first["unchanged"]
@@ -154,7 +154,7 @@ def test_a_host_that_asks_to_stop_gets_the_values_so_far(build, tmp_path, releas
         assert outcome["signals"] < 60000 or not outcome["asked_to_stop"]
 
 
-@pytest.mark.parametrize("release", of_libraries(RELEASES))
+@pytest.mark.parametrize("release", few_of(RELEASES))
 def test_out_of_memory_at_any_allocation_leaves_the_layer_as_it_was(build, tmp_path, release):
     first, *starved = run_library(build, release, ball_layer(), tmp_path, "memory")
     assert first["vertices"] == 642 and len(starved) > 200

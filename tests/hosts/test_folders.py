@@ -10,7 +10,7 @@ from pathlib import Path
 
 import meshlabserver
 import pytest
-from conftest import write_points
+from conftest import FULL, write_points
 
 EXAMPLES = Path(__file__).resolve().parent / "examples"
 NAMES = ("sphere", "filleted-cube", "bunny")
@@ -33,6 +33,7 @@ def assert_all_learned(build, folder):
         assert found["rms_to_mesh"] < 0.4
 
 
+@FULL
 def test_meshlabserver_with_gnu_parallel(build, server, folder):
     done = subprocess.run(["bash", str(EXAMPLES / "folder_meshlabserver.sh")], cwd=folder, check=False,
                           env=meshlabserver.environment(server), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import meshlabserver
 import pytest
-from conftest import make_packages, the_file
+from conftest import FULL, make_packages, the_file
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "packaging"))
@@ -45,12 +45,14 @@ def test_checksums_are_of_the_files(dist):
         assert digest == hashlib.sha256((dist / name).read_bytes()).hexdigest()
 
 
+@FULL
 def test_the_same_plugins_give_the_same_packages(build, dist, tmp_path):
     for date, same in (("1700000000", True), ("1700000002", False)):
         make_packages(build, tmp_path / date, SOURCE_DATE_EPOCH=date, TZ="Asia/Tokyo", LC_ALL="C")
         assert ((tmp_path / date / "SHA256SUMS").read_text() == (dist / "SHA256SUMS").read_text()) is same
 
 
+@FULL
 def test_all_packages_name_the_maintainer_of_the_environment(build, tmp_path):
     make_packages(build, tmp_path, SOURCE_DATE_EPOCH="1700000000", DEBFULLNAME="A Packager", DEBEMAIL="packager@example.org")
     for path in tmp_path.glob("*.deb"):

@@ -13,7 +13,7 @@ import sys
 import numpy as np
 import psutil
 import pytest
-from conftest import write_points
+from conftest import FULL, write_points
 from stream_clouds import FILES, ORIGIN, POINTS, ascii_ply, bench, e57, las, ply
 
 
@@ -47,6 +47,7 @@ def test_memory_that_processes_share_counts_once():
     assert 100_000_000 < memory < 150_000_000  # of four processes
 
 
+@FULL
 def test_memory_stays_within_the_option_and_distances_are_those_of_the_whole_cloud(pymeshlab, meshes, site, tmp_path):
     cloud, mesh = tmp_path / "cloud.ply", tmp_path / "mesh.ply"
     bench.write_cloud(cloud, 1_000_000)
@@ -78,6 +79,7 @@ def test_the_same_bytes_whatever_the_processes(stream, tmp_path):
     assert len(files) == len(distances) == 1
 
 
+@FULL
 def test_large_coordinates_are_kept(meshes, stream, tmp_path):
     """Learned at UTM coordinates as at the origin; the mesh has the coordinates of the cloud."""
     points = bench.surface(40_000, 1) * 10
@@ -182,6 +184,7 @@ def test_memory_that_is_named_as_needed_is_enough(stream, small, tmp_path):
     assert results(stream(small, tmp_path / "mesh.ply", "--memory", enough, "target_vertices=400"))["vertices"] == 400
 
 
+@FULL
 def test_processes_that_measure_end_with_a_killed_command(site, tmp_path):
     cloud = tmp_path / "cloud.ply"
     bench.write_cloud(cloud, 2_000_000)
@@ -198,6 +201,7 @@ def test_processes_that_measure_end_with_a_killed_command(site, tmp_path):
     assert not psutil.wait_procs(children, timeout=10)[1]
 
 
+@FULL
 def test_the_folder_of_a_killed_command_is_removed_by_the_next(stream, site, small, tmp_path):
     mesh, cloud = tmp_path / "mesh.ply", tmp_path / "cloud.ply"
     bench.write_cloud(cloud, 300_000)
@@ -234,6 +238,7 @@ def test_counts_are_printed_in_full(site):
     assert line_of({"points": 20_000_000, "rms": 1 / 3}) == "points=20000000 rms=0.333333"
 
 
+@FULL
 def test_a_full_disk_leaves_the_old_file(stream, small, tmp_path):
     """A limit on the size of files stands for a full disk."""
     out = tmp_path / "mesh.ply"

@@ -103,8 +103,8 @@ void expect_the_sentence_where_it_fails(const Settings& settings, Failure failur
     }
     ASSERT_GT(all, 200);
     int refused = 0;
-    const int first = environment::full() ? 100 : 20;
-    const int tries = environment::number_of("NEURALMESH_MEMORY_TRIES", environment::full() ? 25 : 10, 1);
+    const int first = environment::full() ? 100 : 10;
+    const int tries = environment::number_of("NEURALMESH_MEMORY_TRIES", environment::full() ? 25 : 5, 1);
     for (const long long nth : sampled(all, first, tries, salt)) {
         SCOPED_TRACE(testing::Message() << "allocation " << nth << " of " << all);
         const long long living = allocations::living();

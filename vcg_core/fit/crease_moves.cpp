@@ -3,14 +3,14 @@
 
 #include "vcg_core/fit/crease_moves.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "vcg_core/base/parallel_for.h"
+#include "vcg_core/base/small_matrices.h"
 
 namespace neuralmesh {
 
@@ -176,9 +176,9 @@ private:
             if (s.count < kFewestPoints || !(s.weight > 0)) return false;
             const Eigen::Vector3d mean = s.places / s.weight;
             const Eigen::Matrix3d scatter = s.squares - s.weight * mean * mean.transpose();
-            const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
-            const Vector3 normal = solver.eigenvectors().col(0).cast<float>();
-            error += solver.eigenvalues()[0];
+            const PrincipalAxes spread = principal_axes(scatter);
+            const Vector3 normal = spread.axes.col(0).cast<float>();
+            error += spread.values[0];
             planes_[k] = {normal.dot(planes_[k].normal) < 0 ? Vector3(-normal) : normal, mean.cast<float>()};
         }
         error_ = static_cast<float>(error / (sums[0].weight + sums[1].weight));
@@ -225,12 +225,11 @@ private:
 
     /// The same from the best quadratic height field over the plane between the two planes.
     float squared_error_if_smooth() const {
-        using Vector6 = Eigen::Matrix<double, 6, 1>;
         const Eigen::Vector3d up = (planes_[0].normal + planes_[1].normal).cast<double>().normalized();
         const Eigen::Vector3d x = up.unitOrthogonal();
         const Eigen::Vector3d y = up.cross(x);
-        Eigen::Matrix<double, 6, 6> squares = Eigen::Matrix<double, 6, 6>::Zero();
-        Vector6 right = Vector6::Zero();
+        Matrix6d squares = Matrix6d::Zero();
+        Vector6d right = Vector6d::Zero();
         double sum = 0;
         double weight = 0;
         for (const Sample& s : samples_) {
@@ -239,14 +238,14 @@ private:
             const double v = y.dot(p);
             const double h = up.dot(p);
             const auto w = static_cast<double>(s.weight);
-            Vector6 row;
+            Vector6d row;
             row << 1, u, v, u * u, u * v, v * v;
             squares += w * row * row.transpose();
             right += w * h * row;
             sum += w * h * h;
             weight += w;
         }
-        const double left = std::max(0.0, sum - right.dot(squares.ldlt().solve(right)));
+        const double left = std::max(0.0, sum - right.dot(solve(squares, right)));
         return static_cast<float>(left / weight * reach_ * reach_);
     }
 

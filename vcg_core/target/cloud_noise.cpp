@@ -3,12 +3,12 @@
 
 #include "vcg_core/target/cloud_noise.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "vcg_core/base/even_mesh.h"
 #include "vcg_core/base/median.h"
+#include "vcg_core/base/small_matrices.h"
 #include "vcg_core/target/neighbour_scatter.h"
 
 namespace neuralmesh {
@@ -26,10 +26,9 @@ constexpr double kPi = 3.141592653589793;
 double variance_about_plane(const NearestPoints& cloud, NearestPoints::Place place,
                             const std::vector<NearestPoints::Neighbour>& near) {
     const double count = static_cast<double>(near.size()) + 1;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(neighbour_scatter(cloud, place, near),
-                                                                Eigen::EigenvaluesOnly);
+    const PrincipalAxes spread = principal_axes(neighbour_scatter(cloud, place, near));
     constexpr double kParametersOfAPlane = 3;
-    return std::max(0.0, solver.eigenvalues()[0]) / (count - kParametersOfAPlane);
+    return std::max(0.0, spread.values[0]) / (count - kParametersOfAPlane);
 }
 
 }  // namespace

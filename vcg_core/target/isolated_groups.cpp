@@ -4,12 +4,11 @@
 // Groups are connected components of occupied octree cells, level by level from coarse to fine.
 #include "vcg_core/target/isolated_groups.h"
 
-#include <Eigen/Dense>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "vcg_core/base/small_matrices.h"
 #include "vcg_core/target/cell_groups.h"
 
 namespace neuralmesh {
@@ -117,29 +116,29 @@ double surface_variation(const NearestPoints& cloud, const std::vector<Place>& p
     const Extent extent(cloud, points);
     const double all = extent.covariance.trace();
     if (!(all > 0)) return 0;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(extent.covariance, Eigen::EigenvaluesOnly);
-    return std::max(solver.eigenvalues()[0], 0.0) / all;
+    const PrincipalAxes spread = principal_axes(extent.covariance);
+    return std::max(spread.values[0], 0.0) / all;
 }
 
 bool continues_plane(const NearestPoints& cloud, Place place, const std::vector<Place>& others) {
     constexpr double kThin = 0.05;     // of the variances across and along the plane
     constexpr double kInPlane = 0.35;  // sine of the angle between plane and offset
     const Extent extent(cloud, others);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(extent.covariance);
+    const PrincipalAxes spread = principal_axes(extent.covariance);
     const Eigen::Vector3d offset = position(cloud, place) - extent.mean;
-    return solver.eigenvalues()[0] < kThin * solver.eigenvalues()[1] &&
-           std::abs(offset.dot(solver.eigenvectors().col(0))) < kInPlane * offset.norm();
+    return spread.values[0] < kThin * spread.values[1] &&
+           std::abs(offset.dot(spread.axes.col(0))) < kInPlane * offset.norm();
 }
 
 double relative_plane_distance(const NearestPoints& cloud, Place place, const std::vector<Place>& others,
                                double at_least) {
     constexpr double kThin = 0.1;  // of the variances across and along the plane
     const Extent extent(cloud, others);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(extent.covariance);
-    if (!(solver.eigenvalues()[0] < kThin * solver.eigenvalues()[1])) return 0;
-    const double own = std::sqrt(std::max(solver.eigenvalues()[0], 0.0) / static_cast<double>(others.size()));
+    const PrincipalAxes spread = principal_axes(extent.covariance);
+    if (!(spread.values[0] < kThin * spread.values[1])) return 0;
+    const double own = std::sqrt(std::max(spread.values[0], 0.0) / static_cast<double>(others.size()));
     const Eigen::Vector3d offset = position(cloud, place) - extent.mean;
-    return std::abs(offset.dot(solver.eigenvectors().col(0))) / std::sqrt(own * own + at_least * at_least);
+    return std::abs(offset.dot(spread.axes.col(0))) / std::sqrt(own * own + at_least * at_least);
 }
 
 void mark_isolated_clumps(const NearestPoints& cloud, std::vector<std::uint8_t>& out) {

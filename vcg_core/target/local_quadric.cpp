@@ -3,20 +3,18 @@
 
 #include "vcg_core/target/local_quadric.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "vcg_core/base/median.h"
+#include "vcg_core/base/small_matrices.h"
 
 namespace neuralmesh {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Coefficients = Eigen::Matrix<double, 6, 1>;
-using Normal6 = Eigen::Matrix<double, 6, 6>;
+using Coefficients = Vector6d;
 
 constexpr int kRobustPasses = 2;
 /// The deviation of normally distributed numbers is this many times the median of their magnitudes.
@@ -66,9 +64,9 @@ HeightField height_field(const std::vector<vcg::Point3f>& points, const Vector3d
         const Vector3d d = in_double(points[i]) - field.middle;
         scatter += field.gauss[i] * d * d.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(scatter);
-    field.axes = solver.eigenvectors();
-    const Vector3d spread = solver.eigenvalues().cwiseMax(0);
+    const PrincipalAxes principal = principal_axes(scatter);
+    field.axes = principal.axes;
+    const Vector3d spread = principal.values.cwiseMax(0);
     field.on_line = spread[1] <= kLine * spread[2];
     field.flatness = field.on_line ? 1 : std::sqrt(spread[0] / spread[1]);
     field.width = std::sqrt(spread[1] / std::max(spread[2], 1e-300));
@@ -82,7 +80,7 @@ HeightField height_field(const std::vector<vcg::Point3f>& points, const Vector3d
 
 Coefficients solve(const HeightField& field, const std::vector<double>& weights) {
     constexpr double kRidge = 1e-9;  // a quadric that the points leave open is flat there
-    Normal6 a = Normal6::Zero();
+    Matrix6d a = Matrix6d::Zero();
     Coefficients b = Coefficients::Zero();
     double total = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -91,7 +89,7 @@ Coefficients solve(const HeightField& field, const std::vector<double>& weights)
         total += weights[i];
     }
     for (int k = 0; k < 6; ++k) a(k, k) += kRidge * total;
-    return a.selfadjointView<Eigen::Lower>().ldlt().solve(b);
+    return neuralmesh::solve(a, b);
 }
 
 double robust_deviation(const HeightField& field, const Coefficients& quadric,

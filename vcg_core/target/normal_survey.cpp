@@ -3,11 +3,11 @@
 
 #include "vcg_core/target/normal_survey.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "vcg_core/base/small_matrices.h"
 #include "vcg_core/target/neighbour_scatter.h"
 
 namespace neuralmesh {
@@ -39,10 +39,10 @@ std::optional<Point3f> plane_at(const NearestPoints& cloud, Place place,
     for (const int wanted : kNormalNeighbours) {
         cloud.nearest(place, wanted, near);
         if (near.size() < static_cast<std::size_t>(wanted)) return {};
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(neighbour_scatter(cloud, place, near));
-        const Eigen::Vector3d& spread = solver.eigenvalues();
+        const PrincipalAxes principal = principal_axes(neighbour_scatter(cloud, place, near));
+        const Eigen::Vector3d& spread = principal.values;
         if (!(spread[0] < kFlat * spread[1])) continue;
-        const Eigen::Vector3d n = solver.eigenvectors().col(0);
+        const Eigen::Vector3d n = principal.axes.col(0);
         return Point3f(static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2]));
     }
     return {};

@@ -3,12 +3,12 @@
 
 #include "vcg_core/target/opposite_layers.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "vcg_core/base/parallel_for.h"
+#include "vcg_core/base/small_matrices.h"
 #include "vcg_core/target/neighbour_scatter.h"
 
 namespace neuralmesh {
@@ -31,8 +31,8 @@ constexpr double kThickest = 0.4;
 
 LayerPlace place_at(const NearestPoints& cloud, NearestPoints::Place place,
                     const std::vector<NearestPoints::Neighbour>& near) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(neighbour_scatter(cloud, place, near));
-    const Eigen::Vector3d n = solver.eigenvectors().col(0), spread = solver.eigenvalues();
+    const PrincipalAxes principal = principal_axes(neighbour_scatter(cloud, place, near));
+    const Eigen::Vector3d n = principal.axes.col(0), spread = principal.values;
     LayerPlace result;
     result.position = cloud.point(place);
     result.normal = {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])};

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <system_error>
+#include <vector>
 
 namespace neuralmesh::environment {
 
@@ -29,5 +30,12 @@ inline int number_of(const char* name, int otherwise, int low) {
 /// True in `./run.sh test full`, which sets NEURALMESH_FULL: all that a test can vary is to be tried.
 /// Otherwise the variations that find most.
 inline bool full() { return std::getenv("NEURALMESH_FULL") != nullptr; }
+
+/// What to try: \p always, and in the second tier \p in_full as well.
+template <class T>
+std::vector<T> in_tiers(std::vector<T> always, const std::vector<T>& in_full) {
+    if (full()) always.insert(always.end(), in_full.begin(), in_full.end());
+    return always;
+}
 
 }  // namespace neuralmesh::environment

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/unit/support/environment.h"
 #include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
@@ -170,7 +171,7 @@ TEST(LearnedTopology, HostileCloudsGiveSoundMeshes) {
         strip.emplace_back(radius * std::cos(turn), radius * std::sin(turn), across * std::sin(turn / 2));
         curve.emplace_back(std::cos(turn), std::sin(turn), 0.3 * std::sin(3 * turn));
     }
-    for (const int start : {static_cast<int>(kShell), static_cast<int>(kTetrahedron)})
+    for (const int start : environment::in_tiers<int>({kTetrahedron}, {kShell}))
         for (const Cloud& cloud : {two_spheres(10000, 2), strip, curve}) {
             Settings settings = settings_of();
             settings.surface = kClosedSurface;

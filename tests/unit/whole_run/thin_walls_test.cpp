@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/unit/support/crumpled.h"
+#include "tests/unit/support/environment.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/mesh/exact_cuts.h"
@@ -91,7 +92,7 @@ double distance_from_box(const vcg::Point3d& p, const vcg::Point3d& edges) {
 TEST(ThinWalls, OfNestedBoxesKeepTheirSides) {
     constexpr std::size_t kPoints = 40000;  // four spacings through the wall
     const vcg::Point3d outer(1, 0.8, 0.6), inner(0.92, 0.72, 0.52);
-    for (const std::uint64_t seed : {4U, 9U}) {
+    for (const std::uint64_t seed : environment::in_tiers<std::uint64_t>({4}, {9})) {
         shapes::Cloud cloud;
         Random random(seed);
         add_box(outer, kPoints, random, cloud);
