@@ -41,7 +41,7 @@ TEST(OpenSurface, ComesOutWithItsTopologyAndExactlyAsManyVertices) {
     bool few = false;
     for (const Case& each : open_shapes::cases()) {
         few = !few;
-        for (const int vertices : environment::in_tiers({few ? 300 : 1500}, {few ? 1500 : 300})) {
+        for (const int vertices : environment::in_tiers<int>({few ? 300 : 1500}, {few ? 1500 : 300})) {
             SCOPED_TRACE(each.name + ", " + std::to_string(vertices));
             const Settings settings = settings_with(vertices, kOpenSurface);
             const NeuralMesh mesh = learn(each.cloud, settings);

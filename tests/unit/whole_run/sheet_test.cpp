@@ -66,7 +66,7 @@ TEST(Sheets, AreClosedOnBothSidesWithEveryVertexOnThem) {
         few = !few;
         vcg::Box3d box;
         for (const vcg::Point3d& p : sheet.cloud) box.Add(p);
-        for (const int vertices : environment::in_tiers({few ? 250 : 1000}, {few ? 1000 : 250})) {
+        for (const int vertices : environment::in_tiers<int>({few ? 250 : 1000}, {few ? 1000 : 250})) {
             SCOPED_TRACE(testing::Message() << sheet.name << ", " << vertices);
             Settings settings;
             settings.target_vertices = vertices;
