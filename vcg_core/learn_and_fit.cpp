@@ -32,9 +32,9 @@ std::size_t carried_by_points(const LearningTask& task) {
 
 /// Whether the fit inserts the vertices that the points do not carry.
 bool fills_up(const LearningTask& task, const Settings& settings) {
-    constexpr std::size_t kFewestPoints = 256;
+    constexpr std::size_t kFewestToFill = 256;
     return settings.redistributes_vertices() && task.encloses_space && !task.target().has_faces() &&
-           task.target().positions().size() >= kFewestPoints;
+           task.target().positions().size() >= kFewestToFill;
 }
 
 /// The vertices that learning and fit place by the points; the fit inserts the others. All, unless the cloud
@@ -78,12 +78,12 @@ int surplus_for_volume(const LearningTask& task, int final_vertices) {
 /// 1.4 times the time, and 1,000 may have twice the error where it is 2 % of the diagonal.
 bool reduces_by_volume(const LearningTask& task, int final_vertices) {
     constexpr double kMostOutliers = 0.2, kMostNoise = 0.15;
-    constexpr int kFew = 1000, kFewNoisy = 3000, kPointsPerVertex = 10;
+    constexpr int kFew = 1000, kFewNoisy = 3000, kPointsPerLearned = 10;
     const auto points = static_cast<double>(task.target().positions().size());
     const int learned = final_vertices + surplus_for_volume(task, final_vertices);
     if (!is_closed(task) || task.outliers >= kMostOutliers * points) return false;
     if (is_calm(task) && final_vertices >= kFew) return true;
-    return task.noise < kMostNoise && final_vertices < kFewNoisy && points >= kPointsPerVertex * learned;
+    return task.noise < kMostNoise && final_vertices < kFewNoisy && points >= kPointsPerLearned * learned;
 }
 
 /// The same for calm points if the fit reduces by costs.

@@ -8,7 +8,7 @@ import inputs
 import meshlabserver
 import numpy as np
 import pytest
-from conftest import of_libraries, write_points
+from conftest import few_of, write_points
 
 WAVE = 1.0  # the period of waves() over a unit ball, ten edges of its mesh of 1,500 vertices
 OUTLIERS = 20
@@ -42,7 +42,7 @@ def first():
     return {}
 
 
-@pytest.mark.parametrize("host", of_libraries(input_hosts.HOSTS, (input_hosts.SERVER, input_hosts.PYMESHLAB)))
+@pytest.mark.parametrize("host", few_of(input_hosts.HOSTS, (input_hosts.SERVER, input_hosts.PYMESHLAB)))
 def test_the_mesh_has_the_colours_of_the_layer(build, server, pymeshlab, first, tmp_path, host):
     outcome = input_hosts.try_out(build, server, pymeshlab, host, painted_ball(), tmp_path)
     assert outcome.unchanged and outcome.report["outliers"] == OUTLIERS

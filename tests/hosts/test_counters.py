@@ -17,7 +17,7 @@ import models
 import numpy as np
 import pytest
 import shapes
-from conftest import FULL, in_hosts, few_of, out_of_range, parameters, write_points
+from conftest import FULL, few_of, in_hosts, out_of_range, parameters, write_points
 from input_hosts import state
 from library_hosts import RELEASES
 

@@ -9,7 +9,7 @@ import library_hosts
 import meshlabserver
 import numpy as np
 import pytest
-from conftest import of_libraries
+from conftest import few_of
 
 LABEL = "Neural Mesh creases"
 SHIFT = (1e7, -1e7, 1e7)
@@ -67,7 +67,7 @@ def test_a_ball_has_no_such_layer(pymeshlab, tmp_path):
     assert len(list(meshes)) == 2 and report["crease_lines"] == 0
 
 
-@pytest.mark.parametrize("release", of_libraries(library_hosts.RELEASES))
+@pytest.mark.parametrize("release", few_of(library_hosts.RELEASES))
 def test_the_libraries_get_the_same_lines(build, pymeshlab, tmp_path, release):
     layer = box(matrix=inputs.moved(*SHIFT))
     meshes, report = in_pymeshlab(pymeshlab, layer, tmp_path)
@@ -96,7 +96,7 @@ def test_a_script_of_meshlabserver_saves_surface_and_lines(build, server, pymesh
     assert np.allclose(saved.current_mesh().vertex_matrix(), meshes.mesh(2).vertex_matrix(), atol=1e-5)
 
 
-@pytest.mark.parametrize("release", of_libraries(library_hosts.RELEASES))
+@pytest.mark.parametrize("release", few_of(library_hosts.RELEASES))
 def test_out_of_memory_leaves_neither_layer_behind(build, tmp_path, release):
     quick = box(count=2000, settling_signals_per_vertex=0, start_mesh=1, fit_to_points=False)
     quick.target = 200

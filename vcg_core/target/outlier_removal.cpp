@@ -256,12 +256,13 @@ void Suspects::combine() {
 /// The lowest evidence where next to none of the points lies, or that of a clear valley: the gap between
 /// orderly points and outliers, most of which have much evidence against them.
 double Suspects::threshold() const {
-    constexpr double kLowest = -2, kStrict = 3.5, kMixed = 2.5, kStep = 0.5, kFarthest = 8;
-    constexpr double kEmpty = 0.0006, kMany = 0.01;  // shares of the points
+    constexpr double kLowest = -2, kStrict = 3.5, kMixed = 2.5, kStep = 0.5, kFarthestEvidence = 8;
+    constexpr double kEmptyShare = 0.0006, kMany = 0.01;  // shares of the points
     constexpr double kEmptyOfSuspects = 0.05;
     constexpr double kValley = 0.1;  // of the counts on both sides
     const auto points = static_cast<double>(cloud_.size());
-    const double empty = std::min(kEmpty * points, kEmptyOfSuspects * static_cast<double>(suspects_.size()));
+    const double empty =
+        std::min(kEmptyShare * points, kEmptyOfSuspects * static_cast<double>(suspects_.size()));
     const auto count = [this](double low, double high) {
         return static_cast<double>(std::count_if(evidence_.begin(), evidence_.end(),
                                                  [&](double e) { return low <= e && e < high; }));
@@ -276,7 +277,8 @@ double Suspects::threshold() const {
     for (double at = kLowest; at <= kStrict; at += kStep)
         if (around(at) <= empty && are_wild(at)) return at;
     for (double at = kLowest; at <= kStrict; at += kStep)
-        if (around(at) <= kValley * std::min(most(-kFarthest, at), most(at, kFarthest)) && are_wild(at))
+        if (around(at) <= kValley * std::min(most(-kFarthestEvidence, at), most(at, kFarthestEvidence)) &&
+            are_wild(at))
             return at;
     return count(kStrict, HUGE_VAL) > kMany * points ? kMixed : kStrict;
 }
