@@ -17,7 +17,7 @@ namespace neuralmesh {
 namespace {
 
 // Lengths are in mean lengths of the edges at a vertex. Chosen by tests/experiments/paper/crease_table.py.
-constexpr float kReach = 1;         ///< a point this far has a quarter of the weight
+constexpr float kCreaseReach = 1;   ///< a point this far has a quarter of the weight
 constexpr float kFarthest = 0.35F;  ///< from the vertex to the line
 constexpr float kAlike = 0.9F;      ///< cosine above which two planes are one
 constexpr float kOpposite = -0.9F;  ///< and below which they are the two sides of a thin part
@@ -57,7 +57,7 @@ public:
         if (!choose_seeds()) return Vector3::Zero();
         const float edge = mean_edge(v);
         if (!(noise_variance < kNoisiest * kNoisiest * edge * edge)) return Vector3::Zero();
-        collect_points(surface_.positions[v], kReach * edge);
+        collect_points(surface_.positions[v], kCreaseReach * edge);
         const float noise = kNoiseShare * noise_variance;
         for (int i = 0; i < kRefinements; ++i)
             if (!refine() || error_ > kHopeless * largest_error(edge, noise)) return Vector3::Zero();

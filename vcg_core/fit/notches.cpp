@@ -11,11 +11,11 @@ namespace neuralmesh {
 namespace {
 
 // Chosen by tests/experiments/accuracy/open_table.py.
-constexpr float kWidest = -0.2F;     ///< cosine of the widest angle of a notch
-constexpr float kNarrow = 0.7F;      ///< cosine of the angle below which a notch need not hold points ...
-constexpr float kFewInNotch = 4;     ///< ... if no more than these are expected
-constexpr float kLeastShare = 0.5F;  ///< of the points expected
-constexpr float kFlatNotch = 0.5F;   ///< least cosine between the normals of the new face and its neighbours
+constexpr float kWidest = -0.2F;      ///< cosine of the widest angle of a notch
+constexpr float kNarrowNotch = 0.7F;  ///< cosine of the angle below which a notch need not hold points ...
+constexpr float kFewInNotch = 4;      ///< ... if no more than these are expected
+constexpr float kLeastShare = 0.5F;   ///< of the points expected
+constexpr float kFlatNotch = 0.5F;    ///< least cosine between the normals of the new face and its neighbours
 
 /// The face that would fill the notch at v: v and its neighbours before and after it.
 struct Notch {
@@ -52,7 +52,7 @@ bool is_notch(const Network& network, const Surface& surface, const PointsByFace
     const Notch notch(surface, network.ring(v), v);
     if (!(notch.cosine() > kWidest) || !notch.is_sound(surface, network.ring(v))) return false;
     const float expected = density * notch.area.norm() / 2;
-    if (notch.cosine() > kNarrow && expected < kFewInNotch) return true;
+    if (notch.cosine() > kNarrowNotch && expected < kFewInNotch) return true;
     int count = 0;
     for (int f : surface.faces_around(v))
         for (const PointsByFace::Assignment& assigned : points.of(f))

@@ -21,7 +21,7 @@ using vcg::Point3f;
 
 /// Neighbours farther than so many radii, or more of them, are not looked at: a star reaches up to three
 /// radii.
-constexpr float kReach = 3;
+constexpr float kStarReach = 3;
 constexpr int kMostNeighbours = 32;
 /// Circles through the corners of a triangle that are wider than so many radii lie in a gap.
 constexpr float kWidestCircle = 1.5F;
@@ -109,7 +109,7 @@ void add_star(const Points& points, const NearestPoints& index, NearestPoints::P
     std::vector<NearestPoints::Neighbour> near;
     index.nearest(place, kMostNeighbours, near);
     std::vector<Inverted> inverted{{0, 0, -1}};
-    const float reach = kReach * points.radii[at(own)];
+    const float reach = kStarReach * points.radii[at(own)];
     for (const NearestPoints::Neighbour& n : near) {
         const int other = static_cast<int>(index.index(n.place));
         const Point3f way = points.positions[at(other)] - points.positions[at(own)];

@@ -29,7 +29,7 @@ constexpr int kNeighbours = 10;
 constexpr int kManyNeighbours = 40;
 constexpr std::size_t kLargeGroup = 320;
 constexpr double kFillsSpace = 0.08;  ///< mean surface variation; surfaces have .00 to .05, balls .11 to .17
-constexpr double kThick = 0.1;        ///< surface variation of a group as a whole
+constexpr double kThickGroup = 0.1;   ///< surface variation of a group as a whole
 constexpr double kGap = 2.2, kWideGap = 6;  ///< distance to the rest in the group's own spacings
 
 Eigen::Vector3d position(const NearestPoints& cloud, Place p) {
@@ -88,7 +88,7 @@ double mean_variation(const NearestPoints& group, int neighbours) {
 /// Is \p group a clump? Its spacing is the median distance to the tenth neighbour within it.
 bool is_clump(const NearestPoints& cloud, const std::vector<Place>& group,
               const std::vector<std::uint8_t>& out) {
-    if (surface_variation(cloud, group) < kThick) return false;
+    if (surface_variation(cloud, group) < kThickGroup) return false;
     std::vector<vcg::Point3f> points;
     for (const Place p : group) points.push_back(cloud.point(p));
     const NearestPoints inner(points);

@@ -20,7 +20,7 @@ using Place = NearestPoints::Place;
 using Neighbours = std::vector<NearestPoints::Neighbour>;
 
 constexpr int kSpacingNeighbour = CloudSurvey::kNeighbour;  ///< the distance to it is a point's spacing
-constexpr int kWide = 48, kNarrow = 16;
+constexpr int kWideCount = 48, kNarrowCount = 16;
 constexpr Place kSampleStride = CloudSurvey::kRun;  ///< one of so many points tells the usual spacing
 constexpr std::size_t kSamplesAround = 5;
 constexpr float kSparse = 2;   ///< suspects are sparser than usual by this factor
@@ -74,7 +74,7 @@ private:
         return std::sqrt(scratch.back().squared_distance);
     }
     Place neighbour(std::size_t suspect, int rank) const {
-        return neighbours_[suspect * kWide + static_cast<std::size_t>(rank)];
+        return neighbours_[suspect * kWideCount + static_cast<std::size_t>(rank)];
     }
     /// The spacing at \p place: its own if it is a suspect, else that around it.
     float spacing_at(Place place) const {
@@ -96,7 +96,7 @@ private:
     float of_all_ = 0;                      ///< median spacing of the cloud
     std::vector<Suspect> suspects_;         ///< by ascending place
     std::vector<std::uint8_t> is_suspect_;  ///< by place
-    std::vector<Place> neighbours_;         ///< kWide for each suspect, nearest first
+    std::vector<Place> neighbours_;         ///< kWideCount for each suspect, nearest first
     std::vector<std::uint8_t> in_plane_;    ///< 1 for suspects in the plane of their neighbours
     std::vector<double> narrow_, wide_;     ///< surface variations
     std::vector<double> evidence_;
@@ -162,7 +162,7 @@ std::vector<Place> Suspects::lifted() const {
             const auto place = static_cast<Place>(i);
             const float usual = std::min(of_all_, around_[place / kSampleStride]);
             if (has_close_neighbours(place, kSparser * usual)) continue;
-            cloud_.nearest(place, kNarrow, near);
+            cloud_.nearest(place, kNarrowCount, near);
             if (std::sqrt(near[kSpacingNeighbour - 1].squared_distance) <= kSparser * usual) continue;
             places.clear();
             for (const NearestPoints::Neighbour& n : near) places.push_back(n.place);
@@ -179,12 +179,12 @@ std::vector<Place> Suspects::lifted() const {
 void Suspects::gather_neighbours() {
     is_suspect_.assign(cloud_.size(), 0);
     for (const Suspect& s : suspects_) is_suspect_[s.place] = 1;
-    neighbours_.resize(suspects_.size() * kWide);
+    neighbours_.resize(suspects_.size() * kWideCount);
     for_chunks(suspects_.size(), kChunk / 16, team_, [&](std::size_t, std::size_t begin, std::size_t end) {
         Neighbours near;
         for (std::size_t i = begin; i < end; ++i) {
-            cloud_.nearest(suspects_[i].place, kWide, near);
-            for (std::size_t k = 0; k < kWide; ++k) neighbours_[i * kWide + k] = near[k].place;
+            cloud_.nearest(suspects_[i].place, kWideCount, near);
+            for (std::size_t k = 0; k < kWideCount; ++k) neighbours_[i * kWideCount + k] = near[k].place;
         }
     });
 }
@@ -197,11 +197,11 @@ void Suspects::measure() {
         std::vector<Place> around;
         for (std::size_t i = begin; i < end; ++i) {
             around.clear();
-            for (int k = 0; k < kNarrow; ++k) around.push_back(neighbour(i, k));
+            for (int k = 0; k < kNarrowCount; ++k) around.push_back(neighbour(i, k));
             in_plane_[i] = continues_plane(cloud_, suspects_[i].place, around) ? 1 : 0;
             around.push_back(suspects_[i].place);
             narrow_[i] = surface_variation(cloud_, around);
-            for (int k = kNarrow; k < kWide; ++k) around.push_back(neighbour(i, k));
+            for (int k = kNarrowCount; k < kWideCount; ++k) around.push_back(neighbour(i, k));
             wide_[i] = surface_variation(cloud_, around);
         }
     });
@@ -220,16 +220,17 @@ double Suspects::evidence_alone(std::size_t suspect) const {
         wide += wide_[other];
         ++count;
     }
-    std::array<float, kWide> spacings;
-    for (int k = 0; k < kWide; ++k) spacings[static_cast<std::size_t>(k)] = spacing_at(neighbour(suspect, k));
+    std::array<float, kWideCount> spacings;
+    for (int k = 0; k < kWideCount; ++k)
+        spacings[static_cast<std::size_t>(k)] = spacing_at(neighbour(suspect, k));
     const float own = suspects_[suspect].spacing;
     const auto log_ratio = [own](float other) {
         return portable_log(
             static_cast<double>(std::min(kMostRatio, own / std::max(other, own / kMostRatio))));
     };
     const float usual = median<float>({spacings.begin(), spacings.begin() + kSpacingNeighbour});
-    std::nth_element(spacings.begin(), spacings.begin() + kWide / 10, spacings.end());
-    return kFill * std::min(narrow, wide) / count + kDensest * log_ratio(spacings[kWide / 10]) +
+    std::nth_element(spacings.begin(), spacings.begin() + kWideCount / 10, spacings.end());
+    return kFill * std::min(narrow, wide) / count + kDensest * log_ratio(spacings[kWideCount / 10]) +
            kUsual * log_ratio(usual) + kInPlane * in_plane_[suspect] + kOffset;
 }
 
@@ -242,14 +243,14 @@ void Suspects::combine() {
     for (std::size_t i = 0; i < suspects_.size(); ++i) {
         double sum = 0;
         int count = 0;
-        for (int k = 0; k < kWide; ++k) {
+        for (int k = 0; k < kWideCount; ++k) {
             const std::size_t other = suspect_at(neighbour(i, k));
             if (other == kNobody) continue;
             sum += alone[other];
             ++count;
         }
         evidence_[i] = kOwn * alone[i] + kAround * (count > 0 ? sum / count : alone[i]) +
-                       kCompany * count / kWide + kCompanyOffset;
+                       kCompany * count / kWideCount + kCompanyOffset;
     }
 }
 

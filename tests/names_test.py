@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""Constants of a file differ from those of the other files in its folder and from those of all headers: files of a folder
+are compiled together, where a constant in an anonymous namespace would silently take the place of a header's."""
+
+import re
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+DEFINITION = re.compile(r"^(?:inline |static )?constexpr [\w:<>*]+ (?:const )?(k\w+[^;]*);", re.MULTILINE)
+NAME = re.compile(r"(k[A-Z]\w*)(?:\[\w*\])? = ")
+
+
+def constants_of(path):
+    return [name for line in DEFINITION.findall(path.read_text()) for name in NAME.findall(line)]
+
+
+def shared_names(root):
+    """One sentence for each constant of a source file that another file or a header defines, too."""
+    core = root / "vcg_core"
+    of_headers = {name: path for path in sorted(core.rglob("*.h")) for name in constants_of(path)}
+    in_folder = {}
+    for path in sorted(core.rglob("*.cpp")):
+        for name in constants_of(path):
+            other = of_headers.get(name) or in_folder.get((path.parent, name))
+            in_folder.setdefault((path.parent, name), path)
+            if other:
+                yield f"{name} is defined in {path.relative_to(root)} and in {other.relative_to(root)}."
+
+
+class Names(unittest.TestCase):
+    def test_constants_of_a_folder_differ(self):
+        found = list(shared_names(ROOT))
+        self.assertFalse(found, "\n" + "\n".join(found))
+
+    def test_shared_names_are_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            for name, text in {"a/x.h": "constexpr float kHeader = 1;\n",
+                               "b/one.cpp": "constexpr int kWide = 48, kHeader = 16;\n",
+                               "b/two.cpp": "constexpr std::size_t kWide = 2;\nint f() {\n    constexpr int kWide = 3;\n}\n",
+                               "c/three.cpp": "constexpr int kWide = 4;\n"}.items():
+                (root / "vcg_core" / name).parent.mkdir(parents=True, exist_ok=True)
+                (root / "vcg_core" / name).write_text(text)
+            self.assertEqual([line.split()[0] for line in shared_names(root)], ["kHeader", "kWide"])
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
