@@ -3,6 +3,7 @@
 
 """Runs the filter in each host on the layers of inputs.py, and checks the results."""
 
+import re
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 
@@ -82,8 +83,9 @@ def sentence_of_server(text):
     """The error message in what the server has printed after its filter failed."""
     lines = [line.strip() for line in text.splitlines()]
     assert any(line.startswith("Problem with filter") for line in lines), text
-    return " ".join(line for line in lines if line.endswith(".") and " " in line
-                    and not line.startswith(("LOG", "MeshLab")))
+    sentences = (line for line in lines if line.endswith(".") and " " in line and not line.startswith(("LOG", "MeshLab")))
+    # What was going on stands before the sentence, with no end of line.
+    return " ".join(re.sub("^Start mesh: [a-z ]+", "", sentence) for sentence in sentences)
 
 
 def in_server(build, server, layer, folder):

@@ -10,6 +10,7 @@
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/base/small_matrices.h"
 #include "vcg_core/target/neighbour_scatter.h"
+#include "vcg_core/target/surface_survey.h"
 
 namespace neuralmesh {
 namespace {
@@ -36,7 +37,8 @@ LayerPlace place_at(const NearestPoints& cloud, NearestPoints::Place place,
     LayerPlace result;
     result.position = cloud.point(place);
     result.normal = {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])};
-    result.flat = spread[0] < kThickest * kThickest * spread[1];
+    const double narrowest = static_cast<double>(kNarrow) * static_cast<double>(kNarrow) * spread[2];
+    result.flat = spread[0] < kThickest * kThickest * spread[1] && spread[1] > narrowest;
     return result;
 }
 

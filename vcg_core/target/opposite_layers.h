@@ -21,7 +21,8 @@ struct LayerPlace {
     vcg::Point3f normal;
     float above = 0;
     float below = 0;
-    bool flat = false;          ///< the neighbours lie on the plane, as far as their number shows
+    bool flat =
+        false;  ///< the neighbours show a plane: they are no cloud of leaves, and not on one scan line
     bool on_thin_wall = false;  ///< flat, and one of the layers is at most some eight spacings away
 };
 

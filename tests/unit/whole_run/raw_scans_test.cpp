@@ -100,6 +100,22 @@ TEST(RawScans, OnePlaneAndCrossingPlanesAreOpen) {
     EXPECT_EQ(learn(shapes::plane_cloud(20000), 1000).report.boundary_loops, 1);
 }
 
+TEST(RawScans, LinesDenserAlongThanAcrossAreOneSheet) {
+    for (const int density : {10, 30}) {
+        constexpr int kLines = 50;
+        Random random(1);
+        Cloud cloud;
+        for (int i = 0; i < kLines * kLines * density; ++i) {
+            const double x = static_cast<double>(random.unit()), y = static_cast<double>(i % kLines) / kLines;
+            cloud.emplace_back(x, y, 0.3 * x * (1 - x) * (1 + y));
+        }
+        const NeuralMesh mesh = learn(cloud, 1000);
+        EXPECT_EQ(mesh.report.components, 1) << density;
+        EXPECT_EQ(mesh.report.boundary_loops, 1) << density;
+        EXPECT_EQ(mesh.report.genus, 0) << density;
+    }
+}
+
 TEST(RawScans, APointAtTheSensorIsNotLearned) {
     Cloud cloud = sensors::depth_frame(160);
     cloud.emplace_back(0, 0, 0);
