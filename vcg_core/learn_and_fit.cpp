@@ -20,11 +20,6 @@ namespace {
 /// million from 500 points, would take all memory at once; learning takes its time and can be cancelled.
 constexpr int kMostPerCarried = 64;
 
-/// With fewer points per vertex, learning and fit follow the accidents of the points; a vertex that has to
-/// share its points costs more than its absence. Chosen by the points of
-/// tests/experiments/accuracy/scan_table.py.
-constexpr std::size_t kPointsPerCarried = 2;
-
 std::size_t carried_by_points(const LearningTask& task) {
     const std::size_t points = task.target().positions().size();
     return task.noise_by_place ? task.noise_by_place->carried_by(points) : points / kPointsPerCarried;

@@ -8,7 +8,6 @@
 
 #include "vcg_core/base/span.h"
 #include "vcg_core/base/thread_team.h"
-#include "vcg_core/base/unset.h"
 #include "vcg_core/mesh/face_walk.h"
 #include "vcg_core/mesh/surface.h"
 
@@ -45,10 +44,9 @@ public:
     Span<Assignment> of(int face) {
         return {assignments_.data() + first_[face], assignments_.data() + first_[face + 1]};
     }
-    using Assignments = std::vector<Assignment, Unset<Assignment>>;
     /// The points of all faces, face by face.
-    Assignments& all() { return assignments_; }
-    const Assignments& all() const { return assignments_; }
+    std::vector<Assignment>& all() { return assignments_; }
+    const std::vector<Assignment>& all() const { return assignments_; }
     /// Number of points for each of \p vertices vertices.
     float per_vertex(int vertices) const {
         return static_cast<float>(assignments_.size()) / static_cast<float>(vertices);
@@ -63,7 +61,7 @@ public:
     void update_feet(const Surface& surface, ThreadTeam& team);
 
 private:
-    Assignments assignments_;
+    std::vector<Assignment> assignments_;
     bool weighted_;
     PerFace<int> first_;  ///< where those of a face begin; one more entry at the end
 };

@@ -17,12 +17,10 @@ namespace {
 using vcg::Point3f;
 using Place = NearestPoints::Place;
 
-/// A quadric takes the points within so many surveyed radii, and is fitted again around its own foot.
-constexpr float kSupport = 1.6F;
+/// A quadric is fitted again around its own foot.
 constexpr int kPasses = 2;
-/// The radius grows in steps, up to 2.5 times.
+/// Steps of the radius, to 2.5 times at most.
 constexpr int kSteps = 4;
-constexpr float kGrowth = 1.35F;
 
 /// Without noise points may be closer than the radius of a quadric, which needs a dozen of them.
 float thinning_radius(const SurveyedPlace& place) {

@@ -10,6 +10,8 @@
 #include <tuple>
 #include <vector>
 
+#include "vcg_core/base/disjoint_sets.h"
+#include "vcg_core/base/indexed.h"
 #include "vcg_core/mesh/boundary_loops.h"
 
 namespace neuralmesh {
@@ -61,13 +63,10 @@ Edges edges_of(const std::vector<std::size_t>& places) {
 double widest_face_boundary(const TargetSpace& target) {
     const std::vector<Point3f>& corners = target.positions();
     const Edges edges = edges_of(places_of(corners));
-    std::vector<std::size_t> root(corners.size());
-    std::iota(root.begin(), root.end(), std::size_t{0});
-    const auto find = [&root](std::size_t v) {
-        while (root[v] != v) v = root[v] = root[root[v]];
-        return v;
-    };
-    for (const PlaceEdge& edge : edges.of_one) root[find(edge[0])] = find(edge[1]);
+    DisjointSets sets(static_cast<int>(corners.size()));
+    const auto find = [&sets](std::size_t v) { return at(sets.find(static_cast<int>(v))); };
+    for (const PlaceEdge& edge : edges.of_one)
+        sets.join(static_cast<int>(edge[0]), static_cast<int>(edge[1]));
     std::vector<char> of_fin(corners.size(), 0);  // by root
     for (const PlaceEdge& edge : edges.of_many)
         for (const std::size_t v : edge) of_fin[find(v)] = 1;

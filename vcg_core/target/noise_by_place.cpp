@@ -10,11 +10,6 @@
 namespace neuralmesh {
 namespace {
 
-/// With fewer points per vertex, learning and fit follow the accidents of the points; a vertex that has to
-/// share its points costs more than its absence. Chosen by the points of
-/// tests/experiments/accuracy/scan_table.py.
-constexpr double kPointsPerCarried = 2;
-
 /// Within so many deviations a network that learns shows no direction along the surface, as the points do
 /// not.
 float least_squared_edge(float variance) { return kLeastDeviations * kLeastDeviations * variance; }
@@ -42,7 +37,7 @@ std::size_t NoiseByPlace::carried_by(std::size_t points) const {
     for (const Noise& noise : noise_) {
         const auto point = static_cast<double>(noise.spacing) * static_cast<double>(noise.spacing);
         const double edges = kAreaPerVertex * static_cast<double>(least_squared_edge(noise.variance));
-        vertices_per_point += point / std::max(kPointsPerCarried * point, edges);
+        vertices_per_point += point / std::max(static_cast<double>(kPointsPerCarried) * point, edges);
     }
     return static_cast<std::size_t>(vertices_per_point / static_cast<double>(noise_.size()) *
                                     static_cast<double>(points));

@@ -14,6 +14,11 @@
 
 namespace neuralmesh {
 
+/// With fewer points per vertex, learning and fit follow the accidents of the points; a vertex that has to
+/// share its points costs more than its absence. Chosen by the points of
+/// tests/experiments/accuracy/scan_table.py.
+constexpr std::size_t kPointsPerCarried = 2;
+
 /// The noise of the places of a SurfaceSurvey that show a surface; at others that of the nearest which does.
 class NoiseByPlace {
 public:

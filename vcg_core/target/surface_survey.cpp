@@ -22,10 +22,7 @@ constexpr int kNeighbour = 7;
 constexpr float kPiF = 3.1415927F;
 /// The median over so many places around takes out what is chance at one of them.
 constexpr int kPlacesAround = 12;
-/// A quadric takes the points within this many radii.
-constexpr float kSupport = 1.6F;
-/// The radius grows by a factor in steps, to eight times at most.
-constexpr float kGrowth = 1.35F;
+/// Steps of the radius, to eight times at most.
 constexpr int kSteps = 7;
 
 std::vector<Place> chosen_places(const NearestPoints& cloud) {

@@ -22,6 +22,8 @@ constexpr float kNarrow = 0.3F;
 /// The least radius in spacings, and in deviations: within five of them the points have all heights, and no
 /// direction along the surface.
 constexpr float kLeastSpacings = 2, kLeastDeviations = 5;
+/// A quadric takes the points within so many radii, which grow in steps until these show a surface.
+constexpr float kSupport = 1.6F, kGrowth = 1.35F;
 
 /// One of the places that were looked at. Lengths in the frame of the points.
 struct SurveyedPlace {
