@@ -10,7 +10,6 @@
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/base/small_matrices.h"
 #include "vcg_core/target/neighbour_scatter.h"
-#include "vcg_core/target/surface_survey.h"
 
 namespace neuralmesh {
 namespace {
@@ -29,6 +28,8 @@ constexpr int kLeastPoints = 3;
 
 /// Thicker neighbourhoods, beside their width, are noise, or leaves: layers in them are no sides of a wall.
 constexpr double kThickest = 0.4;
+/// Narrower ones, beside their length, are on one scan line, and the plane through them has any direction.
+constexpr double kLine = 0.1;
 
 LayerPlace place_at(const NearestPoints& cloud, NearestPoints::Place place,
                     const std::vector<NearestPoints::Neighbour>& near) {
@@ -37,8 +38,7 @@ LayerPlace place_at(const NearestPoints& cloud, NearestPoints::Place place,
     LayerPlace result;
     result.position = cloud.point(place);
     result.normal = {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])};
-    const double narrowest = static_cast<double>(kNarrow) * static_cast<double>(kNarrow) * spread[2];
-    result.flat = spread[0] < kThickest * kThickest * spread[1] && spread[1] > narrowest;
+    result.flat = spread[0] < kThickest * kThickest * spread[1] && spread[1] > kLine * kLine * spread[2];
     return result;
 }
 
