@@ -6,10 +6,10 @@
 #include <Eigen/LU>
 
 #include <algorithm>
-#include <queue>
 #include <tuple>
 #include <utility>
 
+#include "vcg_core/base/cheapest_first.h"
 #include "vcg_core/fit/face_rules.h"
 
 namespace neuralmesh {
@@ -87,10 +87,9 @@ public:
 
     std::vector<VertexMoves::DoneCollapse> run(int vertices) {
         std::vector<VertexMoves::DoneCollapse> done;
-        while (network_.vertex_count() > vertices && !queue_.empty()) {
-            const Candidate next = queue_.top();
-            queue_.pop();
-            if (!is_current(next)) continue;
+        Candidate next;
+        while (network_.vertex_count() > vertices &&
+               queue_.pop(next, [this](const Candidate& edge) { return is_current(edge); })) {
             const Vector3d where = place(next.a, next.b).position;
             const bool a_is_nearer = (where - at(next.a)).squaredNorm() <= (where - at(next.b)).squaredNorm();
             const VertexId kept = a_is_nearer ? next.a : next.b;
@@ -114,9 +113,8 @@ private:
         double cost;
         VertexId a, b;
         int changes;
-        /// The cheapest is taken first.
         bool operator<(const Candidate& other) const {
-            return std::tie(cost, a, b) > std::tie(other.cost, other.a, other.b);
+            return std::tie(cost, a, b) < std::tie(other.cost, other.a, other.b);
         }
     };
 
@@ -211,7 +209,7 @@ private:
     const double squared_short_length_;
     PerVertex<Around> around_;
     PerVertex<int> changes_;
-    std::priority_queue<Candidate> queue_;
+    CheapestFirst<Candidate> queue_;
 };
 
 }  // namespace
