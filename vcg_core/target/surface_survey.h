@@ -90,8 +90,10 @@ public:
         return *points_;
     }
     const SurfaceSurvey& surface() {
-        ThreadTeam team(thread_count(threads_));
-        if (!surface_) surface_.emplace(points(), team);
+        if (!surface_) {
+            ThreadTeam team(thread_count(threads_));
+            surface_.emplace(points(), team);
+        }
         return *surface_;
     }
 
