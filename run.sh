@@ -18,6 +18,7 @@ called_from="$PWD"
 cd "$here"
 
 build=build
+sanitizers=address  # of the second core, see vcg_core/CMakeLists.txt
 venv="$build/venv"
 compile_packages="ca-certificates cmake g++ libeigen3-dev libglew-dev libqt5opengl5-dev meshlab ninja-build python3
     qtbase5-dev xz-utils"
@@ -120,7 +121,8 @@ compile() {
         [ "$(cached CMAKE_HOME_DIRECTORY)" = "$here" ] && [ -z "$(cached MESHLAB_SOURCE_DIR)" ]; }; then
         fresh=(--fresh)
     fi
-    cmake "${fresh[@]}" -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release > "$build/configure.log" 2>&1 ||
+    cmake "${fresh[@]}" -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DNEURALMESH_SANITIZERS="$sanitizers" \
+        > "$build/configure.log" 2>&1 ||
         { cat "$build/configure.log" >&2; fail "The configuration failed."; }
     cmake --build "$build" --target "$@" -- --quiet
 }
@@ -175,16 +177,13 @@ demo() {
     "$python" tests/hosts/demo.py --build "$build" "${arguments[@]}"
 }
 
-# sanitized PRESET TARGET...: builds the targets with the sanitizers of PRESET in CMakePresets.json, and runs its tests.
-# tests/README.md says which tests it leaves out, and why.
-sanitized() {
-    local preset="$1"
-    shift
-    say "With the sanitizers of the preset $preset"
-    cmake --preset "$preset" > "$build/configure_$preset.log" 2>&1 ||
-        { cat "$build/configure_$preset.log" >&2; fail "The configuration of $preset failed."; }
-    cmake --build --preset "$preset" --target "$@" -- --quiet
-    ctest --preset "$preset" --parallel "$(nproc)" | without_passed
+# The preset "threads" in CMakePresets.json.
+thread_sanitizer() {
+    say "With the thread sanitizer"
+    cmake --preset threads > "$build/configure_threads.log" 2>&1 ||
+        { cat "$build/configure_threads.log" >&2; fail "The configuration of the preset threads failed."; }
+    cmake --build --preset threads --target thread_tests -- --quiet
+    ctest --preset threads --parallel "$(nproc)" | without_passed
 }
 
 # Removes ctest's lines about tests that pass.
@@ -212,10 +211,10 @@ run_tests() {
         tests_of --label-exclude '^full$'
     else
         export NEURALMESH_FULL=1
+        sanitizers=address,undefined,float-cast-overflow
         compile all second_tier
         tests_of
-        sanitized sanitize unit_tests fuzz_network fuzz_settings fuzz_cloud fuzz_mesh
-        sanitized threads thread_tests
+        thread_sanitizer
     fi
     say "All tests have passed"
 }

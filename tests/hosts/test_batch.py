@@ -247,7 +247,7 @@ def alone(batch, few, tmp_path_factory):
 
 
 def test_the_same_bytes_with_any_number_of_workers_and_by_the_other_command(installed, batch, few, alone, tmp_path):
-    assert batch(few, "--out", tmp_path, "--workers", 3, "--files-per-process", 1, *many_clouds.SETTINGS)[0] == 0
+    assert batch(few, "--out", tmp_path, "--workers", 3, "--files-per-process", 2, *many_clouds.SETTINGS)[0] == 0
     assert meshes(tmp_path) == alone
     subprocess.run([sys.executable, "-m", "neural_mesh", str(few / "cloud_0003.ply"), str(tmp_path / "one.ply"),
                     *many_clouds.SETTINGS], check=True, env=dict(os.environ, PYTHONPATH=str(installed)))

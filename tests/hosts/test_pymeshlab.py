@@ -12,7 +12,7 @@ import meshlabserver
 import numpy as np
 import pytest
 import shapes
-from conftest import CORNERS, MODELS, PYTHON_NAME, few_of, out_of_range, parameters
+from conftest import CORNERS, FULL, MODELS, PYTHON_NAME, few_of, out_of_range, parameters
 from input_hosts import state
 
 COUNTS = ("vertices", "faces", "signals", "splits", "collapses", "genus", "boundary_loops", "components",
@@ -50,7 +50,8 @@ def test_exact_count_sound_mesh_and_the_full_dictionary(build, meshes, model, tm
     assert learned.label() == "Neural Mesh"
 
 
-@pytest.mark.parametrize("shown, selecting", [(0, 0), (0, 1), (1, 0), (1, 1)])
+@pytest.mark.parametrize("shown, selecting",
+                         [(0, 1), (1, 0), pytest.param(0, 0, marks=FULL), pytest.param(1, 1, marks=FULL)])
 def test_the_quality_shows_one_measure_and_another_selects(meshes, model, shown, selecting):
     cloud, _ = model("crossed-cylinders")
     meshes.load_new_mesh(str(cloud))
@@ -265,6 +266,7 @@ for array in (mesh.vertex_matrix(), mesh.face_matrix(), mesh.vertex_scalar_array
 """
 
 
+@FULL
 def test_two_processes_at_once_give_what_each_gives_alone(build, model):
     plugin = str(meshlabserver.plugin_path(build, "pymeshlab-2025.7"))
 

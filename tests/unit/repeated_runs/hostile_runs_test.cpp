@@ -161,9 +161,6 @@ void expect_run_within_bound(const Cloud& cloud, Settings settings) {
     EXPECT_LE(learner.signals(), learner.signal_bound());
 }
 
-/// Whether to try the \p i-th setting in the \p j-th of \p count ways: each setting once, or in all ways.
-bool tried(std::size_t i, std::size_t j, std::size_t count) { return environment::full() || i % count == j; }
-
 TEST(Reconstruct, HostileSettingsEndWithinTheBound) {
     const auto all = hostile_clouds();
     const std::pair<const char*, Cloud> clouds[] = {
@@ -171,7 +168,7 @@ TEST(Reconstruct, HostileSettingsEndWithinTheBound) {
     const auto settings = hostile_settings();
     for (std::size_t i = 0; i < settings.size(); ++i) {
         for (std::size_t j = 0; j < std::size(clouds); ++j) {
-            if (!tried(i, j, std::size(clouds))) continue;
+            if (!environment::tried(i, j, std::size(clouds))) continue;
             SCOPED_TRACE(testing::Message() << settings[i].first << ", " << clouds[j].first);
             expect_run_within_bound(clouds[j].second, settings[i].second);
         }
@@ -183,7 +180,7 @@ TEST(Reconstruct, HostileSettingsGiveSoundMeshes) {
     const auto hostile = hostile_settings();
     for (std::size_t i = 0; i < hostile.size(); ++i) {
         for (const int start : {kShell, kTetrahedron}) {
-            if (!tried(i, start == kShell ? 0 : 1, 2)) continue;
+            if (!environment::tried(i, start == kShell ? 0 : 1, 2)) continue;
             SCOPED_TRACE(testing::Message() << hostile[i].first << ", start " << start);
             Settings settings = hostile[i].second;
             settings.start_mesh = start;

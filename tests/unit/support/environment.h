@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <charconv>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <system_error>
@@ -37,5 +38,9 @@ std::vector<T> in_tiers(std::vector<T> always, const std::vector<T>& in_full) {
     if (full()) always.insert(always.end(), in_full.begin(), in_full.end());
     return always;
 }
+
+/// Whether to try the \p i-th of some cases in the \p j-th of \p count ways: in all ways in the second tier,
+/// otherwise each case in one way, by turns.
+inline bool tried(std::size_t i, std::size_t j, std::size_t count) { return full() || i % count == j; }
 
 }  // namespace neuralmesh::environment
