@@ -35,6 +35,8 @@ if [ -n "${NEURAL_MESH_DATA:-}" ]; then
     say "Real scans, open"
     "$python" "$here/open_scans.py" "$build/tests/learn" "$pictures/open_scans.png" --data "$NEURAL_MESH_DATA" --out "$out"
     "$python" "$here/small_png.py" --width 1080 "$pictures/open_scans.png"
+    "$python" "$here/open_scans.py" "$build/tests/learn" "$pictures/raw_scans.png" --sheet raw --data "$NEURAL_MESH_DATA" --out "$out"
+    "$python" "$here/small_png.py" --width 900 "$pictures/raw_scans.png"
 fi
 say "Creases of noisy data"
 "$python" "$here/creases.py" "$pictures/creases.png" --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so" --out "$out"
