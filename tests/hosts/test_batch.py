@@ -51,9 +51,9 @@ def finished(process):
 
 @pytest.fixture(scope="module")
 def few(tmp_path_factory):
-    """A folder of eight good clouds."""
+    """A folder of five good clouds."""
     folder = tmp_path_factory.mktemp("few") / "clouds"
-    many_clouds.make(folder, 8)
+    many_clouds.make(folder, 5)
     return folder
 
 
@@ -142,7 +142,7 @@ def test_a_process_killed_before_its_first_cloud_is_started_again(command, few, 
     learners(process)[0].kill()
     assert not records(tmp_path)
     status, text = finished(driver)
-    assert status == 0 and len(meshes(tmp_path)) == 8, text
+    assert status == 0 and len(meshes(tmp_path)) == 5, text
 
 
 @pytest.mark.parametrize("number", few_of([signal.SIGINT, signal.SIGTERM], [signal.SIGINT]))
@@ -157,7 +157,7 @@ def test_interrupted_it_ends_and_the_next_start_goes_on(command, batch, few, tmp
     assert children and not psutil.wait_procs(children, timeout=10)[1] and not hidden(tmp_path)
     before = len(records(tmp_path))
     status, text = batch(*words)
-    assert status == 0 and f"8 clouds, {before} of them done before." in text
+    assert status == 0 and f"5 clouds, {before} of them done before." in text
     assert sorted(done(tmp_path)) == sorted(meshes(tmp_path)) == sorted(path.name for path in few.iterdir())
 
 
