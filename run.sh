@@ -205,6 +205,11 @@ tests_of() {
 run_tests() {
     [ $# = 0 ] || [ "$*" = full ] || fail "'./run.sh test' takes no word but 'full'."
     need $compile_packages $demo_packages $test_packages $venv_packages
+    if [ ! -e "$venv/complete" ]; then
+        need_venv &
+        compile neuralmesh_core check_mesh  # what needs nothing of it, meanwhile
+        wait "$!"
+    fi
     need_venv  # before the configuration, which looks for pymeshlab there
     if [ $# = 0 ]; then
         compile all
