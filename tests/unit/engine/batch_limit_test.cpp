@@ -75,6 +75,8 @@ TEST(BatchLimit, HalvesWhereRepeatedWinnersCrowd) {
     EXPECT_EQ(limit.limit(), unlimited);
     limit.end_batch(400, 2);
     EXPECT_EQ(limit.limit(), 200);
+    limit.end_batch(1, 2);
+    EXPECT_EQ(limit.limit(), 1);
 }
 
 TEST(BatchLimit, GrowsAgainWhenTheWinsHaveSpread) {
