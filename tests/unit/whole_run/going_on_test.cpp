@@ -32,19 +32,19 @@ NeuralMesh learn(const TargetSpace& target, const Settings& settings, const Shap
 TEST(GoingOn, RefinesAnEarlierResult) {
     const TargetSpace torus = targets::target_of(shapes::torus_cloud(20000));
     Settings settings;
-    settings.target_vertices = 1500;
+    settings.target_vertices = 2500;
     NoProgress progress;
     const NeuralMesh coarse = reconstruct(torus, settings, progress);
-    const NeuralMesh fine = learn(torus, going_on(3000), {coarse.positions, coarse.faces});
-    soundness::expect_exact(fine, going_on(3000));
+    const NeuralMesh fine = learn(torus, going_on(5000), {coarse.positions, coarse.faces});
+    soundness::expect_exact(fine, going_on(5000));
     EXPECT_EQ(fine.report.genus, 1);
-    settings.target_vertices = 3000;
+    settings.target_vertices = 5000;
     const NeuralMesh anew = reconstruct(torus, settings, progress);
     // Most of the splits that made the vertices of the earlier result are saved.
-    EXPECT_LT(static_cast<double>(fine.report.splits), static_cast<double>(anew.report.splits) - 0.7 * 1500);
+    EXPECT_LT(static_cast<double>(fine.report.splits), static_cast<double>(anew.report.splits) - 0.7 * 2500);
     EXPECT_LT(fine.report.rms_error, 1.05 * anew.report.rms_error);
-    const NeuralMesh same = learn(torus, going_on(1500), {coarse.positions, coarse.faces});
-    soundness::expect_exact(same, going_on(1500));
+    const NeuralMesh same = learn(torus, going_on(2500), {coarse.positions, coarse.faces});
+    soundness::expect_exact(same, going_on(2500));
     EXPECT_LT(same.report.rms_error, 1.1 * coarse.report.rms_error);
 }
 
