@@ -161,10 +161,7 @@ platform() {
     [ -n "$name" ] && [ -n "${platform_packages[$name]:-}" ] || fail "The platforms are ${!platform_packages[*]}."
     need $compile_packages ${platform_packages[$name]}
     need_sources
-    cmake --preset "$name" > "$build/configure_$name.log" 2>&1 ||
-        { cat "$build/configure_$name.log" >&2; fail "The configuration of $name failed."; }
-    cmake --build --preset "$name" -- --quiet
-    ctest --preset "$name" --parallel "$(nproc)" | without_passed
+    tests_of_preset "$name"
 }
 
 demo() {
@@ -177,13 +174,14 @@ demo() {
     "$python" tests/hosts/demo.py --build "$build" "${arguments[@]}"
 }
 
-# The preset "threads" in CMakePresets.json.
-thread_sanitizer() {
-    say "With the thread sanitizer"
-    cmake --preset threads > "$build/configure_threads.log" 2>&1 ||
-        { cat "$build/configure_threads.log" >&2; fail "The configuration of the preset threads failed."; }
-    cmake --build --preset threads --target thread_tests -- --quiet
-    ctest --preset threads --parallel "$(nproc)" | without_passed
+# tests_of_preset NAME [OPTION...]: builds a preset of CMakePresets.json, with options for the build, and runs its tests.
+tests_of_preset() {
+    local name="$1"
+    shift
+    cmake --preset "$name" > "$build/configure_$name.log" 2>&1 ||
+        { cat "$build/configure_$name.log" >&2; fail "The configuration of $name failed."; }
+    cmake --build --preset "$name" "$@" -- --quiet
+    ctest --preset "$name" --parallel "$(nproc)" | without_passed
 }
 
 # Removes ctest's lines about tests that pass.
@@ -219,7 +217,8 @@ run_tests() {
         sanitizers=address,undefined,float-cast-overflow
         compile all second_tier
         tests_of
-        thread_sanitizer
+        say "With the thread sanitizer"
+        tests_of_preset threads --target thread_tests
     fi
     say "All tests have passed"
 }

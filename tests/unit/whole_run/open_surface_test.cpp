@@ -225,7 +225,7 @@ TEST(OpenSurface, OfFewVerticesHasABoundaryAsLongAsThatOfTheCloud) {
     const Cloud cloud = open_shapes::cut(shapes::torus_cloud(100000), [&](const vcg::Point3d& p) {
         return (p - vcg::Point3d(1, 0, 0.25)).Norm() > radius;
     });
-    const NeuralMesh fine = learn(cloud, settings_with(3000, kAutomatic));
+    const NeuralMesh fine = learn(cloud, settings_with(5000, kAutomatic));
     const NeuralMesh coarse = learn(cloud, settings_with(300, kAutomatic));
     EXPECT_EQ(coarse.report.boundary_loops, fine.report.boundary_loops);
     EXPECT_EQ(coarse.report.genus, fine.report.genus);
