@@ -42,6 +42,7 @@ def test_meshlabserver_with_gnu_parallel(build, server, folder):
     assert_all_learned(build, folder)
 
 
+@FULL
 def test_pymeshlab_with_a_process_pool(build, folder):
     """One of the clouds cannot be learned."""
     write_points(folder / "clouds" / "c_point.ply", [[1, 2, 3]])
