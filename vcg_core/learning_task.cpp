@@ -259,7 +259,9 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& she
                           (settings.close_holes_up_to >= 0 || start.widest_loop > widest_closed(target));
         const bool fits = vertices_needed(start, settings) <= settings.target_vertices;
         if ((open && (fits || !shell.encloses_space)) || (fits && encloses_more(start, shell))) return start;
-    } catch (const InputError&) {
+    } catch (const NoSurfaceError&) {
+        if (automatic && !shell.encloses_space) throw;
+    } catch (const InputError&) {  // too few points
     }
     return {};
 }

@@ -67,9 +67,9 @@ int surplus_vertices(const Settings& settings, int final_vertices);
 /// it is as large as the cloud. Without that setting it stays closed, with a warning if settings.surface is
 /// open.
 /// \p given must outlive the result. Fractions of \p progress run from 0 to 1. \throws what shell_of()
-/// throws; if settings.surface is open, what open_start() throws; SettingError if an open start mesh needs
-/// more than settings.target_vertices vertices; what given_start() throws, and SettingError if \p start has
-/// more vertices than that
+/// throws; what open_start() throws if settings.surface is open, and NoSurfaceError if it is automatic and
+/// the points enclose no space; SettingError if an open start mesh needs more than settings.target_vertices
+/// vertices; what given_start() throws, and SettingError if \p start has more vertices than that
 LearningTask prepare(const TargetSpace& given, const Settings& settings, const IndexedMesh<double>& start,
                      Progress& progress);
 

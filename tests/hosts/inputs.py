@@ -148,6 +148,7 @@ def _clouds(random):
     far_off = np.array([20, 30, -10]) * (random.random((20, 3)) - .5)
     broken = ball(500)
     broken[[3, 50, 499], [0, 1, 2]] = NAN, INF, -INF
+    filled = random.random((3000, 3))
     corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     turned = np.array([[0, -3, 0, 100], [0, 0, 6, -50], [-3, 0, 0, 7], [0, 0, 0, 1]], dtype=float)
     return {
@@ -159,7 +160,8 @@ def _clouds(random):
         "three distinct, repeated": Input(corners[:3] * 50, refused="3 distinct"),
         "on a line": Input(line, refused="straight line"),
         # Rounding to single precision moves these points off the line.
-        "a line, rounded": Input(line + [5000, -3000, 1000], volume=None),
+        "a line, rounded": Input(line + [5000, -3000, 1000], refused="on curves"),
+        "a line, rounded, closed": Input(line + [5000, -3000, 1000], volume=None, parameters={"surface": 1}),
         "not finite": Input(broken, refused="3 of the 500"),
         # So few points do not determine the surface between them. Four enclose a volume of 1/6, five of 1/2, or of 1/3
         # without the corner at the origin.
@@ -180,7 +182,8 @@ def _clouds(random):
         # In single precision these coordinates are whole numbers: rounding moves points off a plane by 2.8 %, and the
         # diagonal of a cell of that lattice is 16.7 %.
         "offset 1e+7, small": Input(ball(2000, 3) + [1e7, -1e7, 1e7], volume=27 * BALL, within=.15, rms=2.8, far=16.7),
-        "aspect 1 : 1e-3": Input(ball() * [1, 1e-3, 1e-3], volume=None, parameters=EACH_POINT_ALIKE),
+        # Beside the distances of its points a needle is a line.
+        "aspect 1 : 1e-3": Input(ball() * [1, 1e-3, 1e-3], volume=None, parameters={**EACH_POINT_ALIKE, "surface": 1}),
         "aspect 1 : 1 : 1e-5": Input(ball() * [1, 1, 1e-5], volume=None, loops=1, rms=.7),
         "1 % gross outliers": Input(np.vstack([ball(), far_off]), outliers=20),
         "1 % near outliers": Input(np.vstack([ball(), far_off / 20]), outliers=20),
@@ -192,7 +195,8 @@ def _clouds(random):
         # Scanners put points that they did not measure into one place.
         "most in one point": Input(np.vstack([ball(), np.repeat(ball()[:1], 20000, axis=0)])),
         # Points throughout a cube do not determine its surface.
-        "filled": Input(random.random((3000, 3)), volume=.5, within=.5, rms=4, far=7),
+        "filled": Input(filled, refused="scattered in space"),
+        "filled, closed": Input(filled, volume=.5, within=.5, rms=4, far=7, parameters={"surface": 1}),
         "deleted vertices": Input(np.vstack([ball(), ball(200, 9)]), deleted=np.arange(2200) >= 2000),
         "selected points": Input(np.vstack([ball(), ball(2000, 1, (5, 0, 0))]),
                                  selected_points=np.arange(4000) >= 2000, parameters={"selected_only": True}),

@@ -88,14 +88,14 @@ int wanted_vertices(std::size_t points, const OpenStartOptions& options) {
     return std::min(options.wanted_vertices, static_cast<int>(points / OpenStartOptions::kPointsPerVertex));
 }
 
-/// \throws InputError if most places show no surface
+/// \throws NoSurfaceError if most places show none
 void check_for_surface(const SurfaceSurvey& survey) {
     if (survey.curves() > kMostWithoutSurface)
-        throw InputError(
+        throw NoSurfaceError(
             "The points lie on curves, not on a surface: there is nothing to span an open surface over. "
             "Choose surface 1 (closed) for a skin around them.");
     if (survey.clutter() > kMostWithoutSurface)
-        throw InputError(
+        throw NoSurfaceError(
             "The points are scattered in space, or too noisy beside their spacing: an open surface cannot be found. "
             "Choose surface 1 (closed), or remove the scattered points first.");
 }

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "vcg_core/base/error.h"
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/mesh/ring.h"
@@ -23,6 +24,12 @@
 #include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
+
+/// The points lie on curves, are scattered in space, or are too noisy: they show no surface.
+class NoSurfaceError : public InputError {
+public:
+    using InputError::InputError;
+};
 
 /// What the open start may cost and how it decides. The defaults were found by experiment (open_table.py).
 struct OpenStartOptions {
@@ -84,7 +91,7 @@ struct OpenStart {
 /// everywhere. \p progress gets fractions from 0 to 1; a
 /// wish to stop is not answered (0.3 s for 100,000 points).
 /// \param given of the points of a target without faces; nullptr: made here
-/// \throws InputError if the points show no surface: they lie on curves, are scattered, too noisy, or too few
+/// \throws NoSurfaceError; InputError if there are too few points
 OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options, Random& random,
                      Progress& progress, Surveys* given = nullptr);
 

@@ -14,10 +14,11 @@ namespace {
 
 using shapes::Cloud;
 
-NeuralMesh mesh_of(const Cloud& cloud, int vertices, int seed = 1) {
+NeuralMesh mesh_of(const Cloud& cloud, int vertices, int seed = 1, int surface = kAutomatic) {
     Settings settings;
     settings.target_vertices = vertices;
     settings.random_seed = seed;
+    settings.surface = surface;
     settings.threads = 1;
     NoProgress progress;
     NeuralMesh mesh = reconstruct(soundness::target_of(cloud), settings, progress);
@@ -50,7 +51,7 @@ TEST(MostlyNoise, IsLearnedIfTheOtherPointsSpanNoSurface) {
     Random random(3);
     for (int i = 0; i < 2000; ++i) cloud.emplace_back(shapes::signed_unit(random), 0.0, 0.0);
     for (int i = 0; i < 20; ++i) cloud.push_back(shapes::in_cube(random));
-    const NeuralMesh mesh = mesh_of(cloud, 200);
+    const NeuralMesh mesh = mesh_of(cloud, 200, 1, kClosedSurface);
     EXPECT_TRUE(soundness::has_warning(mesh, "20 of 2020 points (1.0 %) look like outliers"));
     EXPECT_TRUE(soundness::has_warning(mesh, "all points were learned"));
 }

@@ -169,7 +169,7 @@ TEST(ShellFinished, ACloudTooSparseForItsShellTakesACoarserOneAndSaysSo) {
     const auto jitter = [&] { return 0.004 * static_cast<double>(random.unit()); };
     for (const vcg::Point3d& p : shell_shapes::sample(shell_shapes::torus(1, 0.15), 800, random))
         for (int i = 0; i < 30; ++i) cloud.push_back(p + vcg::Point3d(jitter(), jitter(), jitter()));
-    const NeuralMesh mesh = finished(cloud, 200);
+    const NeuralMesh mesh = finished(cloud, 200, kClosedSurface);
     expect_closed(mesh, 200, 1, 1);
     EXPECT_TRUE(has_warning(mesh, "A coarser one was made"));
 }
