@@ -18,14 +18,6 @@ using vcg::Point3f;
 
 constexpr std::size_t kMostVoters = 20000;
 constexpr double kClear = 0.6;
-/// Of the area that a viewer sees, this share may be turned away: steep places under noise, and overhangs. On
-/// frames and aerial scans it is 2 to 11 %; of a ball that lacks a third of its height, 25 %.
-constexpr double kMostAway = 0.15;
-/// Sensors of one view see no more than 120 degrees: the cosine of half of that. A cap around the origin is
-/// wider.
-constexpr float kHalfView = 0.5F;
-/// Further off, the origin is that of a country's coordinates.
-constexpr float kFarthestSensor = 4;
 /// Normals that lie nearly along the face, less than 6 degrees above it, say nothing.
 constexpr float kAlongFace = 0.1F;
 
@@ -38,55 +30,6 @@ void turn(Network& network, const Turned& turned) {
     for (Triangle& f : faces)
         if (turned(f[0])) std::swap(f[1], f[2]);
     network = Network(positions, faces);
-}
-
-/// A place, or with weight 0 a direction: what lies at an infinite distance.
-struct Viewpoint {
-    Vector3 place;
-    float weight;
-};
-
-/// What components with a boundary turn to a viewpoint.
-struct View {
-    std::vector<double> front;  ///< of each: the area that is turned to it less the area that is turned away
-    double all = 0;             ///< the area of all together
-
-    bool is_single_valued() const {
-        double to_one_side = 0;
-        for (const double f : front) to_one_side += std::abs(f);
-        return to_one_side > (1 - 2 * kMostAway) * all;
-    }
-};
-
-View view_from(const Viewpoint& viewpoint, const Network& network, const PerVertex<int>& component,
-               const std::vector<char>& open) {
-    View view;
-    view.front.resize(open.size(), 0);
-    for (const Triangle& f : network.faces()) {
-        const auto part = static_cast<std::size_t>(component[f[0]]);
-        if (open[part] == 0) continue;
-        const auto at = [&](std::size_t k) { return to_eigen(network.position(f[k])); };
-        const Vector3 across = (at(1) - at(0)).cross(at(2) - at(0));
-        const Vector3 sight = viewpoint.place - viewpoint.weight * (at(0) + at(1) + at(2)) / 3;
-        const auto area = static_cast<double>(across.norm());
-        const float side = across.dot(sight);
-        view.front[part] += side > 0 ? area : side < 0 ? -area : 0;
-        view.all += area;
-    }
-    return view;
-}
-
-/// Whether a sensor at \p origin may have seen all of \p network.
-bool may_be_sensor(const Point3f& origin, const Network& network) {
-    vcg::Box3f box;
-    for (const VertexId v : network.vertices()) box.Add(network.position(v));
-    const Point3f axis = box.Center() - origin;
-    if (axis.Norm() > kFarthestSensor * box.Diag()) return false;
-    for (const VertexId v : network.vertices()) {
-        const Point3f sight = network.position(v) - origin;
-        if (!(sight * axis > kHalfView * sight.Norm() * axis.Norm())) return false;
-    }
-    return true;
 }
 
 std::vector<char> components_with_boundary(const Network& network, const PerVertex<int>& component) {
@@ -147,19 +90,6 @@ void orient_convex_side_outward(Network& network) {
             add(centre, network.position(loop[(i + 1) % loop.size()]), network.position(loop[i]), loop[i]);
     }
     turn(network, [&](VertexId v) { return volume[component[v]] < 0; });
-}
-
-void orient_to_viewer(Network& network, const Point3f& origin) {
-    const PerVertex<int> component = network.components();
-    const std::vector<char> open = components_with_boundary(network, component);
-    const auto face = [&](const Viewpoint& viewpoint) {
-        const View view = view_from(viewpoint, network, component, open);
-        if (!view.is_single_valued()) return false;
-        turn(network, [&](VertexId v) { return view.front[static_cast<std::size_t>(component[v])] < 0; });
-        return true;
-    };
-    if (may_be_sensor(origin, network) && face({to_eigen(origin), 1})) return;
-    face({Vector3(0, 0, 1), 0});
 }
 
 int orient_by_normals(Network& network, const TargetSpace& target) {

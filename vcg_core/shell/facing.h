@@ -31,14 +31,6 @@ std::vector<FacingVote> facing_votes(const Network& network, const TargetSpace& 
 /// loops closed by fans around their centres, is negative. O(faces).
 void orient_convex_side_outward(Network& network);
 
-/// Turns every component with a boundary to the side that it is seen from. That is \p origin, the origin of
-/// the input, if \p network fits into the view of a sensor there, no further off than some diagonals, and the
-/// surface is single-valued as seen from there: a frame in the coordinates of its sensor. Else it is +z, if
-/// the surface is single-valued from above: terrain, or a flat sheet. Else the components stay. Single-valued
-/// means that of the area of all components with a boundary, each turned to its better side, hardly any is
-/// turned away. O(faces).
-void orient_to_viewer(Network& network, const vcg::Point3f& origin);
-
 /// Turns every component with a boundary over against which \p target has a clear vote, such as inwards if
 /// that is where a room is seen from. Closed components stay. \return the number of components with a
 /// boundary that had a clear vote

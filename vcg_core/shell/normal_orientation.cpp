@@ -8,6 +8,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/base/indexed.h"
 
 namespace neuralmesh {
@@ -76,31 +77,50 @@ private:
     std::vector<char> flipped_;
 };
 
+std::vector<int> parts_of(const std::vector<Link>& links, int count) {
+    DisjointSets sets(count);
+    for (const Link& link : links)
+        if (link.weight < kSureWeight) sets.join(link.a, link.b);
+    std::vector<int> parts;
+    for (int i = 0; i < count; ++i) parts.push_back(sets.find(i));
+    return parts;
+}
+
 }  // namespace
 
-std::vector<Point3f> orient_normals(const std::vector<Point3f>& positions,
-                                    const std::vector<std::pair<int, int>>& neighbours,
-                                    std::vector<Point3f>& normals) {
+Orientation orient_normals(const std::vector<Point3f>& positions,
+                           const std::vector<std::pair<int, int>>& neighbours,
+                           const std::vector<Point3f>& sights, std::vector<Point3f>& normals) {
+    const int count = static_cast<int>(normals.size());
     std::vector<Link> links;
     links.reserve(neighbours.size());
     for (const auto& [a, b] : neighbours)
         links.push_back(link_of(positions, normals, std::min(a, b), std::max(a, b)));
+    Orientation result;
+    result.parts = parts_of(links, count);
+    for (int i = 0; i < static_cast<int>(sights.size()); ++i) {
+        const float front = sights[at(i)] * normals[at(i)];
+        if (front != 0) links.push_back({1 - std::abs(front), i, count, front < 0});
+    }
     std::sort(links.begin(), links.end(), [](const Link& x, const Link& y) {
         return std::tie(x.weight, x.a, x.b) < std::tie(y.weight, y.a, y.b);
     });
-    std::vector<Point3f> contradictions;
-    Sides sides(normals.size());
+    Sides sides(at(count + 1));
     for (const Link& link : links) {
         const Sides::Root a = sides.root(link.a), b = sides.root(link.b);
         if (a.point != b.point) {
             sides.join(a, b, link.opposite);
-        } else if ((a.flipped != b.flipped) != link.opposite && link.weight < kSureWeight) {
-            contradictions.push_back((positions[at(link.a)] + positions[at(link.b)]) / 2);
+        } else if ((a.flipped != b.flipped) != link.opposite && link.weight < kSureWeight && link.b < count) {
+            result.contradictions.push_back((positions[at(link.a)] + positions[at(link.b)]) / 2);
         }
     }
-    for (std::size_t i = 0; i < normals.size(); ++i)
-        if (sides.root(static_cast<int>(i)).flipped) normals[i] = -normals[i];
-    return contradictions;
+    const Sides::Root viewer = sides.root(count);
+    for (int i = 0; i < count; ++i) {
+        const Sides::Root root = sides.root(i);
+        const bool over = root.point == viewer.point && viewer.flipped;
+        if (root.flipped != over) normals[at(i)] = -normals[at(i)];
+    }
+    return result;
 }
 
 }  // namespace neuralmesh

@@ -26,6 +26,7 @@
 #include "vcg_core/shell/point_triangulation.h"
 #include "vcg_core/shell/short_handles.h"
 #include "vcg_core/shell/start_points.h"
+#include "vcg_core/shell/viewpoint.h"
 
 namespace neuralmesh {
 namespace {
@@ -124,6 +125,7 @@ struct Sheet {
     std::vector<Point3f> normals;
     std::vector<float> radii, tolerances;  ///< as in ConsolidatedPoints
     std::vector<Point3f> contradictions;   ///< where its two sides could not be told apart
+    bool faces_viewer = false;             ///< see turn_to_viewer()
 };
 
 std::vector<std::pair<int, int>> neighbours_of(const ConsolidatedPoints& points) {
@@ -140,9 +142,13 @@ std::vector<std::pair<int, int>> neighbours_of(const ConsolidatedPoints& points)
     return pairs;
 }
 
-Sheet sheet_of(ConsolidatedPoints points, ThreadTeam& team) {
+/// \param origin of the input
+Sheet sheet_of(ConsolidatedPoints points, const Point3f& origin, ThreadTeam& team) {
     Sheet sheet;
-    sheet.contradictions = orient_normals(points.positions, neighbours_of(points), points.normals);
+    const std::vector<std::pair<int, int>> neighbours = neighbours_of(points);
+    Orientation orientation = orient_normals(points.positions, neighbours, {}, points.normals);
+    sheet.contradictions = std::move(orientation.contradictions);
+    sheet.faces_viewer = turn_to_viewer(neighbours, orientation.parts, origin, points);
     std::vector<int> source;
     sheet.mesh = triangulation(points.positions, points.normals, points.radii, team, source);
     cut_short_handles(sheet.mesh, kEdgesOfHandle, source);
@@ -347,7 +353,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     ConsolidatedPoints consolidated = consolidated_points(
         surveys.points().cloud, surface, std::max(wanted, kFewestConsolidated), random, team);
     progress(0.6, "Start mesh: building an open mesh");
-    Sheet sheet = sheet_of(std::move(consolidated), team);
+    Sheet sheet = sheet_of(std::move(consolidated), target.frame().inside({0, 0, 0}), team);
     const Enough enough = enough_points(points.size(), options);
     std::vector<std::uint8_t> out = drop_small_parts(surveys, enough, team, sheet);
     if (sheet.mesh.faces.empty())
@@ -362,8 +368,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     Network network(sheet.mesh.positions, sheet.mesh.faces);
     simplify(network, wanted);
     network.compact();
-    orient_convex_side_outward(network);
-    orient_to_viewer(network, target.frame().inside({0, 0, 0}));
+    if (!sheet.faces_viewer) orient_convex_side_outward(network);
     if (options.use_normals) result.faced_by_normals = orient_by_normals(network, target);
     write_mesh(network, result);
     result.fewest_vertices = fewest_vertices(std::move(network), options.target_vertices);

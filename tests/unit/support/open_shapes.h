@@ -98,4 +98,26 @@ inline std::vector<Case> cases() {
     };
 }
 
+/// The part of a sphere below .3, with one boundary.
+inline shapes::Shape open_sphere() {
+    shapes::Shape sphere = shapes::icosphere(3);
+    shapes::Shape open{sphere.positions, {}};
+    std::vector<int> moved(sphere.positions.size(), -1);
+    open.positions.clear();
+    for (const auto& f : sphere.faces) {
+        const auto z = [&](std::size_t k) { return sphere.positions[static_cast<std::size_t>(f[k])][2]; };
+        if (z(0) > 0.3 || z(1) > 0.3 || z(2) > 0.3) continue;
+        open.faces.push_back(f);
+        for (int& v : open.faces.back()) {
+            int& to = moved[static_cast<std::size_t>(v)];
+            if (to < 0) {
+                to = static_cast<int>(open.positions.size());
+                open.positions.push_back(sphere.positions[static_cast<std::size_t>(v)]);
+            }
+            v = to;
+        }
+    }
+    return open;
+}
+
 }  // namespace neuralmesh::open_shapes
