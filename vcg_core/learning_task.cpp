@@ -108,8 +108,7 @@ Shell make_shell(const TargetSpace& target, const Settings& settings, Survey& su
     options.threads = settings.threads;
     options.learn_outliers = !settings.remove_outliers;
     Random random(stream_seed(settings.random_seed, Stream::shell));
-    const CloudSurvey* of_cloud = target.has_faces() ? nullptr : &survey.of(target.positions());
-    return Shell(target, options, random, progress, of_cloud);
+    return Shell(target, options, random, progress, survey.of(target));
 }
 
 void remove_outliers(LearningTask& task, Survey& survey, int threads) {

@@ -10,7 +10,9 @@ from pathlib import Path
 
 import meshlabserver
 import pytest
-from conftest import FULL, write_points
+from conftest import write_points
+
+pytestmark = pytest.mark.full
 
 EXAMPLES = Path(__file__).resolve().parent / "examples"
 NAMES = ("sphere", "filleted-cube", "bunny")
@@ -33,7 +35,6 @@ def assert_all_learned(build, folder):
         assert found["rms_to_mesh"] < 0.4
 
 
-@FULL
 def test_meshlabserver_with_gnu_parallel(build, server, folder):
     done = subprocess.run(["bash", str(EXAMPLES / "folder_meshlabserver.sh")], cwd=folder, check=False,
                           env=meshlabserver.environment(server), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -42,7 +43,6 @@ def test_meshlabserver_with_gnu_parallel(build, server, folder):
     assert_all_learned(build, folder)
 
 
-@FULL
 def test_pymeshlab_with_a_process_pool(build, folder):
     """One of the clouds cannot be learned."""
     write_points(folder / "clouds" / "c_point.ply", [[1, 2, 3]])

@@ -62,8 +62,8 @@ constexpr int kWorthReducing = 2;
 /// may just get into a wall, and a mesh on all nodes has a dent, with 16 % of the faces turned (casting,
 /// walls of 3.4 spacings).
 constexpr double kMostOfCoarse = 1.0 / kSideVertices;
-/// Points are the two sides of walls where so many of them have a layer of others opposite: with walls of 4
-/// to 7 spacings .37 at least, on single scans, rooms and facades .21 at most (wall_table.py).
+/// Points are the two sides of walls where so many of them are on thin ones: with walls of 4 to 7 spacings .67
+/// at least (wall_table.py), on depth frames and aerial scans .14 at most.
 constexpr double kWalled = 0.35;
 // A warning is due from here on, in steps of the first lattice and of the chosen one. Gaps between points are
 // narrower.
@@ -189,14 +189,15 @@ void set_figures(const LatticeSurvey& survey, int level, StartMesh& result) {
     result.radius = result.resolution * std::sqrt(static_cast<double>(level));
 }
 
-Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace>& places) {
+Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace>& places, Surveys& surveys) {
     Enclosure result;
     result.encloses_space = survey.chosen_region().encloses_space;
     result.sheet_share = sheet_share(survey.regions.front());
     result.widest_opening = survey.chosen_region().widest_opening;
     // Where the lattice shows no space, the points may lie on the two sides of walls too thin for it.
     const bool unclear = !result.encloses_space || result.sheet_share > kMostSheet;
-    result.walled = unclear && share_with_opposite_layer(places) > kWalled;
+    result.walled =
+        unclear && !places.empty() && share_on_thin_walls(places, surveys.surface()) > kWalled;
     result.encloses_space |= result.walled;
     return result;
 }
@@ -247,7 +248,7 @@ struct Shell::Examined {
 };
 
 Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress,
-             const CloudSurvey* survey) {
+             Surveys* surveys) {
     check(options);
     progress(0.0, "Start mesh: measuring the density of the cloud");
     auto examined = std::make_unique<Examined>(target, options, random);
@@ -256,12 +257,12 @@ Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& ran
 
     progress(0.2, "Start mesh: counting components and handles");
     ThreadTeam team(thread_count(options.threads));
-    std::optional<CloudSurvey> made;
-    if (survey == nullptr) survey = &made.emplace(points, options.threads);
-    const std::vector<LayerPlace> places = layer_places(*survey, team);
+    std::optional<Surveys> made;
+    if (surveys == nullptr) surveys = &made.emplace(points, options.threads);
+    const std::vector<LayerPlace> places = layer_places(surveys->points(), team);
     PartOf counting(progress, 0.2, 0.7);
     examined->survey = survey_lattices(points, places, box, options, counting);
-    examined->enclosure = enclosure_of(examined->survey, places);
+    examined->enclosure = enclosure_of(examined->survey, places, *surveys);
     examined_ = std::move(examined);
 }
 

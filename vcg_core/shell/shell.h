@@ -35,7 +35,7 @@
 
 namespace neuralmesh {
 
-struct CloudSurvey;
+class Surveys;
 
 /// Of closed models less than this share of the surface has no enclosed space beside it: up to .027, and from
 /// .048 on where a part is open or a thin wall. Chosen by open_table.py.
@@ -109,10 +109,10 @@ class Shell {
 public:
     /// Examines the lattices and keeps them, and a reference to \p target. Draws from \p random only if the
     /// target has faces. \p progress gets fractions up to 0.7 of both steps; its answer to stop is ignored.
-    /// \param survey of the points of a target without faces; nullptr: made here
+    /// \param surveys of the points of a target without faces; nullptr: made here
     /// \throws SettingError if an option is out of range
     Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress,
-          const CloudSurvey* survey = nullptr);
+          Surveys* surveys = nullptr);
     ~Shell();
     Shell(const Shell&) = delete;
     Shell& operator=(const Shell&) = delete;

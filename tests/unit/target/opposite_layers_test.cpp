@@ -20,7 +20,9 @@ double share_of(const shapes::Cloud& cloud) {
     std::vector<vcg::Point3f> points;
     for (const vcg::Point3d& p : cloud) points.push_back(vcg::Point3f::Construct(p));
     ThreadTeam team(1);
-    return share_with_opposite_layer(layer_places(CloudSurvey(points, 1), team));
+    Surveys surveys(points, 1);
+    const std::vector<LayerPlace> places = layer_places(surveys.points(), team);
+    return places.empty() ? 0 : share_on_thin_walls(places, surveys.surface());
 }
 
 /// A sphere of \p kPointsOfWall points and another one within it, \p spacings spacings of the points away.
@@ -48,6 +50,19 @@ TEST(OppositeLayers, OfOneLayerAreNone) {
     const double spacing = std::sqrt(4 * M_PI / kPointsOfWall);
     for (const double noise : {0.5, 1.0, 2.0})
         EXPECT_LT(share_of(shapes::sphere_cloud(kPointsOfWall, noise * spacing)), 0.2) << noise;
+}
+
+TEST(OppositeLayers, OfDepthsInStepsAreNone) {
+    // A slanting plane with noise, whose heights are rounded to multiples of three spacings. Of the places .42 and
+    // .49 have the next step above or below them.
+    Random random(1);
+    const double spacing = 1 / std::sqrt(kPointsOfWall), step = 3 * spacing;
+    for (const double noise : {2.0, 3.0}) {
+        shapes::Cloud cloud = shapes::plane_cloud(kPointsOfWall);
+        for (vcg::Point3d& p : cloud)
+            p[2] = step * std::round((0.1 * p[0] + noise * spacing * shapes::signed_unit(random)) / step);
+        EXPECT_LT(share_of(cloud), 0.05) << noise;
+    }
 }
 
 TEST(OppositeLayers, DoNotDependOnTheThreads) {
