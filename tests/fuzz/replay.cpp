@@ -2,8 +2,8 @@
 // Copyright the Neural Mesh authors
 
 // Main program of a fuzz target without libFuzzer: replays the inputs in text files, so that the corpus is a
-// test with any compiler. An input is a line in hexadecimal; '#' starts a comment. Without NEURALMESH_FULL in the
-// environment, every second input.
+// test with any compiler. An input is a line in hexadecimal; '#' starts a comment. Without NEURALMESH_FULL in
+// the environment, every second input.
 #include <cstdlib>
 #include <fstream>
 #include <iostream>

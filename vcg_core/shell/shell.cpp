@@ -62,8 +62,8 @@ constexpr int kWorthReducing = 2;
 /// may just get into a wall, and a mesh on all nodes has a dent, with 16 % of the faces turned (casting,
 /// walls of 3.4 spacings).
 constexpr double kMostOfCoarse = 1.0 / kSideVertices;
-/// Points are the two sides of walls where so many of them are on thin ones: with walls of 4 to 7 spacings .67
-/// at least (wall_table.py), on depth frames and aerial scans .14 at most.
+/// Points are the two sides of walls where so many of them are on thin ones: with walls of 4 to 7 spacings
+/// .67 at least (wall_table.py), on depth frames and aerial scans .14 at most.
 constexpr double kWalled = 0.35;
 // A warning is due from here on, in steps of the first lattice and of the chosen one. Gaps between points are
 // narrower.
@@ -196,8 +196,7 @@ Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace
     result.widest_opening = survey.chosen_region().widest_opening;
     // Where the lattice shows no space, the points may lie on the two sides of walls too thin for it.
     const bool unclear = !result.encloses_space || result.sheet_share > kMostSheet;
-    result.walled =
-        unclear && !places.empty() && share_on_thin_walls(places, surveys.surface()) > kWalled;
+    result.walled = unclear && !places.empty() && share_on_thin_walls(places, surveys.surface()) > kWalled;
     result.encloses_space |= result.walled;
     return result;
 }

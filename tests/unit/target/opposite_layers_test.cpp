@@ -53,8 +53,8 @@ TEST(OppositeLayers, OfOneLayerAreNone) {
 }
 
 TEST(OppositeLayers, OfDepthsInStepsAreNone) {
-    // A slanting plane with noise, whose heights are rounded to multiples of three spacings. Of the places .42 and
-    // .49 have the next step above or below them.
+    // A slanting plane with noise, whose heights are rounded to multiples of three spacings. Of the places
+    // .42 and .49 have the next step above or below them.
     Random random(1);
     const double spacing = 1 / std::sqrt(kPointsOfWall), step = 3 * spacing;
     for (const double noise : {2.0, 3.0}) {
