@@ -67,6 +67,15 @@ TEST(PointAreas, AreBounded) {
     EXPECT_LE(*most, 10001 * *least);
 }
 
+TEST(PointAreas, OfAFarEndAreAtMostAHundredTimesTheMedian) {
+    const auto areas = areas_of(in_float(shapes::uneven_sphere_cloud(400000, 1000)));
+    ASSERT_TRUE(areas.has_value());
+    std::vector<float> sorted = areas->of_run;
+    std::sort(sorted.begin(), sorted.end());
+    const double times = static_cast<double>(sorted.back() / sorted[sorted.size() / 2]);
+    EXPECT_NEAR(times, 100, 1);
+}
+
 TEST(PointAreas, HoldThePointsAndDoNotDependOnThreads) {
     const std::vector<vcg::Point3f> points = in_float(shapes::uneven_sphere_cloud(20000, 20));
     const auto one = areas_of(points, 1);
