@@ -237,6 +237,14 @@ bool encloses_more(const OpenStart& start, const Enclosure& shell) {
     return start.loops == 0 && !start.layers.two && !shell.encloses_space;
 }
 
+/// Whether the open start loses more than the closed one: points that it leaves out are lost, those around
+/// which nothing is enclosed are covered on both sides, which is half as bad. Views that do not quite meet
+/// look like clutter to the one, and like a sheet to the other.
+bool loses_more(const OpenStart& start, const Enclosure& shell) {
+    constexpr double kFew = 0.025;  // outliers and ragged boundaries
+    return shell.encloses_space && start.left_out > std::max(kFew, shell.sheet_share / 2);
+}
+
 /// Of those of a start mesh, an OpenStart or a StartMesh; the fit, if there is one, reduces it.
 template <class Start>
 int vertices_needed(const Start& start, const Settings& settings) {
@@ -253,7 +261,8 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& she
     try {
         OpenStart start = make_open_start(target, settings, survey, progress);
         warn_of_thin_walls(task, start.layers, shell.encloses_space ? kSidesMayCross : kOneSheetClosed);
-        const bool open = automatic && start.loops > 0 && !start.layers.two && !start.misses_surface &&
+        const bool whole = !start.misses_surface && !loses_more(start, shell);
+        const bool open = automatic && start.loops > 0 && !start.layers.two && whole &&
                           (target.has_faces() || may_be_open(shell, target, settings, start.radius)) &&
                           (settings.close_holes_up_to >= 0 || start.widest_loop > widest_closed(target));
         const bool fits = vertices_needed(start, settings) <= settings.target_vertices;

@@ -362,6 +362,8 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
             "points.");
     OpenStart result;
     result.misses_surface = misses_surface(surveys, out);
+    result.left_out =
+        static_cast<double>(std::count(out.begin(), out.end(), 1)) / static_cast<double>(out.size());
     fill_small_holes(sheet, options, result);
 
     progress(0.8, "Start mesh: reducing it");

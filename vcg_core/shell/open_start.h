@@ -80,6 +80,7 @@ struct OpenStart {
     /// More of the points whose surroundings show a surface were left out than chance and clutter account
     /// for: the mesh is not theirs. So are the narrow sides of a thin slab.
     bool misses_surface = false;
+    double left_out = 0;       ///< the share of the points that belong to nothing of the mesh
     LayerFigures layers;       ///< whether most of the points lie on the two sides of a thin wall
     /// 1 for each point of the cloud that is not to be learned; empty if there are none, or if the target has
     /// faces.

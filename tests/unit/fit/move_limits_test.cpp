@@ -160,7 +160,9 @@ TEST(MoveLimits, DoesNotMoveAVertexByNaN) {
     const PerVertex<Vector3> moved = MoveLimits(network, surface, team).bounded(u);
     EXPECT_EQ(moved[3], surface.positions[3]);
     for (const VertexId v : network.vertices())
-        if (v != 3) EXPECT_NE(moved[v], surface.positions[v]) << v;  // nor does it hold those beside it
+        if (v != 3) {  // nor does it hold those beside it
+            EXPECT_NE(moved[v], surface.positions[v]) << v;
+        }
 }
 
 // A flat box whose lid would move through its floor.
