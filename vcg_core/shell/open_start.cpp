@@ -283,6 +283,7 @@ IndexedMesh<float> indexed(const Network& network) {
 
 void set_outliers(std::vector<std::uint8_t> outliers, bool learn, OpenStart& result) {
     const auto ignored = static_cast<std::size_t>(std::count(outliers.begin(), outliers.end(), 1));
+    result.left_out = static_cast<double>(ignored) / static_cast<double>(outliers.size());
     if (ignored == 0) return;
     result.warnings.push_back(
         share_of_points(ignored, outliers.size()) +
@@ -362,8 +363,6 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
             "points.");
     OpenStart result;
     result.misses_surface = misses_surface(surveys, out);
-    result.left_out =
-        static_cast<double>(std::count(out.begin(), out.end(), 1)) / static_cast<double>(out.size());
     fill_small_holes(sheet, options, result);
 
     progress(0.8, "Start mesh: reducing it");

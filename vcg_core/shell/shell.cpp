@@ -196,7 +196,7 @@ Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace
     result.widest_opening = survey.chosen_region().widest_opening;
     // Where the lattice shows no space, the points may lie on the two sides of walls too thin for it.
     const bool unclear = !result.encloses_space || result.sheet_share > kMostSheet;
-    result.walled = unclear && !places.empty() && share_on_thin_walls(places, surveys.surface()) > kWalled;
+    result.walled = unclear && share_on_thin_walls(places, surveys) > kWalled;
     result.encloses_space |= result.walled;
     return result;
 }

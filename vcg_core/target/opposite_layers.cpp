@@ -102,14 +102,16 @@ std::vector<LayerPlace> layer_places(const CloudSurvey& survey, ThreadTeam& team
         });
 }
 
-double share_on_thin_walls(const std::vector<LayerPlace>& places, const SurfaceSurvey& survey) {
+double share_on_thin_walls(const std::vector<LayerPlace>& places, Surveys& surveys) {
+    if (places.empty()) return 0;
+    const SurfaceSurvey& survey = surveys.surface();
     const auto with = std::count_if(places.begin(), places.end(), [&](const LayerPlace& place) {
         if (!place.on_thin_wall) return false;
         const SurveyedPlace& surface = survey.at(place.position);
         const bool above = place.above > 0 && (place.below == 0 || place.above < place.below);
         return surface.radius < (above ? place.above : place.below) || surface.two_layers();
     });
-    return places.empty() ? 0 : static_cast<double>(with) / static_cast<double>(places.size());
+    return static_cast<double>(with) / static_cast<double>(places.size());
 }
 
 }  // namespace neuralmesh

@@ -32,8 +32,9 @@ struct LayerPlace {
 /// Does not depend on the number of threads. O(places x 2,000 points).
 std::vector<LayerPlace> layer_places(const CloudSurvey& survey, ThreadTeam& team);
 
-/// The share of \p places on thin walls. A layer within the radius on which \p survey finds a surface is
+/// The share of \p places on thin walls. A layer within the radius on which the survey finds a surface is
 /// noise of that surface, such as a step of a depth sensor, unless the points there lie in two layers alone.
-double share_on_thin_walls(const std::vector<LayerPlace>& places, const SurfaceSurvey& survey);
+/// \p surveys: of the same cloud; that of the surface is made only if there are places.
+double share_on_thin_walls(const std::vector<LayerPlace>& places, Surveys& surveys);
 
 }  // namespace neuralmesh

@@ -21,8 +21,7 @@ double share_of(const shapes::Cloud& cloud) {
     for (const vcg::Point3d& p : cloud) points.push_back(vcg::Point3f::Construct(p));
     ThreadTeam team(1);
     Surveys surveys(points, 1);
-    const std::vector<LayerPlace> places = layer_places(surveys.points(), team);
-    return places.empty() ? 0 : share_on_thin_walls(places, surveys.surface());
+    return share_on_thin_walls(layer_places(surveys.points(), team), surveys);
 }
 
 /// A sphere of \p kPointsOfWall points and another one within it, \p spacings spacings of the points away.
