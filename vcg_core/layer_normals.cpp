@@ -26,14 +26,14 @@ void report_open_parts(int parts, int oriented, std::vector<std::string>& notes,
 
 }  // namespace
 
-std::string why_normals_do_not_serve(const TargetSpace& target, const CloudSurvey& survey) {
-    const NormalSurvey found = survey_of_normals(survey, target.normals());
+std::string why_normals_do_not_serve(const TargetSpace& target, Surveys& surveys) {
+    const NormalSurvey found = survey_of_normals(surveys, target.normals());
     if (found.places == 0)
-        return "The normals of the layer cannot be compared with the points, which are flat nowhere, so they "
-               "are not used.";
+        return "The normals of the layer cannot be compared with the points, which show a surface nowhere, "
+               "so they are not used.";
     if (!found.fits())
         return "The normals of the layer do not fit the points (" + percent(found.share_fitting()) +
-               " within 30 degrees of the local plane), so they are not used.";
+               " within 30 degrees of the local surface), so they are not used.";
     if (!found.has_sides())
         return "The normals of the layer point to either side of the surface (" +
                percent(found.share_opposite()) + " opposite to those of neighbours), so they are not used.";

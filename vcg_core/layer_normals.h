@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/target/cloud_survey.h"
+#include "vcg_core/target/surface_survey.h"
 #include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 
 /// Empty if the normals of \p target are those of its surface, to one side of it or, by parts, to both; else
-/// a sentence that says why they are not used. \p survey is that of target.positions(). \pre
+/// a sentence that says why they are not used. \p surveys are those of target.positions(). \pre
 /// target.has_normals()
-std::string why_normals_do_not_serve(const TargetSpace& target, const CloudSurvey& survey);
+std::string why_normals_do_not_serve(const TargetSpace& target, Surveys& surveys);
 
 /// Adds to \p notes what the normals of \p target, which serve, were used for, and to \p warnings where they
 /// contradict themselves or the closed surface. \param start the oriented start mesh \param parts_oriented

@@ -16,8 +16,6 @@
 #include "vcg_core/shell/given_start.h"
 #include "vcg_core/shell/open_start.h"
 #include "vcg_core/shell/shell.h"
-#include "vcg_core/target/cloud_noise.h"
-#include "vcg_core/target/local_quadric.h"
 #include "vcg_core/target/outlier_removal.h"
 
 namespace neuralmesh {
@@ -83,16 +81,12 @@ bool leave_out(LearningTask& task, const std::vector<std::uint8_t>& out) {
 class Survey {
 public:
     explicit Survey(int threads) : threads_(threads) {}
-    const CloudSurvey& of(const std::vector<vcg::Point3f>& points) {
+    Surveys& of(const std::vector<vcg::Point3f>& points) {
         if (!surveys_ || surveys_->points().cloud.size() != points.size()) surveys_.emplace(points, threads_);
-        return surveys_->points();
+        return *surveys_;
     }
     /// Of a target without faces, whose points are its surface; else nothing.
-    Surveys* of(const TargetSpace& target) {
-        if (target.has_faces()) return nullptr;
-        of(target.positions());
-        return &*surveys_;
-    }
+    Surveys* of(const TargetSpace& target) { return target.has_faces() ? nullptr : &of(target.positions()); }
 
 private:
     int threads_;
@@ -112,7 +106,8 @@ Shell make_shell(const TargetSpace& target, const Settings& settings, Survey& su
 }
 
 void remove_outliers(LearningTask& task, Survey& survey, int threads) {
-    const std::vector<std::uint8_t> out = find_outliers(survey.of(task.target().positions()), threads);
+    const std::vector<std::uint8_t> out =
+        find_outliers(survey.of(task.target().positions()).points(), threads);
     if (out.empty()) return;
     const auto count = static_cast<std::size_t>(std::count(out.begin(), out.end(), 1));
     const std::size_t all = out.size();
@@ -139,15 +134,13 @@ LearningTask points_to_learn(const TargetSpace& given, const Settings& settings,
 void measure_noise(LearningTask& task, Survey& survey, const Settings& settings) {
     const std::vector<vcg::Point3f>& points = task.target().positions();
     const int vertices = settings.target_vertices;
-    task.noise = noise_in_edges(survey.of(points), static_cast<double>(points.size()) / vertices);
+    const SurfaceSurvey& surface = survey.of(points).surface();
+    task.noise = surface.noise_in_edges(static_cast<double>(points.size()) / vertices);
     // Closed surfaces are learned from even samples mostly, which one number describes. With the noise of
     // each place feline would have 1.15 times the error at .1 % of the diagonal (50,000 points, 2,000
     // vertices).
     const bool open = task.network.boundary_loop_count() > 0;
-    if (!open || points.size() < static_cast<std::size_t>(LocalQuadric::kLeastPoints) ||
-        task.target().is_exact())
-        return;
-    const SurfaceSurvey& surface = survey.of(task.target())->surface();
+    if (!open || task.target().is_exact()) return;
     if (surface.clutter() < 1) task.noise_by_place.emplace(surface);
 }
 
@@ -161,7 +154,7 @@ bool normals_serve(LearningTask& task, Survey& survey, const Settings& settings)
 
 /// Gives the points weights by which signals are even over the surface.
 void weigh_points(LearningTask& task, Survey& survey) {
-    std::optional<TargetSpace> even = task.target().evenly(survey.of(task.target().positions()));
+    std::optional<TargetSpace> even = task.target().evenly(survey.of(task.target().positions()).points());
     if (even) task.cleaned = std::move(even);
 }
 

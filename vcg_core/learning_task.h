@@ -36,8 +36,8 @@ struct LearningTask {
     int landing_signals = 0;  ///< per vertex, before growth, to bring a shell down to the points
     /// False for a sheet that is closed: its start mesh has two layers with nothing between them.
     bool encloses_space = true;
-    /// Noise of the points in mean edges of the mesh asked for (cloud_noise.h). Infinite for layers with
-    /// faces, where it is not known.
+    /// Noise of the points in mean edges of the mesh asked for (SurfaceSurvey::noise_in_edges()). Infinite
+    /// for layers with faces, where it is not known.
     double noise = std::numeric_limits<double>::infinity();
     /// Of target(). Nothing if the points are exact, too few, or show no surface anywhere.
     std::optional<NoiseByPlace> noise_by_place;

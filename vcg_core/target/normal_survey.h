@@ -7,16 +7,15 @@
 #include <vector>
 
 #include "vcg_core/base/packed_normal.h"
-#include "vcg_core/target/cloud_survey.h"
+#include "vcg_core/target/surface_survey.h"
 
 namespace neuralmesh {
 
-/// What about 1,000 points of a cloud and their neighbours say about its normals.
+/// What the surveyed places of a cloud and their neighbours say about its normals.
 struct NormalSurvey {
-    int places = 0;  ///< points with a normal around which the cloud is flat
-    int fitting =
-        0;          ///< of them those whose normal, to either side, is within 30 degrees of that of the plane
-    int pairs = 0;  ///< of neighbours on the same side of the surface whose normals fit
+    int places = 0;    ///< with a normal, where the points show a surface
+    int fitting = 0;   ///< of them those whose normal, to either side, is within 30 degrees of the surface's
+    int pairs = 0;     ///< of neighbours on the same side of the surface whose normals fit
     int opposite = 0;  ///< of them those whose normals point to different sides
 
     /// Of the places, those whose normals fit; 0 if there are none.
@@ -28,9 +27,7 @@ struct NormalSurvey {
     bool has_sides() const;
 };
 
-/// \p normals are those of the points that \p survey was made of, kNoNormal where there is none. The plane is
-/// that of 12 neighbours or, where noise makes these a cloud without a plane, of up to 108.
-/// O(places x neighbours^2): some 10 ms.
-NormalSurvey survey_of_normals(const CloudSurvey& survey, const std::vector<PackedNormal>& normals);
+/// \p normals are those of the points that \p surveys are of, kNoNormal where there is none. O(places log n)
+NormalSurvey survey_of_normals(Surveys& surveys, const std::vector<PackedNormal>& normals);
 
 }  // namespace neuralmesh

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vcg_core/base/even_mesh.h"
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/target/local_quadric.h"
@@ -134,8 +135,9 @@ SurfaceSurvey::SurfaceSurvey(const CloudSurvey& survey, ThreadTeam& team)
     const auto place = [&](int i) -> SurveyedPlace& { return places_[static_cast<std::size_t>(i)]; };
     parallel_for(count, kAtATime, team, [&](int i) {
         std::vector<NearestPoints::Neighbour> near;
-        place(i).position = index_.point(static_cast<Place>(i));
-        place(i).spacing = spacing_at(cloud, chosen[index_.index(static_cast<Place>(i))], near);
+        place(i).place = chosen[index_.index(static_cast<Place>(i))];
+        place(i).position = cloud.point(place(i).place);
+        place(i).spacing = spacing_at(cloud, place(i).place, near);
     });
     sparse_radius_ = radius_of_sparse_part(places_);
     const std::vector<std::vector<Place>> around = places_around(index_, places_, team);
@@ -169,6 +171,15 @@ LayerFigures SurfaceSurvey::layers() const {
     const double sqrt_two = std::sqrt(2.0);  // together the layers are twice as dense as one
     return {2 * two > orderly, 2 * median_of(&SurveyedPlace::spread),
             sqrt_two * median_of(&SurveyedPlace::spacing)};
+}
+
+double SurfaceSurvey::noise_in_edges(double points_per_vertex) const {
+    std::vector<float> in_spacings;
+    for (const SurveyedPlace& p : places_)
+        if (!p.clutter && !p.two_layers() && p.spacing > 0) in_spacings.push_back(p.deviation / p.spacing);
+    if (in_spacings.empty()) return 0;
+    const double spacings_per_edge = std::sqrt(points_per_vertex / kAreaPerVertex);
+    return static_cast<double>(median(std::move(in_spacings))) / spacings_per_edge;
 }
 
 }  // namespace neuralmesh

@@ -27,6 +27,7 @@ constexpr float kSupport = 1.6F, kGrowth = 1.35F;
 
 /// One of the places that were looked at. Lengths in the frame of the points.
 struct SurveyedPlace {
+    NearestPoints::Place place = 0;  ///< in the cloud
     vcg::Point3f position;
     vcg::Point3f normal;  ///< of length 1, to either side
     float spacing = 0;    ///< between neighbouring points
@@ -55,7 +56,7 @@ struct LayerFigures {
 /// A place for some 60 points, at most 4,000 and at least 500 (or all).
 class SurfaceSurvey {
 public:
-    /// Of the points of \p cloud, of which there must be LocalQuadric::kLeastPoints. Does not depend on the
+    /// Of the points of \p cloud. Fewer than LocalQuadric::kLeastPoints are clutter. Does not depend on the
     /// number of threads. O(places x neighbours): 0.2 s.
     SurfaceSurvey(const CloudSurvey& cloud, ThreadTeam& team);
 
@@ -70,6 +71,10 @@ public:
     /// The radius, by the spacing alone, that a quarter of the surface exceeds: its sparsest part.
     double sparse_radius() const { return static_cast<double>(sparse_radius_); }
     LayerFigures layers() const;
+    /// Median of the deviations, in edges of an even mesh with so many points for each vertex: 0.1 means that
+    /// the points lie a tenth of an edge off the surface. Two layers are no noise. 0 if no place shows a
+    /// surface. O(places)
+    double noise_in_edges(double points_per_vertex) const;
 
 private:
     double share(bool SurveyedPlace::*what) const;

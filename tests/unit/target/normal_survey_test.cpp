@@ -16,14 +16,15 @@ using namespace normal_clouds;
 NormalSurvey survey_of(const Cloud& cloud, const std::vector<PackedNormal>& normals) {
     std::vector<vcg::Point3f> points;
     for (const vcg::Point3d& p : cloud) points.push_back(vcg::Point3f::Construct(p));
-    return survey_of_normals(CloudSurvey(points, 1), normals);
+    Surveys surveys(points, 1);
+    return survey_of_normals(surveys, normals);
 }
 
 TEST(NormalSurvey, AcceptsRightNormalsOfEitherSide) {
     const Cloud cloud = shapes::sphere_cloud(20000);
     for (const auto& normals : {outward(cloud), inward(cloud)}) {
         const NormalSurvey found = survey_of(cloud, normals);
-        EXPECT_GT(found.places, 900);
+        EXPECT_GT(found.places, 480);
         EXPECT_GT(found.share_fitting(), 0.99);
         EXPECT_LT(found.share_opposite(), 0.001);
         EXPECT_TRUE(found.fits() && found.has_sides());
@@ -45,7 +46,7 @@ TEST(NormalSurvey, AcceptsSomeWrongNormalsAndSomeMissing) {
     std::vector<PackedNormal> normals = flipped(outward(cloud), 10);
     for (std::size_t i = 0; i < normals.size(); i += 3) normals[i] = kNoNormal;
     const NormalSurvey found = survey_of(cloud, normals);
-    EXPECT_LT(found.places, 750);
+    EXPECT_LT(found.places, 375);
     EXPECT_TRUE(found.fits() && found.has_sides());
     EXPECT_NEAR(found.share_opposite(), 2 * 0.1 * 0.9, 0.03);
 }

@@ -132,5 +132,46 @@ TEST(SurfaceSurvey, DoesNotDependOnThreads) {
     }
 }
 
+double noise_in_edges(const shapes::Cloud& cloud, int vertices) {
+    std::vector<Point3f> points;
+    for (const vcg::Point3d& p : cloud) points.push_back(Point3f::Construct(p));
+    return survey_of(points).noise_in_edges(static_cast<double>(points.size()) / vertices);
+}
+
+constexpr int kPointsOfSphere = 50000;
+double edge_of_sphere(int vertices) { return std::sqrt(4 * M_PI / vertices / (std::sqrt(3.0) / 2)); }
+
+TEST(NoiseInEdges, IsTheStandardDeviation) {
+    for (const int vertices : {1000, 4000})
+        for (const double share : {0.025, 0.05, 0.1}) {
+            // In a ball, the deviation along an axis is the radius over the root of five.
+            const double ball = share * edge_of_sphere(vertices) * std::sqrt(5.0);
+            const double found = noise_in_edges(shapes::sphere_cloud(kPointsOfSphere, ball), vertices);
+            EXPECT_NEAR(found, share, 0.2 * share) << vertices;
+        }
+}
+
+TEST(NoiseInEdges, IsSmallForACleanCurvedSurface) {
+    for (const int vertices : {500, 2000, 5000}) {
+        EXPECT_LT(noise_in_edges(shapes::sphere_cloud(kPointsOfSphere), vertices), 0.03) << vertices;
+        EXPECT_LT(noise_in_edges(shapes::plane_cloud(kPointsOfSphere), vertices), 1e-5) << vertices;
+    }
+}
+
+TEST(NoiseInEdges, OfTwoLayersIsNone) {
+    // The two sides of a wall, three spacings thick.
+    const double spacing = std::sqrt(4 * M_PI / kPointsOfSphere);
+    shapes::Cloud wall = shapes::sphere_cloud(kPointsOfSphere);
+    for (const vcg::Point3d& p : shapes::sphere_cloud(kPointsOfSphere))
+        wall.emplace_back(vcg::Point3d(-p[1], p[2], p[0]) * (1 - 3 * spacing));
+    EXPECT_LT(noise_in_edges(wall, 5000), 0.03);
+}
+
+TEST(NoiseInEdges, IsFiniteForPointsWithoutASurface) {
+    EXPECT_EQ(noise_in_edges(shapes::Cloud(100, vcg::Point3d(1, 2, 3)), 10), 0);
+    EXPECT_EQ(noise_in_edges(shapes::sphere_cloud(10), 5), 0);
+    EXPECT_TRUE(std::isfinite(noise_in_edges(shapes::sphere_cloud(20, 0.5), 5)));
+}
+
 }  // namespace
 }  // namespace neuralmesh
