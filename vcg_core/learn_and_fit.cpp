@@ -81,12 +81,6 @@ bool reduces_by_volume(const LearningTask& task, int final_vertices) {
     return task.noise < kMostNoise && final_vertices < kFewNoisy && points >= kPointsPerLearned * learned;
 }
 
-/// The same for calm points if the fit reduces by costs.
-int calm_surplus(int final_vertices) {
-    constexpr int kMost = 10000;
-    return std::min(3 * final_vertices - 1000, kMost);
-}
-
 /// How many vertices the network learns and keeps, and how the fit removes the others; see learn_and_fit().
 struct Plan {
     int carried = 0;         ///< vertices that learning and fit place by the points
@@ -106,10 +100,7 @@ int vertices_to_grow(const LearningTask& task, const Settings& settings, const P
     // Growth removes the vertices that the landing leaves without signals, far off.
     const int least = start > carried ? start + start / 4 : start;
     int surplus = surplus_vertices(settings, carried);
-    if (plan.by_volume)
-        surplus = std::max(surplus, surplus_for_volume(task, carried));
-    else if (plan.calm)
-        surplus = std::max(surplus, calm_surplus(carried));
+    if (plan.by_volume) surplus = std::max(surplus, surplus_for_volume(task, carried));
     const int grow_to = std::max(least, carried + surplus);
     if (task.target().has_faces()) return grow_to;
     const std::size_t points_per_vertex = plan.by_volume || plan.calm ? 3 : 10;
@@ -199,9 +190,10 @@ LearnedNetwork learned_by(const Learner& learner, StopReason reason) {
     return result;
 }
 
-/// \param last no other run follows, so this one must come down to the vertices asked for
-LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, const Plan& plan, bool last,
-                            MonotoneProgress& progress) {
+}  // namespace
+
+LearnedNetwork learn_and_fit(const LearningTask& task, const Settings& settings, MonotoneProgress& progress) {
+    const Plan plan = plan_for(task, settings);
     PartOf learning(progress, kPrepared, settings.fit_to_points ? kLearned : 1);
     PartOf fitting(progress, kLearned, 1);
     const Thickening thickening(task);
@@ -216,7 +208,7 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
         report = fit(result.network, task, settings, plan, fitting);
     if (progress.stopped()) result.stop_reason = StopReason::cancelled;
     // The fit stops where the topology leaves only collapses that spoil the shape.
-    if ((last || progress.stopped()) && result.network.vertex_count() > settings.target_vertices)
+    if (result.network.vertex_count() > settings.target_vertices)
         simplify(result.network, settings.target_vertices);
     result.network.orient_outward();
     const bool moved = report.improved || report.inserted > 0;
@@ -225,23 +217,6 @@ LearnedNetwork grow_and_fit(const LearningTask& task, const Settings& settings, 
                                   moved ? report.sources : PerVertex<VertexId>(), settings);
     if (plan.carried < settings.target_vertices) result.carried = static_cast<int>(carried_by_points(task));
     return result;
-}
-
-}  // namespace
-
-LearnedNetwork learn_and_fit(const LearningTask& task, const Settings& settings, MonotoneProgress& progress) {
-    Plan plan = plan_for(task, settings);
-    const int least = std::max(plan.carried, task.network.vertex_count());
-    LearnedNetwork first = grow_and_fit(task, settings, plan, plan.grow_to == least, progress);
-    const bool stalled = first.forced || first.network.vertex_count() > settings.target_vertices;
-    if (!stalled || plan.grow_to == least || progress.stopped()) return first;
-
-    plan.grow_to = least;
-    LearnedNetwork second = grow_and_fit(task, settings, plan, true, progress);
-    second.signals += first.signals;
-    second.splits += first.splits;
-    second.collapses += first.collapses;
-    return second;
 }
 
 LearnerOptions learner_options_from(const Settings& settings) {

@@ -27,7 +27,6 @@ struct LearnedNetwork {
     /// Vertices that the points carry, if these are less than settings.target_vertices; else 0.
     int carried = 0;
     int topology_changes = 0;  ///< with settings.learn_topology: places where membranes were given up
-    /// Of all learning, including growth whose result was discarded.
     long long signals = 0;
     long long splits = 0;
     long long collapses = 0;
@@ -40,8 +39,7 @@ struct LearnedNetwork {
 /// the edges of the mesh, these are 4,000 to 10,000 more, and the fit reduces them by the shape of the mesh;
 /// below 2,000 vertices each split then takes half of settings.signals_per_split. Else they are up to four
 /// times as many for small targets and no more from a target of 5,000 on, and the fit removes the vertices
-/// whose removal costs least. If that growth stalls, its result is discarded, and the network grows a second
-/// time, to settings.target_vertices. On a closed surface whose noise exceeds .14 edges each split takes half
+/// whose removal costs least. On a closed surface whose noise exceeds .14 edges each split takes half
 /// the signals, too, because a network that learns for longer follows the noise.
 ///
 /// Where there are fewer than two points per vertex asked for, the network learns as many vertices as half

@@ -19,7 +19,6 @@ namespace neuralmesh {
 struct Report {
     int vertices = 0;
     int faces = 0;
-    /// Of all learning, including growth whose result was discarded.
     long long signals = 0;
     long long splits = 0;
     long long collapses = 0;
