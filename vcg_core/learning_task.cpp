@@ -12,7 +12,7 @@
 
 #include "vcg_core/base/text.h"
 #include "vcg_core/layer_normals.h"
-#include "vcg_core/shell/face_boundary.h"
+#include "vcg_core/open_or_closed.h"
 #include "vcg_core/shell/given_start.h"
 #include "vcg_core/shell/open_start.h"
 #include "vcg_core/shell/shell.h"
@@ -36,13 +36,6 @@ constexpr int kMostPerFinal = 8, kMostStartVertices = 50000;
 /// stood out of its points by 2 % of the diagonal.
 constexpr double kStartShare = 0.5;
 constexpr double kShellMade = 0.6;  // of the progress
-/// Openings of closed models (places without points on large faces, cavities) are narrower than this share of
-/// the diagonal, those of scans and cut models wider. Chosen by open_table.py.
-constexpr double kWidestClosed = 0.066;
-/// Sparse points leave openings, and places that enclose nothing, in closed surfaces, too: openings as wide
-/// as 2.3 radii and a sheet share of 4.4 times the radius were found with 500 to 15,000 points of five
-/// closed models. Of the same models cut by a plane one of the two is above these bounds.
-constexpr double kOpeningRadii = 3, kSheetRadii = 5;
 /// The sides of walls thicker than this, in spacings of the points, are told apart (opposite_layers.h).
 constexpr double kToldSpacings = 4;
 
@@ -168,12 +161,6 @@ void remove_groups_without_component(LearningTask& task, const std::vector<std::
         for (vcg::Point3f& p : *positions) p = task.target().frame().inside(before.outside(p));
 }
 
-/// The widest hole of the open start mesh that is closed. That of a layer with faces opens what is wider in
-/// its faces; points drawn from them leave narrower holes.
-double widest_closed(const TargetSpace& target) {
-    return target.has_faces() ? kWidestClosed / 2 : kWidestClosed;
-}
-
 OpenStart make_open_start(const TargetSpace& target, const Settings& settings, Survey& survey,
                           Progress& progress) {
     OpenStartOptions options;
@@ -188,19 +175,6 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, S
     Random random(stream_seed(settings.random_seed, Stream::shell));
     options.threads = settings.threads;
     return open_start(target, options, random, progress, survey.of(target));
-}
-
-/// Whether the cloud may be open: the shell closed wide openings, or a part of it has no space inside, and is
-/// no thin wall. A layer with faces is open where they end.
-/// \param radius on which the points are a surface, 0 if it is not known yet
-bool may_be_open(const Enclosure& shell, const TargetSpace& target, const Settings& settings, double radius) {
-    const bool chosen = settings.close_holes_up_to >= 0;
-    const double asked = settings.close_holes_up_to / target.frame().diagonal;
-    if (target.has_faces()) return widest_face_boundary(target) > (chosen ? asked : kWidestClosed);
-    const double widest = chosen ? asked : std::max(kWidestClosed, kOpeningRadii * radius);
-    if (shell.walled) return false;
-    return !shell.encloses_space || 2 * shell.widest_opening > widest ||
-           shell.sheet_share > std::max(kMostSheet, kSheetRadii * radius);
 }
 
 /// What becomes of walls whose sides cannot be told apart.
@@ -222,20 +196,6 @@ void warn_of_thin_walls(LearningTask& task, const LayerFigures& layers, const ch
         << " For both sides take points a quarter of the thickness from each other; for one, the points of one "
            "side only.";
     task.warnings.push_back(text.str());
-}
-
-/// Whether the start mesh of one layer is closed where the shell found no space: balls that do not get
-/// through the widest gap between the points are as wide as the walls there.
-bool encloses_more(const OpenStart& start, const Enclosure& shell) {
-    return start.loops == 0 && !start.layers.two && !shell.encloses_space;
-}
-
-/// Whether the open start loses more than the closed one: points that it leaves out are lost, those around
-/// which nothing is enclosed are covered on both sides, which is half as bad. Views that do not quite meet
-/// look like clutter to the one, and like a sheet to the other.
-bool loses_more(const OpenStart& start, const Enclosure& shell) {
-    constexpr double kFew = 0.025;  // outliers and ragged boundaries
-    return shell.encloses_space && start.left_out > std::max(kFew, shell.sheet_share / 2);
 }
 
 /// Of those of a start mesh, an OpenStart or a StartMesh; the fit, if there is one, reduces it.

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Whether the surface of a cloud is open or closed, by what its shell and its open start mesh say.
+#pragma once
+
+#include "vcg_core/settings.h"
+#include "vcg_core/shell/open_start.h"
+#include "vcg_core/shell/shell.h"
+#include "vcg_core/target/target_space.h"
+
+namespace neuralmesh {
+
+/// The widest hole of the open start mesh that is closed. That of a layer with faces opens what is wider in
+/// its faces; points drawn from them leave narrower holes.
+double widest_closed(const TargetSpace& target);
+
+/// Whether the cloud may be open: the shell closed wide openings, or a part of it has no space inside, and is
+/// no thin wall. A layer with faces is open where they end.
+/// \param radius on which the points are a surface, 0 if it is not known yet
+bool may_be_open(const Enclosure& shell, const TargetSpace& target, const Settings& settings, double radius);
+
+/// Whether the start mesh of one layer is closed where the shell found no space: balls that do not get
+/// through the widest gap between the points are as wide as the walls there.
+bool encloses_more(const OpenStart& start, const Enclosure& shell);
+
+/// Whether the open start loses more than the closed one: points that it leaves out are lost, those around
+/// which nothing is enclosed are covered on both sides, which is half as bad. Views that do not quite meet
+/// look like clutter to the one, and like a sheet to the other.
+bool loses_more(const OpenStart& start, const Enclosure& shell);
+
+}  // namespace neuralmesh
