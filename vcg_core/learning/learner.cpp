@@ -165,11 +165,14 @@ bool Learner::vertex_split() {
     return network().vertex_count() < state_.options.grow_to && neuralmesh::vertex_split(state_);
 }
 
-/// Whether the network has not grown since the last call, and most splits were refused.
+/// Whether the network has grown by a tenth or less of the splits that were due since the last call: the
+/// others were refused for the noise, or collapses took their vertices away.
 bool Learner::is_saturated() {
-    const Growth now{network().vertex_count(), state_.splits, state_.splits_refused};
+    constexpr std::int64_t kLeastGrowth = 10;
+    const Growth now{network().vertex_count(), state_.splits + state_.splits_refused};
     const Growth last = std::exchange(growth_, now);
-    return now.vertices <= last.vertices && now.refused - last.refused > now.splits - last.splits;
+    return state_.options.noise != nullptr &&
+           kLeastGrowth * (now.vertices - last.vertices) <= now.due - last.due;
 }
 
 int Learner::half_edge_collapse() {

@@ -124,7 +124,7 @@ private:
     /// At the last call of is_saturated().
     struct Growth {
         int vertices = 0;
-        std::int64_t splits = 0, refused = 0;
+        std::int64_t due = 0;  ///< splits, done or refused
     };
     Growth growth_;
     std::int64_t last_report_ = 0;
