@@ -169,8 +169,7 @@ void Fitter::examine_layers(const Surface& surface, const PointsByFace& points, 
     layering_ = 0;
     bending_error_ = 0;
     stiff_rounds_ = 0;
-    // The noise of each place tells them from bends, if it is known.
-    if (excludes_layers_ || noise_ != nullptr) return;
+    if (excludes_layers_) return;
     const float points_per_vertex = points.per_vertex(network_.vertex_count());
     if (points_per_vertex < kFewPerVertex) return;
     const PerVertex<float> variances = examine_variances(surface, points);
@@ -179,8 +178,9 @@ void Fitter::examine_layers(const Surface& surface, const PointsByFace& points, 
     const float places = std::accumulate(local.begin(), local.end(), 0.0F);
     const float least_share = lags ? kLayeredShareOfLagging : kLayeredShare;
     // Fewer vertices spread the points more widely, at bends as well: what the first surface, which has the
-    // most, does not show is no layer.
-    layered_places_ = layered_places_ && places > least_share * static_cast<float>(network_.vertex_count());
+    // most, does not show is no layer. On scans of buildings, which are open, niches look like layers.
+    layered_places_ = layered_places_ && !surface.has_boundary() &&
+                      places > least_share * static_cast<float>(network_.vertex_count());
     layered_ = layering_ > 0 || layered_places_;
     if (!layered_) return;
     constexpr double kEdgesPerVertex = 3;
@@ -255,9 +255,12 @@ VertexNoise Fitter::noise_around(const Surface& surface, const PointsByFace& poi
         const float per_variance = 1 / (gap * gap * points.per_vertex(network_.vertex_count()));
         noise = {variances_, variances_};
         for (float& stiffness : noise.stiffness) stiffness *= per_variance;
-    } else if (layered_) {
-        noise.stiffness = stiffness_by(examine_variances(surface, points), surface, points);
     }
+    if (!layered_) return noise;
+    const PerVertex<float> of_layers = stiffness_by(examine_variances(surface, points), surface, points);
+    noise.stiffness.resize(of_layers.size(), 0);
+    for (VertexId v = 0; v < of_layers.size(); ++v)
+        noise.stiffness[v] = std::max(noise.stiffness[v], of_layers[v]);
     return noise;
 }
 

@@ -70,4 +70,28 @@ private:
     int vertices_at_collapse_;
 };
 
+/// Tells when a network grows no more though splits are due. The others are refused for the noise, or
+/// collapses take their vertices away: at noisy places vertices are split, win little and go, over and over.
+class Saturation {
+public:
+    /// \param vertices after the collapses that end a period \param due splits so far, done or refused
+    /// \return whether the network has grown by a tenth or less of the splits that were due in each of the
+    /// last periods. One is not enough: at first the vertices of the start mesh go that are not needed where
+    /// they are.
+    bool reached(int vertices, std::int64_t due) {
+        constexpr std::int64_t kLeastGrowth = 10;
+        constexpr int kPeriods = 4;
+        const bool grows = kLeastGrowth * (vertices - vertices_) > due - due_;
+        vertices_ = vertices;
+        due_ = due;
+        periods_ = grows ? 0 : periods_ + 1;
+        return periods_ >= kPeriods;
+    }
+
+private:
+    int vertices_ = 0;  ///< at the end of the last period
+    std::int64_t due_ = 0;
+    int periods_ = 0;  ///< without growth
+};
+
 }  // namespace neuralmesh

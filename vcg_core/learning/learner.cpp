@@ -98,7 +98,9 @@ StopReason Learner::grow(Progress& progress) {
 
         if (!forced_ && schedule_.stalled(signals())) force_growth();
         if (schedule_.exhausted(signals())) return StopReason::cut_short;
-        if (collapses && is_saturated()) {
+        if (collapses &&
+            saturation_.reached(network().vertex_count(), state_.splits + state_.splits_refused) &&
+            state_.options.noise != nullptr) {
             const bool stop =
                 state_.options.learn_topology && !stages.over() && !learn_topology(true, standing);
             if (stop) return StopReason::cancelled;
@@ -163,16 +165,6 @@ int Learner::batch_size() const {
 
 bool Learner::vertex_split() {
     return network().vertex_count() < state_.options.grow_to && neuralmesh::vertex_split(state_);
-}
-
-/// Whether the network has grown by a tenth or less of the splits that were due since the last call: the
-/// others were refused for the noise, or collapses took their vertices away.
-bool Learner::is_saturated() {
-    constexpr std::int64_t kLeastGrowth = 10;
-    const Growth now{network().vertex_count(), state_.splits + state_.splits_refused};
-    const Growth last = std::exchange(growth_, now);
-    return state_.options.noise != nullptr &&
-           kLeastGrowth * (now.vertices - last.vertices) <= now.due - last.due;
 }
 
 int Learner::half_edge_collapse() {

@@ -102,7 +102,6 @@ private:
     template <class AfterSignal>
     void learn_batch(int count, const AfterSignal& after_signal);
     StopReason grow(Progress& progress);
-    bool is_saturated();
     void force_growth();
     bool report_due();
     bool report(const char* doing, double fraction, Progress& progress) const;
@@ -121,12 +120,7 @@ private:
     BasicStepBatch batch_;
     BatchLimit batch_limit_;
     MemoryOrder memory_order_;
-    /// At the last call of is_saturated().
-    struct Growth {
-        int vertices = 0;
-        std::int64_t due = 0;  ///< splits, done or refused
-    };
-    Growth growth_;
+    Saturation saturation_;
     std::int64_t last_report_ = 0;
     Random topology_random_;
     int topology_changes_ = 0;

@@ -77,12 +77,6 @@ TEST(RawScans, ADepthFrameIsOneLayerThatFacesTheCamera) {
     }
 }
 
-TEST(RawScans, GrowthEndsWhereCollapsesUndoWhatNoiseDraws) {
-    const NeuralMesh mesh = learn(sensors::depth_frame(200), 12000);
-    EXPECT_FALSE(soundness::has_warning(mesh, "Growth stalled"));
-    EXPECT_LT(mesh.report.signals, 350000);  // 530,000 if only refused splits end it
-}
-
 TEST(RawScans, TreesAreLeftOutAndTheGroundIsOneSheet) {
     const Cloud cloud = sensors::aerial_scan(40000, 30);
     const NeuralMesh mesh = learn(cloud, 3000);
