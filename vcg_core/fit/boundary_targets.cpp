@@ -33,15 +33,6 @@ constexpr float kAside = 0.5F;
 /// Cosine of the angle between an edge's face and faces nearby beyond which their points are not compared.
 constexpr float kBent = 0.3F;
 
-struct Density {
-    float points = 0;
-    float area = 0;
-    void operator+=(const Density& other) {
-        points += other.points;
-        area += other.area;
-    }
-};
-
 /// Finds the target of one edge after the other.
 class TargetSearch {
 public:
@@ -151,17 +142,11 @@ private:
 }  // namespace
 
 PerVertex<float> inner_density(const Network& network, const Surface& surface, const PointsByFace& points) {
-    PerVertex<Density> sums(surface.positions.size());
-    for (int f = 0; f < surface.face_count(); ++f) {
-        if (surface.on_boundary(f, 0) || surface.on_boundary(f, 1) || surface.on_boundary(f, 2)) continue;
-        const Density of_face{static_cast<float>(points.of(f).size()), area_vector(surface, f).norm() / 2};
-        for (VertexId v : surface.faces[f]) sums[v] += of_face;
-    }
-    spread_over_rings(network, sums, kSpreads);
-    PerVertex<float> density(sums.size(), 0);
-    for (VertexId v = 0; v < sums.size(); ++v)
-        if (sums[v].area > 0) density[v] = sums[v].points / sums[v].area;
-    return density;
+    PerFace<float> counts = points.counts();
+    for (int f = 0; f < counts.size(); ++f)
+        if (surface.on_boundary(f, 0) || surface.on_boundary(f, 1) || surface.on_boundary(f, 2))
+            counts[f] = -1;
+    return point_density(network, surface, counts, kSpreads);
 }
 
 std::vector<BoundaryTarget> find_boundary_targets(const Network& network, const Surface& surface,

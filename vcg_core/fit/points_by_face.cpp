@@ -40,6 +40,13 @@ PointsByFace::PointsByFace(const Surface& surface, const TrackedPoints& tracked,
             tracked.points[i], weighted_ ? tracked.weights[i] : 1.0F, hits[i].foot};
 }
 
+PerFace<float> PointsByFace::counts() const {
+    PerFace<float> counts;
+    for (int f = 0; f + 1 < first_.size(); ++f)
+        counts.push_back(static_cast<float>(first_[f + 1] - first_[f]));
+    return counts;
+}
+
 float PointsByFace::weight(int face) const {
     if (!weighted_) return static_cast<float>(of(face).size());
     float sum = 0;

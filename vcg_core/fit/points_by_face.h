@@ -44,6 +44,8 @@ public:
     Span<Assignment> of(int face) {
         return {assignments_.data() + first_[face], assignments_.data() + first_[face + 1]};
     }
+    /// The numbers of points of the faces.
+    PerFace<float> counts() const;
     /// The points of all faces, face by face.
     std::vector<Assignment>& all() { return assignments_; }
     const std::vector<Assignment>& all() const { return assignments_; }

@@ -34,31 +34,12 @@ constexpr float kVertexPseudoPoints = 1;
 Support::Support(const Network& network, const Surface& surface, const PointsByFace& points) {
     cost_per_point_ = kLikelyDistance * mean_edge_length(surface);
     cost_per_point_ *= cost_per_point_;
-    struct Sums {
-        float points = 0;
-        float area = 0;
-        void operator+=(const Sums& other) {
-            points += other.points;
-            area += other.area;
-        }
-    };
-    PerVertex<Sums> sums(surface.positions.size());
-    for (int f = 0; f < surface.face_count(); ++f) {
-        const float twice_area = area_vector(surface, f).norm();
-        for (VertexId v : surface.faces[f]) {
-            sums[v].points += static_cast<float>(points.of(f).size());
-            sums[v].area += twice_area;
-        }
-    }
-    spread_over_rings(network, sums, kFaceSpreads);
-    density_.resize(sums.size());
-    for (VertexId v = 0; v < sums.size(); ++v)
-        density_[v] = sums[v].area > 0 ? sums[v].points / sums[v].area : 0.0F;
+    density_ = point_density(network, surface, points.counts(), kFaceSpreads);
 }
 
 float Support::missing_points(const Triangle& face, float twice_area, float points) const {
     const float density = density_[face[0]] + density_[face[1]] + density_[face[2]];
-    return std::max(0.0F, kFaceShare / 3 * density * twice_area - points - kFacePseudoPoints);
+    return std::max(0.0F, kFaceShare / 3 * density * (twice_area / 2) - points - kFacePseudoPoints);
 }
 
 float Support::cost_of_change(const Patch& before, const Patch& after, int points_per_sample) const {

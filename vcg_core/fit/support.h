@@ -40,7 +40,7 @@ public:
 private:
     float missing_points(const Triangle& face, float twice_area, float points) const;
 
-    PerVertex<float> density_;  ///< of points per twice the area
+    PerVertex<float> density_;  ///< of points per area
     float cost_per_point_ = 0;  ///< of a missing point, as a squared distance
 };
 

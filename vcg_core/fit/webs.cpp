@@ -15,29 +15,13 @@ constexpr int kRingsOfWeb = 3;        ///< of the density, over the rings
 constexpr float kFewestExpected = 8;  ///< fewer say nothing
 constexpr float kMostShare = 0.1F;    ///< of the points expected
 
-struct Supported {
-    float points = 0;
-    float area = 0;
-    void operator+=(const Supported& other) {
-        points += other.points;
-        area += other.area;
-    }
-};
-
 /// Points per area around every vertex. Faces without points do not count, since those of a web have none.
 PerVertex<float> supported_density(const Network& network, const Surface& surface,
                                    const PointsByFace& points) {
-    PerVertex<Supported> sums(surface.positions.size());
-    for (int f = 0; f < surface.face_count(); ++f) {
-        if (points.of(f).size() == 0) continue;
-        const Supported of_face{static_cast<float>(points.of(f).size()), area_vector(surface, f).norm() / 2};
-        for (const VertexId v : surface.faces[f]) sums[v] += of_face;
-    }
-    spread_over_rings(network, sums, kRingsOfWeb);
-    PerVertex<float> density(sums.size(), 0);
-    for (VertexId v = 0; v < sums.size(); ++v)
-        if (sums[v].area > 0) density[v] = sums[v].points / sums[v].area;
-    return density;
+    PerFace<float> counts = points.counts();
+    for (float& count : counts)
+        if (count == 0) count = -1;
+    return point_density(network, surface, counts, kRingsOfWeb);
 }
 
 /// Whether the face lacks the points that the least dense of its corners lets expect. Points whose foot is on

@@ -79,4 +79,26 @@ PerVertex<Vector3> area_vectors_around(const Network& network, const Surface& su
     return sums;
 }
 
+PerVertex<float> point_density(const Network& network, const Surface& surface, const PerFace<float>& points,
+                               int rings) {
+    struct Sums {
+        float points = 0, area = 0;
+        void operator+=(const Sums& other) {
+            points += other.points;
+            area += other.area;
+        }
+    };
+    PerVertex<Sums> sums(surface.positions.size());
+    for (int f = 0; f < surface.face_count(); ++f) {
+        if (points[f] < 0) continue;
+        const Sums of_face{points[f], area_vector(surface, f).norm() / 2};
+        for (const VertexId v : surface.faces[f]) sums[v] += of_face;
+    }
+    spread_over_rings(network, sums, rings);
+    PerVertex<float> density(sums.size(), 0.0F);
+    for (VertexId v = 0; v < sums.size(); ++v)
+        if (sums[v].area > 0) density[v] = sums[v].points / sums[v].area;
+    return density;
+}
+
 }  // namespace neuralmesh

@@ -105,4 +105,10 @@ void spread_over_rings(const Network& network, PerVertex<Value>& values, int tim
 /// normal from which most of the noise is gone, of any length. O(rings x vertices).
 PerVertex<Vector3> area_vectors_around(const Network& network, const Surface& surface, int rings);
 
+/// Points per area around every vertex: \p points on the faces over the areas of these, both summed over \p
+/// rings rings as by spread_over_rings(). Faces with a negative number do not count; 0 where none counts.
+/// O(rings x vertices).
+PerVertex<float> point_density(const Network& network, const Surface& surface, const PerFace<float>& points,
+                               int rings);
+
 }  // namespace neuralmesh

@@ -12,8 +12,6 @@
 namespace neuralmesh {
 namespace {
 
-constexpr int kRings = 4;
-
 void assign(const Surface& surface, const std::vector<Vector3>& signals, ThreadTeam& team,
             FaceSignals& support) {
     const std::vector<Hit> hits = FaceTree(surface, team).nearest(signals, team);
@@ -30,16 +28,6 @@ void assign(const Surface& surface, const std::vector<Vector3>& signals, ThreadT
         support.farthest[face] = std::max(support.farthest[face], foot.squared_distance);
     }
 }
-
-/// Signals and the area that they fell on.
-struct Sums {
-    float signals = 0;
-    float area = 0;
-    void operator+=(const Sums& other) {
-        signals += other.signals;
-        area += other.area;
-    }
-};
 
 /// Gives the vertices without a density that of their neighbours, ring by ring.
 void extend(const Network& network, PerVertex<float>& density) {
@@ -63,17 +51,11 @@ void extend(const Network& network, PerVertex<float>& density) {
 }
 
 /// Signals per area around every vertex.
-PerVertex<float> densities(const Network& network, const Surface& surface, const FaceSignals& support) {
-    PerVertex<Sums> sums(surface.positions.size());
-    for (int f = 0; f < surface.face_count(); ++f) {
-        if (support.wins[f] == 0) continue;
-        for (const VertexId v : surface.faces[f])
-            sums[v] += {static_cast<float>(support.wins[f]), support.area[f]};
-    }
-    spread_over_rings(network, sums, kRings);
-    PerVertex<float> density(sums.size(), 0.0F);
-    for (VertexId v = 0; v < sums.size(); ++v)
-        if (sums[v].area > 0) density[v] = sums[v].signals / sums[v].area;
+PerVertex<float> densities(const Network& network, const Surface& surface, const PerFace<int>& wins) {
+    constexpr int kRings = 4;
+    PerFace<float> signals;
+    for (const int won : wins) signals.push_back(won == 0 ? -1.0F : static_cast<float>(won));
+    PerVertex<float> density = point_density(network, surface, signals, kRings);
     extend(network, density);
     return density;
 }
@@ -114,7 +96,7 @@ FaceSignals face_signals(const Network& network, const Surface& surface, const s
     assign(surface, signals, team, support);
     support.area.resize(surface.face_count());
     for (int f = 0; f < surface.face_count(); ++f) support.area[f] = area_vector(surface, f).norm() / 2;
-    support.density = densities(network, surface, support);
+    support.density = densities(network, surface, support.wins);
     support.expected.resize(surface.face_count());
     for (int f = 0; f < surface.face_count(); ++f)
         support.expected[f] = support.expected_on(surface.faces[f], support.area[f]);
