@@ -12,8 +12,8 @@
 #include "vcg_core/base/progress.h"
 #include "vcg_core/mesh_counters.h"
 #include "vcg_core/mesh_io.h"
-#include "vcg_core/neural_mesh.h"
 #include "vcg_core/reconstruct.h"
+#include "vcg_core/result.h"
 #include "vcg_core/settings.h"
 
 namespace neuralmesh {

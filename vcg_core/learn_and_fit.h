@@ -9,7 +9,7 @@
 #include "vcg_core/learning/learner_options.h"
 #include "vcg_core/learning_task.h"
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/neural_mesh.h"
+#include "vcg_core/result.h"
 #include "vcg_core/settings.h"
 
 namespace neuralmesh {

@@ -8,7 +8,7 @@
 
 #include "vcg_core/base/progress.h"
 #include "vcg_core/mesh/indexed_mesh.h"
-#include "vcg_core/neural_mesh.h"
+#include "vcg_core/result.h"
 #include "vcg_core/settings.h"
 #include "vcg_core/target/target_space.h"
 
