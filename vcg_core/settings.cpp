@@ -3,6 +3,7 @@
 
 #include "vcg_core/settings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <locale>
@@ -17,14 +18,14 @@ namespace {
 using Kind = SettingInfo::Kind;
 
 SettingInfo row(bool Settings::*member, const char* id, const char* label, const char* help) {
-    SettingInfo info{Kind::boolean, id, label, help, false, 0, 1, {}};
+    SettingInfo info{Kind::boolean, id, label, help, Stage::mesh, false, 0, 1, {}};
     info.boolean_member = member;
     return info;
 }
 
 SettingInfo row(int Settings::*member, const char* id, const char* label, double low, double high,
                 const char* help) {
-    SettingInfo info{Kind::integer, id, label, help, false, low, high, {}};
+    SettingInfo info{Kind::integer, id, label, help, Stage::mesh, false, low, high, {}};
     info.integer_member = member;
     return info;
 }
@@ -32,14 +33,14 @@ SettingInfo row(int Settings::*member, const char* id, const char* label, double
 SettingInfo row(int Settings::*member, const char* id, const char* label, std::vector<std::string> choices,
                 const char* help) {
     const auto last = static_cast<double>(choices.size() - 1);
-    SettingInfo info{Kind::choice, id, label, help, false, 0, last, std::move(choices)};
+    SettingInfo info{Kind::choice, id, label, help, Stage::mesh, false, 0, last, std::move(choices)};
     info.integer_member = member;
     return info;
 }
 
 SettingInfo row(double Settings::*member, const char* id, const char* label, double low, double high,
                 const char* help) {
-    SettingInfo info{Kind::real, id, label, help, false, low, high, {}};
+    SettingInfo info{Kind::real, id, label, help, Stage::mesh, false, low, high, {}};
     info.real_member = member;
     return info;
 }
@@ -64,6 +65,11 @@ SettingInfo advanced(SettingInfo info) {
     return info;
 }
 
+std::vector<SettingInfo> all_advanced(std::vector<SettingInfo> rows) {
+    for (SettingInfo& info : rows) info.advanced = true;
+    return rows;
+}
+
 constexpr double kLargestInt = std::numeric_limits<int>::max();
 
 /// A value outside the range of int becomes the lowest int, which no row allows.
@@ -73,122 +79,71 @@ int nearest_int(double value) {
     return rounded > kLowest && rounded <= kLargestInt ? static_cast<int>(rounded) : kLowest;
 }
 
+/// What the mesh is to be like.
 std::vector<SettingInfo> mesh_rows() {
     using S = Settings;
     return {
         row(&S::target_vertices, "target_vertices", "Target vertices", 4, 20e6,
-            "The mesh gets exactly this many vertices. The run time is proportional to this number from "
-            "5,000 on. Below, the network grows to more vertices, and the fit removes those that contribute "
-            "least."),
+            "The mesh gets exactly this many vertices."),
         row(&S::surface, "surface", "Surface", {"Automatic", "Closed", "Open"},
             "Whether the mesh has boundaries. Closed: it has none; a single scan is closed around both of its "
             "sides. Open: it ends wherever the points end. Automatic: it is closed where the points enclose "
             "space and no opening is wider than 'Close holes up to', else open."),
         length_row(
             &S::close_holes_up_to, "close_holes_up_to", "Close holes up to",
-            "Holes of an open surface are closed up to this diameter of the smallest sphere around them. "
-            "Negative: chosen from the spacing of the points. 0: none but gaps of about two point spacings. With Surface set to Automatic, wider openings keep the whole surface "
-            "open (negative: from 6.6 % of the diagonal on)."),
+            "Holes of an open surface are closed up to this diameter; negative: chosen from the spacing of the "
+            "points. With Surface set to Automatic, wider openings keep the whole surface open."),
         row(&S::utility_counter, "utility_counter", "Utility counter",
             {"Where the normal varies", "Where signals arrive"},
             "Which vertices are split. Where the normal varies: the mesh is dense where the surface bends "
             "and sparse where it is flat. Where signals arrive: the mesh is as dense as the cloud."),
-        row(&S::start_mesh, "start_mesh", "Start mesh", {"Shell of the cloud", "Tetrahedron", "Layer"},
-            "The mesh that learning starts from. Shell of the cloud: a coarse mesh around the points that "
-            "already has their components and handles. Tetrahedron: the paper's, for one component without "
-            "handles unless the topology is learned. Layer: the mesh in 'Start layer', for example an earlier "
-            "result to refine, or one whose webs were cut and gaps bridged by hand; the result has its "
-            "components, handles and boundaries."),
-        layer_row(&S::start_layer, "start_layer", "Start layer",
-                  "The layer with the mesh that learning starts from if the start mesh is 'Layer'; else "
-                  "without effect. It is not changed."),
-        row(&S::learn_topology, "learn_topology", "Learn topology",
-            "While it grows, a closed mesh gives up membranes: parts without points that bridge limbs, span gaps or "
-            "plug holes. Their rims are closed or joined, whichever the points support, so the number of "
-            "handles and components may change. If off, or if the start mesh is a layer, they are "
-            "those of the start mesh. From a tetrahedron, "
-            "wide membranes that are left become holes, unless the surface is closed."),
-        row(&S::fit_to_points, "fit_to_points", "Fit to points",
-            "After learning, fit the surface to the points by least squares. If off, the mesh stays as the "
-            "paper's learning leaves it."),
-        row(&S::draw_from_faces, "draw_from_faces", "Draw from faces",
-            "If the layer has faces, draw the points to learn from them, uniformly over their area. If off, "
-            "the vertices of the layer are the points."),
-        row(&S::selected_only, "selected_only", "Selected only",
-            "Learn only the selected part of the layer: its selected faces where points are drawn from "
-            "faces, else its selected vertices."),
+    };
+}
+
+std::vector<SettingInfo> cloud_rows() {
+    using S = Settings;
+    return {
         row(&S::remove_outliers, "remove_outliers", "Remove outliers",
-            "Leave out points that lie apart from the surface: single points, clumps and scattered noise. In "
-            "doubt a point stays. Points drawn from faces are never left out. If off, every point is "
-            "learned."),
-        row(&S::even_sampling, "even_sampling", "Even sampling",
-            "If the density of the points varies, draw signals evenly over the surface instead of over the "
-            "points, and let the fit weigh points by the area that each stands for. Without effect on even "
-            "clouds, on points drawn from faces, and if the utility counter is 'Where signals arrive'. If "
-            "off, the mesh is finer and more accurate where the points are dense."),
-        row(&S::use_normals, "use_normals", "Use normals",
-            "If the vertices of the layer have normals that fit the points, an open surface faces the side to "
-            "which most of them point; closed parts always face out. Normals that do not fit are not used, "
-            "and the log says why. If off, an open surface faces the origin, if all of it is seen from there, "
-            "else up, if all of it is seen from above, else it faces out where it is convex. Without effect on "
-            "points drawn from faces."),
+            "Leave out points that lie apart from the surface; in doubt a point stays."),
+        advanced(row(&S::draw_from_faces, "draw_from_faces", "Draw from faces",
+                     "If the layer has faces, draw the points to learn from them, evenly over their area; if "
+                     "off, the vertices of the layer are the points.")),
+        advanced(row(&S::selected_only, "selected_only", "Selected only",
+                     "Learn only the selected faces of the layer or, where its vertices are the points, only "
+                     "the selected vertices.")),
+        advanced(
+            row(&S::even_sampling, "even_sampling", "Even sampling",
+                "Where the density of the points varies, learn the surface evenly instead of the points; "
+                "if off, the mesh is finer where the points are dense. Without effect on points drawn "
+                "from faces, and if the utility counter is 'Where signals arrive'.")),
+        advanced(row(&S::use_normals, "use_normals", "Use normals",
+                     "The normals of the layer's vertices, if they fit the points, say which side of an open "
+                     "surface faces out; closed parts always face out.")),
     };
 }
 
-std::vector<SettingInfo> color_rows() {
+std::vector<SettingInfo> start_rows() {
     using S = Settings;
     return {
-        row(&S::vertex_color, "vertex_color", "Vertex colour", {"Counter", "Cloud", "None"},
-            "What the vertex colours show. Counter: the feature measure, from light yellow where the surface "
-            "is smooth over red to purple at features. Cloud: the colours of the layer's vertices, each "
-            "computed from all points near the vertex; if the layer has none, the colours of Counter. The "
-            "vertex quality holds the feature measure in any case."),
+        advanced(row(
+            &S::start_mesh, "start_mesh", "Start mesh", {"Shell of the cloud", "Tetrahedron", "Layer"},
+            "The mesh that learning starts from. Shell of the cloud: a coarse mesh around the points that "
+            "already has their components and handles. Tetrahedron: the paper's. Layer: the mesh in "
+            "'Start layer', such as an earlier result, whose components, handles and boundaries stay.")),
+        advanced(layer_row(
+            &S::start_layer, "start_layer", "Start layer",
+            "The layer with the mesh to start from, if the start mesh is 'Layer'; it is not changed.")),
     };
 }
 
-std::vector<SettingInfo> feature_rows() {
+/// Topology, the constants of the paper's eq 9 and C_delta of eq 3, and what ends growth.
+std::vector<SettingInfo> learning_rows() {
     using S = Settings;
-    return {
-        row(&S::select_features, "select_features", "Select features",
-            "Select the features: the vertices whose measure, chosen by 'Select by', is above the feature "
-            "threshold."),
-        row(&S::feature_measure, "feature_measure", "Feature measure", {"Normal counter", "Crease measure"},
-            "What the vertex quality holds. Normal counter: how much the normal of the vertex varied while "
-            "it learned (eq 6 of the paper), about 1 on average, larger where the surface bends. Crease "
-            "measure: the angle between the two planes that meet near the vertex, averaged over many moments "
-            "of the learning; above 1 on sharp edges, about 2 on right angles. It is robust against noise "
-            "and comparable between models."),
-        row(&S::select_by, "select_by", "Select by", {"Normal counter", "Crease measure"},
-            "Which measure decides what is a feature, whatever the vertex quality holds. The crease measure "
-            "finds creases with the same threshold on all models, also under noise; the normal counter is "
-            "the paper's."),
-        row(&S::feature_threshold, "feature_threshold", "Feature threshold", 0, 1000,
-            "A vertex is a feature if its crease measure is above this number or, selected by the normal "
-            "counter, if its counter is above this number times the mean counter (C_nc of the paper, eq 7)."),
-    };
-}
-
-SettingInfo crease_lines_row() {
-    return row(
-        &Settings::crease_lines, "crease_lines", "Crease lines",
-        "Add a second layer with the creases of the mesh as polylines, which meet at corners. The vertex "
-        "quality of that layer is the crease measure. The layer with the mesh stays the current one.");
-}
-
-std::vector<SettingInfo> run_rows() {
-    using S = Settings;
-    return {
-        row(&S::random_seed, "random_seed", "Random seed", 0, kLargestInt,
-            "The same seed gives the same result, bit for bit, on any machine and with any number of threads."),
-        row(&S::threads, "threads", "Threads", 0, 1024,
-            "The number of threads; 0: one per core. The result does not depend on it."),
-    };
-}
-
-/// The constants of the paper's eq 9, and C_delta of eq 3.
-std::vector<SettingInfo> paper_rows() {
-    using S = Settings;
-    return {
+    return all_advanced({
+        row(&S::learn_topology, "learn_topology", "Learn topology",
+            "While it grows, a closed mesh gives up membranes: parts without points that bridge limbs, span "
+            "gaps or plug holes. If off, or if the start mesh is a layer, handles and components are those of "
+            "the start mesh."),
         row(&S::learning_rate, "learning_rate", "Learning rate", 0.001, 1,
             "α_w of the paper (eq 1): the fraction of the way to the signal that the winner moves."),
         row(&S::smoothing_rate, "smoothing_rate", "Smoothing rate", 0, 1,
@@ -197,7 +152,8 @@ std::vector<SettingInfo> paper_rows() {
         row(&S::smoothing_steps, "smoothing_steps", "Smoothing steps", 0, 100,
             "C_L of the paper: smoothing steps over the winner's one-ring per signal."),
         row(&S::signals_per_split, "signals_per_split", "Signals per split", 1, 1e6,
-            "C_vs of the paper: the number of signals from one vertex split to the next. Half as many do if the fit follows: below 2,000 vertices where it removes most of the learned vertices, and on closed surfaces where the noise exceeds 14 % of the edges."),
+            "C_vs of the paper: the number of signals from one vertex split to the next; fewer where the fit "
+            "makes up for them."),
         row(&S::signals_per_collapse, "signals_per_collapse", "Signals per collapse", 1, 1e6,
             "C_ec of the paper: after this many signals per vertex, the vertices that won none of them are "
             "removed by half-edge collapses."),
@@ -210,39 +166,83 @@ std::vector<SettingInfo> paper_rows() {
         row(&S::normalization_window, "normalization_window", "Normalization window", 1, 1e6,
             "C_δ of the paper (eq 3): the variation of a normal is divided by the mean over this many "
             "signals."),
-    };
-}
-
-std::vector<SettingInfo> growth_rows() {
-    using S = Settings;
-    return {
         row(&S::min_wins_per_split, "min_wins_per_split", "Minimum wins per split", 0, 1e6,
-            "A vertex is split only after it has won this many signals since its last split or its creation. "
+            "A vertex is split only after it has won this many signals since its last split or its creation; "
             "0: as in the paper, where growth can stall."),
         row(&S::settling_signals_per_vertex, "settling_signals_per_vertex", "Settling signals per vertex", 0,
             1e5,
-            "Signals per vertex that are learned after the last split (at least 60,000 in all), so that "
-            "positions and counters describe the final mesh. Half as many or fewer where the noise is small "
-            "beside the edges, because the fit then removes vertices and places the others. 0: none."),
+            "Signals per vertex that are learned after the last split, so that positions and counters "
+            "describe the final mesh; fewer where the fit makes up for them; 0: none."),
         row(&S::stop_below_mean_counter, "stop_below_mean_counter", "Stop below mean counter", 0, 1e6,
             "α_t of the paper (eq 8), as an angle in degrees: growth stops before the target is reached when "
-            "a signal turns the winner's normal by less than this (root mean square over the last ten "
-            "signals per vertex). 0: off."),
+            "signals turn the winners' normals by less than this (root mean square); 0: off."),
+    });
+}
+
+std::vector<SettingInfo> fit_rows() {
+    return {advanced(row(&Settings::fit_to_points, "fit_to_points", "Fit to points",
+                         "After learning, fit the surface to the points by least squares; if off, the mesh "
+                         "stays as the paper's learning leaves it."))};
+}
+
+SettingInfo select_features_row() {
+    return row(&Settings::select_features, "select_features", "Select features",
+               "Select the features: the vertices whose measure, chosen by 'Select by', is above the feature "
+               "threshold.");
+}
+
+std::vector<SettingInfo> measure_rows() {
+    using S = Settings;
+    return {
+        row(&S::feature_measure, "feature_measure", "Feature measure", {"Normal counter", "Crease measure"},
+            "What the vertex quality holds. Normal counter: how much the normal of the vertex varied while "
+            "it learned (eq 6 of the paper), about 1 on average. Crease measure: the angle between the two "
+            "planes that meet near the vertex; above 1 on sharp edges, also under noise."),
+        row(&S::select_by, "select_by", "Select by", {"Normal counter", "Crease measure"},
+            "Which measure decides what is a feature, whatever the vertex quality holds. The crease measure "
+            "finds creases with the same threshold on all models; the normal counter is the paper's."),
+        row(&S::feature_threshold, "feature_threshold", "Feature threshold", 0, 1000,
+            "A vertex is a feature if its crease measure is above this number or, selected by the normal "
+            "counter, if its counter is above this number times the mean counter (C_nc of the paper, eq 7)."),
+    };
+}
+
+std::vector<SettingInfo> output_rows() {
+    using S = Settings;
+    return {
+        row(&S::crease_lines, "crease_lines", "Crease lines",
+            "Add a second layer with the creases of the mesh as polylines, which meet at corners."),
+        row(&S::vertex_color, "vertex_color", "Vertex colour", {"Counter", "Cloud", "None"},
+            "What the vertex colours show. Counter: the feature measure, from light yellow where the surface "
+            "is smooth to purple at features. Cloud: the colours of the layer's vertices; if it has none, "
+            "those of Counter."),
+    };
+}
+
+std::vector<SettingInfo> run_rows() {
+    using S = Settings;
+    return {
+        advanced(row(&S::random_seed, "random_seed", "Random seed", 0, kLargestInt,
+                     "The same seed gives the same result on any machine and with any number of threads.")),
+        advanced(row(&S::threads, "threads", "Threads", 0, 1024, "The number of threads; 0: one per core.")),
     };
 }
 
 SettingInfo signal_layer_row() {
     return layer_row(
         &Settings::signal_layer, "signal_layer", "Signal layer",
-        "The layer that the signals are drawn from, such as the cloud that the mesh was made of: "
-        "its faces if it has any, else its points. By default the mesh itself. It is not "
-        "changed unless it is the current layer.");
+        "The layer that the signals are drawn from, such as the cloud that the mesh was made of: its faces if "
+        "it has any, else its points. By default the mesh itself.");
 }
 
 SettingInfo signals_per_vertex_row() {
     return row(&Settings::signals_per_vertex, "signals_per_vertex", "Signals per vertex", 1, 1e5,
-               "Signals per vertex of the mesh (at least 60,000 in all). More make the values less random; "
-               "the run time is proportional to this number.");
+               "Signals per vertex of the mesh; more make the values less random and take longer.");
+}
+
+std::vector<SettingInfo> of_stage(Stage stage, std::vector<SettingInfo> rows) {
+    for (SettingInfo& info : rows) info.stage = stage;
+    return rows;
 }
 
 /// The rows of all \p groups, in order.
@@ -273,16 +273,23 @@ void SettingInfo::store(Settings& settings, double value) const {
 const std::vector<SettingInfo>& setting_table() {
     static const std::vector<SettingInfo> table = [] {
         std::vector<SettingInfo> rows =
-            joined({mesh_rows(), color_rows(), feature_rows(), {crease_lines_row()}, run_rows()});
-        for (const SettingInfo& info : joined({paper_rows(), growth_rows()})) rows.push_back(advanced(info));
+            joined({of_stage(Stage::mesh, mesh_rows()), of_stage(Stage::cloud, cloud_rows()),
+                    of_stage(Stage::start, start_rows()), of_stage(Stage::learning, learning_rows()),
+                    of_stage(Stage::fit, fit_rows()), of_stage(Stage::features, {select_features_row()}),
+                    of_stage(Stage::features, all_advanced(measure_rows())),
+                    of_stage(Stage::output, output_rows()), of_stage(Stage::run, run_rows())});
+        std::stable_partition(rows.begin(), rows.end(),
+                              [](const SettingInfo& info) { return !info.advanced; });
         return rows;
     }();
     return table;
 }
 
 const std::vector<SettingInfo>& counter_table() {
-    static const std::vector<SettingInfo> table =
-        joined({{signal_layer_row()}, feature_rows(), {signals_per_vertex_row()}, run_rows()});
+    static const std::vector<SettingInfo> table = joined(
+        {of_stage(Stage::cloud, {signal_layer_row()}), of_stage(Stage::features, {select_features_row()}),
+         of_stage(Stage::features, measure_rows()),
+         of_stage(Stage::learning, {advanced(signals_per_vertex_row())}), of_stage(Stage::run, run_rows())});
     return table;
 }
 

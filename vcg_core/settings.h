@@ -107,6 +107,9 @@ struct Settings {
     void check() const;  ///< of setting_table()
 };
 
+/// What a parameter is about, in the order of a run; the mesh that is asked for comes first.
+enum class Stage { mesh, cloud, start, learning, fit, features, output, run };
+
 /// One parameter: its name, explanation, range, and the member of Settings that holds it.
 struct SettingInfo {
     /// A length is a real number in the units of the input. Dialogs show it as a share of the diagonal, too.
@@ -117,6 +120,7 @@ struct SettingInfo {
     const char* id;                    ///< snake_case; API: scripts key on it
     const char* label;                 ///< in the dialog
     const char* help;                  ///< tooltip and reference
+    Stage stage;
     bool advanced;                     ///< hidden until the user asks for advanced parameters
     double low, high;                  ///< closed range; booleans: 0 and 1
     std::vector<std::string> choices;  ///< names of a choice's values, in order from 0
@@ -132,7 +136,8 @@ struct SettingInfo {
     void store(Settings& settings, double value) const;
 };
 
-/// The parameters of the reconstruction in the order of its dialog. Their defaults are those of Settings().
+/// The parameters of the reconstruction in the order of its dialog: first those for a newcomer, then the
+/// advanced ones, both in the order of their stages. Their defaults are those of Settings().
 const std::vector<SettingInfo>& setting_table();
 
 /// The same of the counters of a given mesh.

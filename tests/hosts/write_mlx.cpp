@@ -4,7 +4,9 @@
 // write_mlx [--filter=NAME] [ID=VALUE ...]: prints a script for meshlabserver with all parameters of a
 // filter, at their defaults or the values given. (meshlabserver aborts on scripts that omit one.) NAME is a
 // Python name; default: the reconstruction. write_mlx [--filter=NAME] --table: prints the parameters for
-// tests, one per line: id, type, low, high, default, advanced.
+// tests, one per line: id, type, low, high, default, advanced. write_mlx [--filter=NAME] --explain: prints
+// them for documentation, one per line, separated by tabs: stage, advanced, id, default, low, high, choices
+// joined by |, label, help.
 #include <cstdlib>
 #include <iostream>
 #include <map>
@@ -67,6 +69,31 @@ void write_table(const Action& action) {
                   << default_of(info) << ' ' << info.advanced << '\n';
 }
 
+const char* name_of(Stage stage) {
+    switch (stage) {
+        case Stage::mesh: return "mesh";
+        case Stage::cloud: return "cloud";
+        case Stage::start: return "start";
+        case Stage::learning: return "learning";
+        case Stage::fit: return "fit";
+        case Stage::features: return "features";
+        case Stage::output: return "output";
+        case Stage::run: return "run";
+    }
+    return "";
+}
+
+void explain(const Action& action) {
+    std::cout.precision(10);
+    for (const SettingInfo& info : action.settings) {
+        std::cout << name_of(info.stage) << '\t' << info.advanced << '\t' << info.id << '\t'
+                  << default_of(info) << '\t' << info.low << '\t' << info.high << '\t';
+        for (std::size_t i = 0; i < info.choices.size(); ++i)
+            std::cout << (i == 0 ? "" : "|") << info.choices[i];
+        std::cout << '\t' << info.label << '\t' << info.help << '\n';
+    }
+}
+
 bool is_id(const Action& action, const std::string& word) {
     for (const SettingInfo& info : action.settings)
         if (word == info.id) return true;
@@ -94,6 +121,10 @@ int main(int argc, char** argv) {
         const std::string word = argv[i];
         if (word == "--table") {
             write_table(action);
+            return EXIT_SUCCESS;
+        }
+        if (word == "--explain") {
+            explain(action);
             return EXIT_SUCCESS;
         }
         const std::size_t equals = word.find('=');

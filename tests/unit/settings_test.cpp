@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -50,6 +52,33 @@ TEST_P(EveryTable, EveryRowIsCompleteAndItsIdUnique) {
         EXPECT_LT(info.low, info.high);
         EXPECT_EQ(info.kind == Kind::choice, !info.choices.empty());
         EXPECT_EQ(info.kind == Kind::choice ? info.high + 1 : 0, static_cast<double>(info.choices.size()));
+    }
+}
+
+TEST_P(EveryTable, BeginsWithAtMostEightForANewcomer) {
+    const auto first_advanced =
+        std::find_if(table().begin(), table().end(), [](const SettingInfo& info) { return info.advanced; });
+    EXPECT_LE(first_advanced - table().begin(), 8);
+    EXPECT_TRUE(
+        std::all_of(first_advanced, table().end(), [](const SettingInfo& info) { return info.advanced; }));
+}
+
+TEST_P(EveryTable, FollowsTheStagesOfARunInBothParts) {
+    for (std::size_t i = 1; i < table().size(); ++i)
+        if (table()[i].advanced == table()[i - 1].advanced) {
+            EXPECT_LE(table()[i - 1].stage, table()[i].stage) << table()[i].id;
+        }
+}
+
+/// Numbers that a later release may tune belong to the code. Those of the paper's equations have one digit.
+TEST_P(EveryTable, HelpHasNoTunedNumbers) {
+    for (const SettingInfo& info : table()) {
+        const std::string help = info.help;
+        EXPECT_EQ(help.find('%'), std::string::npos) << info.id;
+        for (std::size_t i = 1; i < help.size(); ++i)
+            EXPECT_FALSE(std::isdigit(static_cast<unsigned char>(help[i - 1])) != 0 &&
+                         (std::isdigit(static_cast<unsigned char>(help[i])) != 0 || help[i] == ','))
+                << info.id << ": " << help;
     }
 }
 
