@@ -6,8 +6,8 @@
 
     paper_figures.py --learn build/tests/learn [--data FOLDER] [--out FOLDER] [--pictures FOLDER]
 
-bunny.png: from points to mesh to counters. fig1.png: density of the mesh against curvature. fig2.png: counters as
-colours. fig3.png: levels of detail. The numbers in the captions are written to OUT/figures.json. With a data folder
+bunny.png: from points to mesh to counters. closeup.png: a part of it, as points and as wireframe. fig1.png: density of the mesh
+against curvature. fig2.png: counters as colours. fig3.png: levels of detail. The numbers in the captions are written to OUT/figures.json. With a data folder
 Fig. 3 shows Max-Planck and Dino, as in the paper, else models from Debian packages.
 """
 
@@ -28,11 +28,11 @@ import import_paths  # noqa: F401
 import models
 import paper_runs
 from compare_accuracy import numbers
-from meshlab_picture import Picture, render
+from meshlab_picture import Picture, camera_axes, render
 from meshlab_picture_sheet import Legend, contact_sheet, legend_of_mesh
 from small_png import make_small
 
-FIGURES = ("bunny", "fig1", "fig2", "fig3")
+FIGURES = ("bunny", "closeup", "fig1", "fig2", "fig3")
 LEVELS = (500, 2000, 5000, 10000, 20000)
 COUNTER_TITLE = "feature counter"
 
@@ -112,12 +112,17 @@ class Studio:
         print(f"{path}: {path.stat().st_size / 1000:.0f} kB", flush=True)
 
 
-def bunny(studio):
-    """From points to mesh to counters."""
+def bunny_mesh(studio):
+    """The vertices of the bunny, the mesh learned from them, and its report."""
     cloud = studio.options.out / "figure_bunny_vertices.ply"
     models.save_ply(cloud, studio.surface(BUNNY)[0])
     mesh = studio.options.out / "figure_bunny_3000.ply"
-    report = paper_runs.learn(studio.options.learn, cloud, mesh, target_vertices=3000)
+    return cloud, mesh, paper_runs.learn(studio.options.learn, cloud, mesh, target_vertices=3000)
+
+
+def bunny(studio):
+    """From points to mesh to counters."""
+    cloud, mesh, report = bunny_mesh(studio)
     shape = {"fit_to": [str(mesh)], "view": BUNNY.view, "up": BUNNY.up}
     row = [Picture(str(cloud), "points", point_size=0.7, **shape),
            Picture(str(mesh), "flat-lines", line_width=0.6, **shape),
@@ -127,6 +132,30 @@ def bunny(studio):
                 "its feature counter"]
     studio.sheet("bunny", [row], [captions], legend_of_mesh(mesh, COUNTER_TITLE), (460, 460))
     studio.numbers["bunny"] = report
+
+
+def save_off(path, vertices, faces=()):
+    """Writes a text file, which MeshLab reads and whose size meshlab_picture.py does not."""
+    lines = ["OFF", f"{len(vertices)} {len(faces)} 0", *("%.9g %.9g %.9g" % tuple(v) for v in vertices),
+             *("3 %d %d %d" % tuple(face) for face in faces)]
+    path.write_text("\n".join(lines) + "\n")
+    return str(path)
+
+
+def closeup(studio):
+    """Head and ears of the bunny."""
+    _, mesh, _ = bunny_mesh(studio)
+    vertices, faces = models.load_mesh(mesh)
+    axes = camera_axes(BUNNY.view, BUNNY.up)
+    seen = vertices @ axes.T
+    low, size = seen.min(axis=0), np.ptp(seen, axis=0)
+    part = studio.options.out / "closeup_box.ply"
+    models.save_ply(part, np.array([low + size * (-0.02, 0.52, 0), low + size * (0.63, 1.02, 1)]) @ axes)
+    shape = {"fit_to": [str(part)], "view": BUNNY.view, "up": BUNNY.up}
+    points = save_off(studio.options.out / "closeup_points.off", studio.surface(BUNNY)[0])
+    wires = save_off(studio.options.out / "closeup_mesh.off", vertices, faces)
+    row = [Picture(points, "points", point_size=1.4, **shape), Picture(wires, "flat-lines", **shape)]
+    studio.sheet("closeup", [row], [["the points", "the mesh"]], size=(440, 380))
 
 
 def vertex_areas(vertices, faces):
@@ -236,7 +265,7 @@ def parse(arguments):
 def main(arguments=None):
     options = parse(arguments)
     studio = Studio(options)
-    makers = {"bunny": bunny, "fig1": fig1, "fig2": fig2, "fig3": fig3}
+    makers = {"bunny": bunny, "closeup": closeup, "fig1": fig1, "fig2": fig2, "fig3": fig3}
     unknown = [name for name in options.figures if name not in makers]
     if unknown:
         sys.exit(f"There is no figure '{unknown[0]}': there are {', '.join(makers)}.")
