@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The example scripts: up to date, and run in meshlabserver 2020.09; vcglib checks the results."""
+"""The example scripts and the page of parameters: up to date; the scripts run in meshlabserver 2020.09; vcglib checks the results."""
 
 import re
 
 import example_scripts
 import meshlabserver
+import parameters_page
 import pytest
 from conftest import few_of
 
@@ -20,6 +21,11 @@ def test_every_script_agrees_with_the_table_of_parameters(build, tmp_path):
         fresh = example_scripts.write(build, name, tmp_path / "fresh.mlx")
         assert (example_scripts.FOLDER / f"{name}.mlx").read_text() == fresh.read_text(), \
             f"{name}.mlx is out of date: run tests/hosts/example_scripts.py"
+
+
+def test_the_page_of_parameters_agrees_with_the_tables(build):
+    assert parameters_page.PAGE.read_text(encoding="utf-8") == parameters_page.text(build), \
+        "filter_neuralmesh/docs/parameters.md is out of date: run tests/hosts/parameters_page.py"
 
 
 def test_a_script_with_an_unknown_parameter_is_not_written(build, tmp_path):
