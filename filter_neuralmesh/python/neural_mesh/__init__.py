@@ -39,7 +39,7 @@ _DOCUMENTATION = {
     FILTER: """Reconstructs the surface of the current layer's points as a triangle mesh, a new layer.
 
 The mesh has exactly `target_vertices` vertices (default 10000), dense where the surface bends and sparse where it is
-flat. The vertex quality measures how much it bends. All parameters and results are in the README of Neural Mesh;
+flat. The vertex quality measures how much it bends. All parameters and results are in the pages of Neural Mesh;
 pymeshlab.print_filter_parameter_list('%s') lists the parameters.
 
 Returns a dict: vertices, faces, genus, components, rms_error, warnings and others. Raises PyMeshLabException with a
@@ -48,7 +48,7 @@ sentence that says what to do.""",
 
 A copy of the mesh learns random points of the layer `signal_layer` (default: the mesh itself). The scalar holds the
 normal counter or, with `feature_measure` 1, the crease measure; `select_features` selects the features. Nothing else
-changes. All parameters and results are in the README of Neural Mesh; pymeshlab.print_filter_parameter_list('%s') lists
+changes. All parameters and results are in the pages of Neural Mesh; pymeshlab.print_filter_parameter_list('%s') lists
 the parameters.
 
 Returns a dict: vertices, signals, feature_vertices, mean_counter, seconds and others. Raises PyMeshLabException with a
