@@ -1,9 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The example scripts and the page of parameters: up to date; the scripts run in meshlabserver 2020.09; vcglib checks the results."""
+"""The example scripts, up to date and run in meshlabserver 2020.09, where vcglib checks the results; the page of parameters;
+the Python of the first page."""
 
+import os
 import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
 
 import example_scripts
 import meshlabserver
@@ -12,6 +18,8 @@ import pytest
 from conftest import few_of
 
 NAMES = sorted(example_scripts.EXAMPLES)
+FIRST_PAGE = Path(__file__).resolve().parents[2] / "README.md"
+PYTHON = re.findall(r"^```python\n(.*?)^```", FIRST_PAGE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 
 
 def test_every_script_agrees_with_the_table_of_parameters(build, tmp_path):
@@ -26,6 +34,17 @@ def test_every_script_agrees_with_the_table_of_parameters(build, tmp_path):
 def test_the_page_of_parameters_agrees_with_the_tables(build):
     assert parameters_page.PAGE.read_text(encoding="utf-8") == parameters_page.text(build), \
         "filter_neuralmesh/docs/parameters.md is out of date: run tests/hosts/parameters_page.py"
+
+
+@pytest.mark.parametrize("number", range(2))
+def test_the_python_of_the_first_page_runs(build, site, model, tmp_path, number):
+    shutil.copy(model("sphere")[0], tmp_path / "cloud.ply")
+    done = subprocess.run([sys.executable, "-c", PYTHON[number]], cwd=tmp_path, env=dict(os.environ, PYTHONPATH=str(site)),
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    found = meshlabserver.check_mesh(build, tmp_path / "mesh.ply")
+    assert found["vertices"] == 5000 and found["watertight"]
+    assert number == 0 or found["quality"] and done.stdout.startswith("5000 0 ")
 
 
 def test_a_script_with_an_unknown_parameter_is_not_written(build, tmp_path):
