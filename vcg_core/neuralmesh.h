@@ -22,7 +22,8 @@
 // }
 // ```
 //
-// In CMake link with neuralmesh_core, and with neuralmesh_vcglib for the headers of vcglib.
+// In CMake link with neuralmesh_core, and with neuralmesh_vcglib for the headers of the vcglib that it uses.
+// A caller with a vcglib of its own leaves out the second and converts its meshes by mesh_io.h alone.
 //
 // What it does
 // ------------
@@ -70,7 +71,7 @@
 // -----------------------
 // settings.threads threads work on a run, 0: one per core. The same target and settings give the same bytes
 // with any number of them, on x86-64 and arm64, on Linux and Windows. Runs share nothing: several threads
-// may each call reconstruct() at the same time, also with the same TargetSpace.
+// may call reconstruct() at the same time, each with a TargetSpace and a Progress of its own.
 #pragma once
 
 #include "vcg_core/base/error.h"
