@@ -121,7 +121,7 @@ def open_filter(session, main_window, name):
 
 def lay_out(session, dialog):
     """Moves the dialog over the layer list, tall enough for all parameters; the cloud stays visible."""
-    width, top = 440, 66
+    width, top = 530, 66
     place = (session.width - width - 6, top, width, session.height - top - 6)
 
     def placed():
