@@ -3,7 +3,8 @@
 # Copyright the Neural Mesh authors
 
 """Constants of a file differ from those of the other files in its folder and from those of all headers: files of a folder
-are compiled together, where a constant in an anonymous namespace would silently take the place of a header's."""
+are compiled together, where a constant in an anonymous namespace would silently take the place of a header's. The names
+of the stages that a development build can skip are those that the code asks for, each at one place."""
 
 import re
 import sys
@@ -33,7 +34,20 @@ def shared_names(root):
                 yield f"{name} is defined in {path.relative_to(root)} and in {other.relative_to(root)}."
 
 
+def stages(root):
+    """The names that vcg_core/base/ablation.h lists, and those that skips() is asked for, one for each place."""
+    listed = re.search(r"kStages\[\] = \{(.*?)\};", (root / "vcg_core/base/ablation.h").read_text(), re.DOTALL)[1]
+    asked = [name for path in sorted((root / "vcg_core").rglob("*.[hc]*"))
+             for name in re.findall(r'\bskips\("(\w+)"\)', path.read_text())]
+    return re.findall(r'"(\w+)"', listed), asked
+
+
 class Names(unittest.TestCase):
+    def test_each_stage_is_skipped_at_one_place(self):
+        listed, asked = stages(ROOT)
+        self.assertGreater(len(listed), 30)
+        self.assertEqual(sorted(listed), sorted(asked))
+
     def test_constants_of_a_folder_differ(self):
         found = list(shared_names(ROOT))
         self.assertFalse(found, "\n" + "\n".join(found))

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <utility>
 
+#include "vcg_core/base/ablation.h"
 #include "vcg_core/base/text.h"
 #include "vcg_core/layer_normals.h"
 #include "vcg_core/open_or_closed.h"
@@ -133,7 +134,7 @@ void measure_noise(LearningTask& task, Survey& survey, const Settings& settings)
     // each place feline would have 1.15 times the error at .1 % of the diagonal (50,000 points, 2,000
     // vertices).
     const bool open = task.network.boundary_loop_count() > 0;
-    if (!open || task.target().is_exact()) return;
+    if (skips("noise_by_place") || !open || task.target().is_exact()) return;
     if (surface.clutter() < 1) task.noise_by_place.emplace(surface);
 }
 
@@ -147,6 +148,7 @@ bool normals_serve(LearningTask& task, Survey& survey, const Settings& settings)
 
 /// Gives the points weights by which signals are even over the surface.
 void weigh_points(LearningTask& task, Survey& survey) {
+    if (skips("even_sampling")) return;
     std::optional<TargetSpace> even = task.target().evenly(survey.of(task.target().positions()).points());
     if (even) task.cleaned = std::move(even);
 }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vcg_core/base/ablation.h"
+
 namespace neuralmesh {
 
 namespace {
@@ -152,7 +154,7 @@ PerVertex<float> inner_density(const Network& network, const Surface& surface, c
 std::vector<BoundaryTarget> find_boundary_targets(const Network& network, const Surface& surface,
                                                   const PointsByFace& points) {
     std::vector<BoundaryTarget> targets;
-    if (!surface.has_boundary()) return targets;
+    if (skips("boundary_targets") || !surface.has_boundary()) return targets;
     TargetSearch search(network, surface, points);
     for (VertexId v : network.vertices())
         if (network.ring(v).open != 0) search.add_target(v, targets);

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "vcg_core/base/ablation.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/fit/fitter.h"
 #include "vcg_core/fit/refine.h"
@@ -99,7 +100,8 @@ public:
         const double edge = static_cast<double>(mean_edge_length(fitted));
         const double variance = static_cast<double>(fitter_.noise_variance());
         const double optimism = variance * (learned_share + kCrumpling * variance / (edge * edge));
-        report_.improved = error * error < report_.rms_unfitted * report_.rms_unfitted + optimism;
+        report_.improved =
+            skips("held_out") || error * error < report_.rms_unfitted * report_.rms_unfitted + optimism;
         if (report_.improved) report_.rms_fitted = error;
     }
 
@@ -116,7 +118,7 @@ private:
         Surface surface(network_);
         PointsByFace points = fitter_.locate_points(surface);
         // Sheets that are closed around both sides are not redistributed.
-        holds_ = options_.redistribute && !surface.has_boundary() &&
+        holds_ = !skips("hold") && options_.redistribute && !surface.has_boundary() &&
                  network_.vertex_count() <= kMostVerticesToHold && fitter_.has_precise_points(surface);
         if (holds_ && options_.rounds == 0) rounds_ = std::max(rounds_, kRoundsWithHold);
         fitter_.set_directions(surface);
@@ -147,7 +149,8 @@ private:
     bool solve(int round, Surface& surface, PointsByFace& points) {
         const bool hold = holds_ && round >= kFirstHold;
         const double error = fitter_.solve(points, surface, hold ? kHold : PointToPlaneSystem::kSliding);
-        if (round > kFirstCreases && error > last_error_) crease_moves_ = CreaseMoves::sure;
+        if (!skips("sure_creases") && round > kFirstCreases && error > last_error_)
+            crease_moves_ = CreaseMoves::sure;
         if (round == 0 || error < best_error_) {
             best_ = network_;
             best_error_ = error;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "vcg_core/base/ablation.h"
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/edge_flips.h"
@@ -169,7 +170,7 @@ void Fitter::examine_layers(const Surface& surface, const PointsByFace& points, 
     layering_ = 0;
     bending_error_ = 0;
     stiff_rounds_ = 0;
-    if (excludes_layers_) return;
+    if (excludes_layers_ || skips("layers")) return;
     const float points_per_vertex = points.per_vertex(network_.vertex_count());
     if (points_per_vertex < kFewPerVertex) return;
     const PerVertex<float> variances = examine_variances(surface, points);
@@ -231,7 +232,7 @@ PointsByFace Fitter::assign(const Surface& surface, const std::vector<Hit>& hits
     PointsByFace points = group_by_face(surface, fitted_, hits, team_);
     measure_noise(surface, points);
     weaken_outliers(surface, points);
-    if (expects_strays_) silence_strays(surface, points);
+    if (expects_strays_ && !skips("strays")) silence_strays(surface, points);
     return points;
 }
 
@@ -327,6 +328,7 @@ void Fitter::place_vertices(const Surface& surface) {
 }
 
 void Fitter::move_to_creases(Surface& surface, const PointsByFace& points, CreaseMoves which) {
+    if (skips("crease_moves")) return;
     const PerVertex<Vector3> moves = moves_to_creases(network_, surface, points, variances_, team_, which);
     if (std::all_of(moves.begin(), moves.end(), [](const Vector3& way) { return way.isZero(0); })) return;
     const Surface start = surface;

@@ -3,6 +3,7 @@
 
 #include "vcg_core/fit/sound_start.h"
 
+#include "vcg_core/base/ablation.h"
 #include "vcg_core/fit/cut_faces.h"
 #include "vcg_core/fit/refine.h"
 #include "vcg_core/fit/untangle.h"
@@ -12,7 +13,7 @@ namespace neuralmesh {
 std::optional<std::vector<SelfCrossing>> make_sound(Network& network, PerVertex<VertexId>& origins,
                                                     ThreadTeam& team, Progress& progress) {
     std::optional<std::vector<SelfCrossing>> left = untangle(network, kGentle, team, progress);
-    if (!left || left->empty() || network.boundary_loop_count() == 0) return left;
+    if (skips("cut_faces") || !left || left->empty() || network.boundary_loop_count() == 0) return left;
     NoProgress unasked;  // a stop from here on would leave fewer vertices
     const int vertices = network.vertex_count();
     // What keeps the topology goes before the boundary draws back, which moves vertices away from the points.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "vcg_core/base/ablation.h"
+
 namespace neuralmesh {
 
 namespace {
@@ -52,7 +54,7 @@ int face_of(const Surface& surface, VertexId a, VertexId b, VertexId c) {
 
 int open_webs(Network& network, const Surface& surface, const PointsByFace& points,
               const PerVertex<char>& barred) {
-    if (!surface.has_boundary()) return 0;
+    if (skips("webs") || !surface.has_boundary()) return 0;
     const PerVertex<float> density = supported_density(network, surface, points);
     std::vector<VertexId> starts;  // of the boundary edges to look at
     for (const VertexId v : network.vertices())

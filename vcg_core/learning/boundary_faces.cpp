@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "vcg_core/base/ablation.h"
 #include "vcg_core/mesh/triangle.h"
 
 namespace neuralmesh {
@@ -182,7 +183,7 @@ bool is_in_short_loop(const Network& network, VertexId v) {
 /// \return whether the boundary at \p v was changed
 bool mend_notch(LearningState& state, VertexId v, bool may_remove) {
     Network& network = state.network;
-    if (!network.can_fill_notch(v)) return false;
+    if (skips("learned_notches") || !network.can_fill_notch(v)) return false;
     const Ring& ring = network.ring(v);
     const VertexId after = ring[0], before = ring[ring.valence - 1];
     const Notch notch{v, after, before, cosine_at(network, v, after, before)};
@@ -197,6 +198,7 @@ bool mend_notch(LearningState& state, VertexId v, bool may_remove) {
 }  // namespace
 
 int mend_boundary_faces(LearningState& state, bool may_remove) {
+    if (skips("boundary_faces")) return 0;
     int changed = 0;
     const auto on_boundary = [&](VertexId v) {
         return state.network.alive(v) && state.network.ring(v).open != 0;

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "vcg_core/base/ablation.h"
+
 namespace neuralmesh {
 namespace {
 
@@ -162,6 +164,7 @@ std::vector<NodeId> Spaces::deepest_of_hollows() const {
 std::vector<NodeId> take_hollows_out(const Lattice& lattice, const PerNode<SquaredRadius>& distances,
                                      const PerNode<SquaredRadius>& clearance,
                                      const std::vector<LayerPlace>& places, NodeSet& inside) {
+    if (skips("hollows")) return {};
     Spaces spaces(lattice, distances, clearance, inside);
     for (const LayerPlace& place : places) spaces.look_from(place);
     spaces.decide(places.size());

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "vcg_core/base/ablation.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/shell/bridgeless_growth.h"
@@ -122,6 +123,7 @@ void Surveyor::grow() {
 }
 
 void Surveyor::examine_finer() {
+    if (skips("finer_lattice")) return;
     const float step = step_for(points_, box_, options_.max_nodes_per_side, kFineNodes * options_.max_nodes,
                                 kFinePointsPerNode * options_.points_per_node);
     if (step * kCoarser > survey_.step) return;
@@ -133,6 +135,7 @@ void Surveyor::examine_finer() {
 }
 
 void Surveyor::examine_coarser() {
+    if (skips("coarser_lattices")) return;
     for (float step = survey_.step * kCoarser * kCoarser;
          confidence() < kLowConfidence && survey_.regions.size() < kMaxLattices; step *= kCoarser) {
         report();
@@ -158,7 +161,7 @@ LatticeSurvey survey_lattices(const std::vector<Point3f>& points, const std::vec
                               const Box3f& box, const ShellOptions& options, Progress& progress) {
     Surveyor surveyor(points, places, box, options, progress);
     surveyor.examine_plain();
-    if (surveyor.confidence() >= kPlainConfidence) return surveyor.take();
+    if (skips("bridgeless_growth") || surveyor.confidence() >= kPlainConfidence) return surveyor.take();
     surveyor.grow();
     if (surveyor.confidence() < kFineConfidence) surveyor.examine_finer();
     surveyor.examine_coarser();

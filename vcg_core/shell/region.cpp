@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vcg_core/base/ablation.h"
 #include "vcg_core/shell/hollows.h"
 #include "vcg_core/shell/lattice_rows.h"
 
@@ -61,6 +62,7 @@ double radius_of_opening(const SealedSpaces& sealed, const Lattice& lattice) {
 /// Adds to \p inside the spaces with openings wider than kMaxRadius, found on a coarser lattice.
 void seal_wide_openings(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, Region& region,
                         NodeSet& inside) {
+    if (skips("wide_lattice")) return;
     const float step = longest_side(box) / static_cast<float>(kCoarseSteps);
     if (!(step > region.lattice.step)) return;
     const Lattice coarse(box, step, Region::kMargin);
@@ -69,7 +71,7 @@ void seal_wide_openings(const std::vector<vcg::Point3f>& points, const vcg::Box3
     const PerNode<SquaredRadius> clearance = clearances(coarse, distances, kCoarseMaxRadius, {});
     SealedSpaces sealed =
         enclosed_spaces(coarse, distances, clearance, kWidthRatio, kSingleLayerSquaredDepth);
-    if (sealed.nodes == 0 && !region.encloses_space)
+    if (!skips("single_layer") && sealed.nodes == 0 && !region.encloses_space)
         sealed =
             enclosed_spaces(coarse, distances, clearance, kSingleLayerWidthRatio, kSingleLayerSquaredDepth);
     if (sealed.nodes == 0) return;

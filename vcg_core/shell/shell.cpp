@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "vcg_core/base/ablation.h"
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/even_mesh.h"
 #include "vcg_core/base/text.h"
@@ -119,6 +120,7 @@ void copy_mesh(Network& network, IndexedMesh<float>& mesh) {
 }
 
 WallSides wall_sides(const Network& shell, const PerVertex<float>& thickenings) {
+    if (skips("thickening")) return {};
     if (std::none_of(thickenings.begin(), thickenings.end(), [](float length) { return length > 0; }))
         return {};
     WallSides result;
@@ -174,7 +176,7 @@ void set_mesh(ClosedMesh& closed, const Region& region, std::size_t points, cons
     const double told = static_cast<double>(points) / kPointsPerVertex;
     const double most = std::min(told, static_cast<double>(options.most_vertices));
     // A sheet is nowhere far from itself.
-    if (result.encloses_space && most > kWorthwhile * vertices) {
+    if (!skips("finer_start") && result.encloses_space && most > kWorthwhile * vertices) {
         result.walls = reduce(closed, region, vertices, most, options.target_vertices, progress);
     } else {
         simplify(network, vertices);
@@ -195,7 +197,7 @@ Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace
     result.sheet_share = sheet_share(survey.regions.front());
     result.widest_opening = survey.chosen_region().widest_opening;
     // Where the lattice shows no space, the points may lie on the two sides of walls too thin for it.
-    const bool unclear = !result.encloses_space || result.sheet_share > kMostSheet;
+    const bool unclear = !skips("walled") && (!result.encloses_space || result.sheet_share > kMostSheet);
     result.walled = unclear && share_on_thin_walls(places, surveys) > kWalled;
     result.encloses_space |= result.walled;
     return result;
@@ -203,6 +205,7 @@ Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace
 
 void set_outliers(const TargetSpace& target, const std::vector<Point3f>& points, const Region& region,
                   const ClosedMesh& closed, bool learn_outliers, StartMesh& result) {
+    if (skips("lattice_outliers")) return;
     result.outliers = outliers_of(points, region, closed.solid, closed.level);
     result.ignored_points = std::count(result.outliers.begin(), result.outliers.end(), 1);
     const double most = ShellOptions::kMaxOutlierShare * static_cast<double>(points.size());

@@ -13,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "vcg_core/base/ablation.h"
 #include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/base/indexed.h"
 #include "vcg_core/mesh/boundary_loops.h"
@@ -177,6 +178,7 @@ void remove_faces_at(const std::vector<int>& vertices, IndexedMesh<float>& mesh,
 }  // namespace
 
 int cut_short_handles(IndexedMesh<float>& mesh, int edges, std::vector<int>& source) {
+    if (skips("short_handles")) return 0;
     int cut = 0;
     for (int budget = kMostRoots; budget > 0;) {
         const Loop loop = short_loop(graph_of(mesh), edges, budget);

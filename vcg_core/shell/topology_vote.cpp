@@ -9,6 +9,8 @@
 #include <map>
 #include <utility>
 
+#include "vcg_core/base/ablation.h"
+
 namespace neuralmesh {
 namespace {
 
@@ -96,6 +98,7 @@ std::vector<int> levels_of(const Persistence& range, const Topologies& topologie
 
 TopologyVote persistent_topology(const std::vector<Topologies>& topologies,
                                  const std::vector<double>& steps) {
+    if (skips("topology_vote") && steps.size() > 1) return persistent_topology({topologies[0]}, {steps[0]});
     const std::vector<Radii> covered = covered_radii(topologies, steps);
     std::map<std::pair<int, int>, Tally> tallies;  // by components and genus
     double all = 0;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "vcg_core/base/ablation.h"
 #include "vcg_core/base/small_matrices.h"
 #include "vcg_core/target/cell_groups.h"
 
@@ -142,6 +143,7 @@ double relative_plane_distance(const NearestPoints& cloud, Place place, const st
 }
 
 void mark_isolated_clumps(const NearestPoints& cloud, std::vector<std::uint8_t>& out) {
+    if (skips("clumps")) return;
     const auto points = static_cast<double>(cloud.size());
     const auto largest = static_cast<std::size_t>(kLargestShare * points);
     const std::size_t n = cloud.size();

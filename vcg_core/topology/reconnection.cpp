@@ -13,6 +13,7 @@
 #include <set>
 #include <utility>
 
+#include "vcg_core/base/ablation.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/mesh/face_tree.h"
 #include "vcg_core/topology/corridors.h"
@@ -146,6 +147,7 @@ const Corridors& Search::corridors() const {
 
 bool Search::knows_handle(const std::vector<Membrane>& membranes, const std::vector<Rim>& rims,
                           const RimParts& parts) const {
+    if (skips("corridors")) return true;
     const Corridors& corridors = this->corridors();
     float width = 0;
     for (const Membrane& membrane : membranes) width += corridors.widest(membrane.faces);
@@ -205,6 +207,7 @@ bool Search::make(Membrane& membrane, std::vector<int> faces) const {
 
 /// Adds the same membrane with the faces around, and around those.
 void Search::widen(Wide& wide) const {
+    if (skips("wide_membranes")) return;
     while (wide.size() <= kWidestWeb) {
         std::vector<int> faces;
         for (const int f : wide.back().faces)
@@ -268,6 +271,7 @@ bool are_opposite(const Membrane& a, const Membrane& b) {
 /// a web are opposite and lack signals by no accident. So small membranes beside a sharp edge are none.
 Reconnection Search::of_web(const Wide& a, const Wide& b) const {
     Reconnection found;
+    if (skips("membrane_webs")) return found;
     if (!are_opposite(a.front(), b.front()) ||
         support_.lack_of(faces_of(a.front(), b.front())) < least_lack(surface_))
         return found;
@@ -334,7 +338,7 @@ std::vector<Reconnection> find_reconnections(const Network& network, const Surfa
     if (membranes.empty()) return {};
     Search search(network, surface, support, membranes, points, team, progress);
     std::vector<Group> groups = search.candidates();
-    if (in_groups)
+    if (in_groups && !skips("membrane_groups"))
         for (Group& group : with_smaller(membrane_groups(surface, membranes, search.edge(), kMostOfGroup)))
             groups.push_back(std::move(group));
     // The budget is for those that lack the most signals.

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// Stages of the reconstruction that a development build can skip by name, to measure what each of them brings
+// (tests/experiments/accuracy/ablation.py). In other builds nothing is skipped, and no code is made for it.
+#pragma once
+
+#ifdef NEURALMESH_ABLATION
+#include <algorithm>
+#include <cstdlib>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "vcg_core/base/error.h"
+#endif
+
+namespace neuralmesh {
+
+/// The names that NEURALMESH_SKIP may hold. Each is asked for at one place, where the stage begins.
+inline constexpr const char* kStages[] = {
+    // the cloud
+    "lifted_points", "clumps", "lattice_outliers", "main_box", "even_sampling", "noise_by_place",
+    // the start mesh
+    "bridgeless_growth", "finer_lattice", "coarser_lattices", "topology_vote", "short_handles",
+    // learning
+    "brief_learning", "noisy_learning", "settling_surplus", "saturation", "boundary_faces", "learned_notches",
+    // topology
+    "membrane_groups", "membrane_webs", "wide_membranes", "corridors",
+    // the fit
+    "strays", "layers", "cut_faces", "volume_reduction", "dense_collapses", "hold", "crease_moves",
+    "sure_creases", "boundary_targets", "notches", "webs", "held_out", "refine"};
+
+#ifdef NEURALMESH_ABLATION
+
+/// The names in the environment variable NEURALMESH_SKIP, which commas separate. \throws SettingError if one
+/// is not in kStages
+inline std::set<std::string> skipped_stages() {
+    const char* names = std::getenv("NEURALMESH_SKIP");
+    std::istringstream text(names == nullptr ? "" : names);
+    std::set<std::string> skipped;
+    for (std::string name; std::getline(text, name, ',');) {
+        if (std::find(std::begin(kStages), std::end(kStages), name) == std::end(kStages))
+            throw SettingError("NEURALMESH_SKIP names the stage \"" + name +
+                               "\", which does not exist: vcg_core/base/ablation.h lists those there are.");
+        skipped.insert(name);
+    }
+    return skipped;
+}
+
+/// Whether NEURALMESH_SKIP, as it was at the first call, names the stage \p name.
+inline bool skips(const char* name) {
+    static const std::set<std::string> skipped = skipped_stages();
+    return skipped.count(name) > 0;
+}
+
+#else
+
+constexpr bool skips(const char*) { return false; }
+
+#endif
+
+}  // namespace neuralmesh
