@@ -8,7 +8,9 @@
 #ifdef NEURALMESH_ABLATION
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
 #include <iterator>
+#include <mutex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -49,9 +51,31 @@ inline std::set<std::string> skipped_stages() {
     return skipped;
 }
 
+/// The stages that were asked for. When the process ends their names are written to the file that the
+/// environment variable NEURALMESH_ASKED names, if it is set: skipping any other would change nothing.
+class AskedStages {
+public:
+    ~AskedStages() {
+        const char* file = std::getenv("NEURALMESH_ASKED");
+        if (file == nullptr) return;
+        std::ofstream out(file);
+        for (const std::string& name : names_) out << name << '\n';
+    }
+    void add(const char* name) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        names_.insert(name);
+    }
+
+private:
+    std::mutex mutex_;
+    std::set<std::string> names_;
+};
+
 /// Whether NEURALMESH_SKIP, as it was at the first call, names the stage \p name.
 inline bool skips(const char* name) {
     static const std::set<std::string> skipped = skipped_stages();
+    static AskedStages asked;
+    asked.add(name);
     return skipped.count(name) > 0;
 }
 
