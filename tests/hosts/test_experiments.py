@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Small forms of the paper's experiments: its table, the data of its figures, features and termination. `./run.sh
-figures` makes the full ones."""
+"""Small forms of the experiments: the paper's table, the data of its figures, features and termination, and what each stage
+brings. `./run.sh figures` makes the full ones."""
 
 import json
 import subprocess
@@ -10,12 +10,15 @@ import subprocess
 import numpy as np
 import pytest
 
+import ablation
 import features
+import meshlabserver
 import models
 import paper_figures
 import paper_runs
 import paper_table1
 import paper_termination
+import peers
 import scans
 import selection_table
 import shapes
@@ -224,3 +227,82 @@ def test_the_stop_criterion_depends_on_the_mesh_and_eq_4_does_not(build, learn, 
     off = [row for row in rows if row["fit"] == "fit off"]
     assert all(paper_termination.spread([row["stopped"][error] for row in off]) <
                0.6 * paper_termination.spread([row["even"][error] for row in off]) for error in ("normal_error", "normal_rms"))
+
+
+# --- what each stage brings ---------------------------------------------------------------------------------------
+
+
+ASKS = """#include "vcg_core/base/ablation.h"
+#include <cstdio>
+#include <exception>
+int main() {
+    try {
+        std::printf("%d %d", neuralmesh::skips("webs"), neuralmesh::skips("hold"));
+    } catch (const std::exception& error) {
+        std::printf("%s", error.what());
+    }
+}
+"""
+
+
+def test_stages_are_skipped_in_a_development_build_only(tmp_path):
+    (tmp_path / "asks.cpp").write_text(ASKS)
+
+    def answers(names, *options):
+        subprocess.run(["c++", "-std=c++17", f"-I{ablation.ROOT}", *options, tmp_path / "asks.cpp", "-o", tmp_path / "asks"],
+                       check=True)
+        environment = {"NEURALMESH_SKIP": names, "NEURALMESH_ASKED": str(tmp_path / "asked.txt")}
+        return subprocess.run([tmp_path / "asks"], env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout
+
+    assert answers("webs,hold") == "0 0" and not (tmp_path / "asked.txt").exists()
+    assert answers("webs", "-DNEURALMESH_ABLATION") == "1 0"
+    assert (tmp_path / "asked.txt").read_text().split() == ["hold", "webs"]
+    assert answers("", "-DNEURALMESH_ABLATION") == "0 0"
+    sentence = answers("webs,cobwebs", "-DNEURALMESH_ABLATION")
+    assert '"cobwebs", which does not exist' in sentence and sentence.endswith(".")
+
+
+def without_a_stage(plugin_run):
+    """peers.run() as if the plugin could skip: "hold" gives another mesh, "webs" the same, "notches" no mesh; "layers" is
+    never asked for."""
+
+    def run(method, cloud, folder, counts, environment=None, settings=None, **others):
+        skipped = environment["NEURALMESH_SKIP"]
+        assert skipped != "layers"
+        if skipped == "notches":
+            raise peers.PeerError("The stage is needed.")
+        changed = {**settings, "signals_per_split": 20} if "hold" in skipped else settings
+        (folder / "asked.txt").write_text("hold webs notches")
+        return plugin_run(method, cloud, folder, counts, settings=changed, **others)
+
+    return run
+
+
+def test_the_table_of_stages_says_what_each_brings(build, tmp_path, monkeypatch, capsys):
+    plugin = str(meshlabserver.plugin_path(build, "pymeshlab-2025.7"))
+    with pytest.raises(SystemExit, match="skips no stages"):
+        ablation.main(["--plugin", plugin, "--out", str(tmp_path)])
+    monkeypatch.setattr(peers, "run", without_a_stage(peers.run))
+    monkeypatch.setattr(ablation, "check_plugin", lambda options: None)
+    words = ["--plugin", plugin, "--small", "--out", str(tmp_path), "--groups", "closed,walls,open cuts,virtual scans",
+             "--stages", "hold,webs,notches,layers", "--all-losers", "hold,webs"]
+    results = ablation.main(words)
+    assert [results[name]["runs"] for name in results] == [4] * 6
+    assert results["hold"]["changed"] > 0 and results["hold, webs"]["changed"] == results["hold"]["changed"]
+    assert results["webs"]["changed"] == results["layers"]["changed"] == 0
+    assert results["webs"]["error"] == {"closed": 1, "walls": 1, "open cuts": 1, "virtual scans": 1}
+    assert results["notches"]["saved"] >= 1 and ablation.verdict(results["notches"]).startswith("stays: ")
+    assert ablation.verdict(results["layers"]) == "may go: changes no result here"
+    assert "| layers | 1.000 | 1.000 |" in capsys.readouterr().out
+    # All of it is on disk: without time for any run the table is the same.
+    first = (tmp_path / "ablation.md").read_text()
+    ablation.main([*words, "--minutes", "0"])
+    assert (tmp_path / "ablation.md").read_text() == first
+
+
+def test_a_stage_stays_by_the_rule():
+    result = {"error": {"closed": 1.0, "walls": 1.031}, "saved": 0, "caused": 0, "time": 1.0, "changed": 3}
+    assert ablation.verdict(result) == "stays: 3 % of walls"
+    assert ablation.verdict({**result, "error": {"closed": .96, "walls": 1.02}}) == "may go: closed better without"
+    assert ablation.verdict({**result, "error": {}, "saved": 2, "caused": 1}) == "stays: 1 failure(s)"
+    assert ablation.verdict({**result, "error": {}, "saved": 1, "caused": 1, "time": 1.1}) == "stays: 10 % of the time"

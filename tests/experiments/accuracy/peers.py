@@ -196,12 +196,12 @@ def _typed(text):
     return text
 
 
-def run(method, cloud, folder, counts, plugin=None, command=None, settings=None, timeout=300):
+def run(method, cloud, folder, counts, plugin=None, command=None, settings=None, timeout=300, environment=None):
     """Runs one method on the file cloud for all counts, in other processes. Returns {count: times and memory}.
 
     method: a name of PEERS or PEERS_OF_NORMALS, or "neural" with a plugin or a command (started as COMMAND CLOUD OUT
-    target_vertices=N key=value...). settings: parameters of ours or of Screened Poisson. Raises PeerError if a process
-    fails or takes longer than timeout seconds.
+    target_vertices=N key=value...). settings: parameters of ours or of Screened Poisson. environment: more variables of
+    the processes of a method. Raises PeerError if a process fails or takes longer than timeout seconds.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -215,7 +215,7 @@ def run(method, cloud, folder, counts, plugin=None, command=None, settings=None,
     results = {}
     for job in jobs:
         more = [f"plugin={plugin}", *extra] if plugin else extra
-        output, _ = _started([*words, "vertices=" + ",".join(map(str, job)), *more], timeout)
+        output, _ = _started([*words, "vertices=" + ",".join(map(str, job)), *more], timeout, environment)
         results.update((int(n), figures) for n, figures in json.loads(output.strip().splitlines()[-1]).items())
     return results
 
@@ -241,13 +241,14 @@ with open(sys.argv[1], "w") as file:
 """
 
 
-def _started(words, timeout):
+def _started(words, timeout, environment=None):
     """Runs a process to its end. Returns its standard output and {wall, cpu, peak_mb}."""
     with tempfile.TemporaryDirectory() as scratch:
         used_file = Path(scratch, "used.json")
         clock = Clock()
         process = subprocess.Popen([sys.executable, "-I", "-S", "-c", _LAUNCHER, used_file, *words], text=True,
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
+                                   env={**os.environ, **(environment or {})})
         try:
             output, errors = process.communicate(timeout=timeout)
         except BaseException as error:

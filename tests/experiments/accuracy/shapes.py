@@ -7,7 +7,7 @@ import numpy as np
 import pymeshlab
 
 
-def _grid_faces(rows, columns, wrap_rows, wrap_columns):
+def grid_faces(rows, columns, wrap_rows, wrap_columns):
     i, j = np.meshgrid(np.arange(rows if wrap_rows else rows - 1),
                        np.arange(columns if wrap_columns else columns - 1), indexing="ij")
     i, j = i.ravel(), j.ravel()
@@ -38,7 +38,7 @@ def torus(major=1.0, minor=0.35, centre=(0, 0, 0), upright=False, around=240, ac
     v = np.stack([ring * np.cos(u), ring * np.sin(u), minor * np.sin(w)], axis=-1).reshape(-1, 3)
     if upright:
         v = np.column_stack([v[:, 0], -v[:, 2], v[:, 1]])
-    return v + np.asarray(centre), _grid_faces(around, across, True, True)
+    return v + np.asarray(centre), grid_faces(around, across, True, True)
 
 
 def linked_tori(links=3):
@@ -62,7 +62,7 @@ def revolved(profile, around=256):
     first, last, end = len(v) - 2, len(v) - 1, (len(ring) - 1) * around
     caps = [np.column_stack([np.full(around, first), k1, k]),
             np.column_stack([np.full(around, last), end + k, end + k1])]
-    return v, np.vstack([_grid_faces(len(ring), around, False, True)[:, ::-1]] + caps)
+    return v, np.vstack([grid_faces(len(ring), around, False, True)[:, ::-1]] + caps)
 
 
 def turned_ring(profile, around=256):
@@ -72,7 +72,7 @@ def turned_ring(profile, around=256):
     u = np.arange(around) * 2 * np.pi / around
     v = np.stack([profile[:, :1] * np.cos(u), profile[:, :1] * np.sin(u), np.repeat(profile[:, 1:], around, axis=1)],
                  axis=-1)
-    return v.reshape(-1, 3), _grid_faces(len(profile), around, True, True)[:, ::-1]
+    return v.reshape(-1, 3), grid_faces(len(profile), around, True, True)[:, ::-1]
 
 
 def cup(wall=0.06):
@@ -101,7 +101,7 @@ def filleted_cube(fillet=0.2):
     n = len(line)
     a, b = (g.ravel() for g in np.meshgrid(line, line, indexing="ij"))
     one = np.ones_like(a)
-    faces = _grid_faces(n, n, False, False)
+    faces = grid_faces(n, n, False, False)
     sides = []
     for axis in range(3):
         for sign in (1, -1):

@@ -149,9 +149,15 @@ class Kept:
                 continue
             self.rows[found["key"]] = found["row"]
 
+    def _word(self, key):
+        return json.dumps({**key, "program": self.program}, sort_keys=True)
+
+    def has(self, **key):
+        return self._word(key) in self.rows
+
     def row(self, make, **key):
         """The row under the key; make() makes it if it is missing."""
-        word = json.dumps({**key, "program": self.program}, sort_keys=True)
+        word = self._word(key)
         if word not in self.rows:
             self.rows[word] = make()
             with self.path.open("a") as file:
