@@ -100,6 +100,8 @@ def stripped(plugins, host, folder):
     source = Path(plugins) / host / PLUGIN
     if not source.exists():
         raise PackagingError(f"{source} is missing: './run.sh build' makes it.")
+    if b"NEURALMESH_SKIP" in source.read_bytes():
+        raise PackagingError(f"{source} is for development: build it without -DNEURALMESH_ABLATION=ON.")
     target = Path(folder) / host / PLUGIN
     target.parent.mkdir(parents=True)
     shutil.copyfile(source, target)

@@ -70,6 +70,14 @@ def test_plugins_need_nothing_newer_than_their_host(build, tmp_path):
         assert set(needed) == {"GLIBC", "GLIBCXX", "CXXABI"} and not packaging.too_new(host, needed), (host, limits)
 
 
+def test_a_plugin_that_skips_stages_is_refused(tmp_path):
+    plugin = meshlabserver.plugin_path(tmp_path, "meshlab-2022.02")
+    plugin.parent.mkdir(parents=True)
+    plugin.write_bytes(b"NEURALMESH_SKIP")
+    with pytest.raises(packaging.PackagingError, match="is for development"):
+        packaging.stripped(tmp_path / "plugins", "meshlab-2022.02", tmp_path / "out")
+
+
 def test_a_newer_version_than_the_hosts_is_found():
     assert packaging.too_new("meshlab-2022.02", {"GLIBC": "2.31", "GLIBCXX": "3.4.28"}) == []
     assert packaging.too_new("meshlab-2022.02", {"GLIBC": "2.4", "GLIBCXX": "3.4.29"}) == ["GLIBCXX_3.4.29"]
