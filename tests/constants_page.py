@@ -149,7 +149,7 @@ def unit_of(constant):
 def statements(text):
     """The statements of a file without comments and strings, each on one line."""
     code = re.sub(r"//[^\n]*|/\*.*?\*/", "", text, flags=re.DOTALL)
-    code = re.sub(r'!?skips\("\w+"\) (?:&&|\|\|) ', "", code)  # of development builds
+    code = re.sub(r'\s*(?:&&|\|\|)\s*!?skips\("\w+"\)', "", code)  # of development builds
     code = re.sub(r'"(?:[^"\\\n]|\\.)*"', '""', code)
     return [re.sub(r"\s+", " ", part).strip() for part in re.split(r"[;{}]", code)]
 

@@ -22,7 +22,7 @@ void f() {
     constexpr double kBelow = 0.75;  // of the spacing
     constexpr int kChunk = 512;
     if (noise < kBelow && points_per_vertex >= 3) return;
-    if (skips("stage") || noise > other) return;
+    if (noise > other || skips("stage")) return;
     x = calm ? kShare : kOther;
 }
 constexpr int at(int i) { return i; }

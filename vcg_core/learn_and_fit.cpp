@@ -29,9 +29,8 @@ std::size_t carried_by_points(const LearningTask& task) {
 /// Whether the fit inserts the vertices that the points do not carry.
 bool fills_up(const LearningTask& task, const Settings& settings) {
     constexpr std::size_t kFewestToFill = 256;
-    if (skips("refine")) return false;
     return settings.redistributes_vertices() && task.encloses_space && !task.target().has_faces() &&
-           task.target().positions().size() >= kFewestToFill;
+           task.target().positions().size() >= kFewestToFill && !skips("refine");
 }
 
 /// The vertices that learning and fit place by the points; the fit inserts the others. All, unless the cloud
@@ -76,10 +75,10 @@ int surplus_for_volume(const LearningTask& task, int final_vertices) {
 bool reduces_by_volume(const LearningTask& task, int final_vertices) {
     constexpr double kMostOutliers = 0.2, kMostNoise = 0.15;
     constexpr int kFew = 1000, kFewNoisy = 3000, kPointsPerLearned = 10;
-    if (skips("volume_reduction")) return false;
     const auto points = static_cast<double>(task.target().positions().size());
     const int learned = final_vertices + surplus_for_volume(task, final_vertices);
-    if (!is_closed(task) || task.outliers >= kMostOutliers * points) return false;
+    if (!is_closed(task) || task.outliers >= kMostOutliers * points || skips("volume_reduction"))
+        return false;
     if (is_calm(task) && final_vertices >= kFew) return true;
     return task.noise < kMostNoise && final_vertices < kFewNoisy && points >= kPointsPerLearned * learned;
 }
@@ -125,7 +124,7 @@ Plan plan_for(const LearningTask& task, const Settings& settings) {
 /// vertices and more accuracy is wanted: they would have 1.02 times the error.
 bool learns_briefly(const Plan& plan) {
     constexpr int kPreview = 2000;
-    return !skips("brief_learning") && plan.by_volume && plan.has_surplus() && plan.carried < kPreview;
+    return plan.by_volume && plan.has_surplus() && plan.carried < kPreview && !skips("brief_learning");
 }
 
 /// Whether a network that learns for long follows the noise of the points. With half the signals the error is
@@ -133,9 +132,8 @@ bool learns_briefly(const Plan& plan) {
 /// at .1 % (.16 edges). With 20,000 at .1 % (.13 edges) it would be 1.02.
 bool follows_noise(const LearningTask& task, const Settings& settings) {
     constexpr double kNoisy = 0.14;  // in edges
-    if (skips("noisy_learning")) return false;
     return settings.redistributes_vertices() && is_closed(task) && task.encloses_space &&
-           !task.target().has_faces() && task.noise >= kNoisy;
+           !task.target().has_faces() && task.noise >= kNoisy && !skips("noisy_learning");
 }
 
 LearnerOptions learner_options(const LearningTask& task, const Settings& settings, const Plan& plan) {
@@ -146,8 +144,8 @@ LearnerOptions learner_options(const LearningTask& task, const Settings& setting
         options.signals_per_split = std::max(1, options.signals_per_split / 2);
     // As many signals as for those that stay settle them well enough; half as many where most of them stay:
     // 50,000 and 100,000 vertices then have .99 and .98 of the error.
-    if (!skips("settling_surplus") && plan.has_surplus() && settings.redistributes_vertices() &&
-        (plan.calm || plan.by_volume))
+    if (plan.has_surplus() && settings.redistributes_vertices() && (plan.calm || plan.by_volume) &&
+        !skips("settling_surplus"))
         options.settling_signals_per_vertex =
             static_cast<int>(static_cast<std::int64_t>(options.settling_signals_per_vertex) * plan.carried /
                              std::max(plan.grow_to, 2 * plan.carried));

@@ -134,7 +134,7 @@ void measure_noise(LearningTask& task, Survey& survey, const Settings& settings)
     // each place feline would have 1.15 times the error at .1 % of the diagonal (50,000 points, 2,000
     // vertices).
     const bool open = task.network.boundary_loop_count() > 0;
-    if (skips("noise_by_place") || !open || task.target().is_exact()) return;
+    if (!open || task.target().is_exact() || skips("noise_by_place")) return;
     if (surface.clutter() < 1) task.noise_by_place.emplace(surface);
 }
 

@@ -154,7 +154,7 @@ PerVertex<float> inner_density(const Network& network, const Surface& surface, c
 std::vector<BoundaryTarget> find_boundary_targets(const Network& network, const Surface& surface,
                                                   const PointsByFace& points) {
     std::vector<BoundaryTarget> targets;
-    if (skips("boundary_targets") || !surface.has_boundary()) return targets;
+    if (!surface.has_boundary() || skips("boundary_targets")) return targets;
     TargetSearch search(network, surface, points);
     for (VertexId v : network.vertices())
         if (network.ring(v).open != 0) search.add_target(v, targets);

@@ -101,7 +101,7 @@ public:
         const double variance = static_cast<double>(fitter_.noise_variance());
         const double optimism = variance * (learned_share + kCrumpling * variance / (edge * edge));
         report_.improved =
-            skips("held_out") || error * error < report_.rms_unfitted * report_.rms_unfitted + optimism;
+            error * error < report_.rms_unfitted * report_.rms_unfitted + optimism || skips("held_out");
         if (report_.improved) report_.rms_fitted = error;
     }
 
@@ -118,8 +118,9 @@ private:
         Surface surface(network_);
         PointsByFace points = fitter_.locate_points(surface);
         // Sheets that are closed around both sides are not redistributed.
-        holds_ = !skips("hold") && options_.redistribute && !surface.has_boundary() &&
-                 network_.vertex_count() <= kMostVerticesToHold && fitter_.has_precise_points(surface);
+        holds_ = options_.redistribute && !surface.has_boundary() &&
+                 network_.vertex_count() <= kMostVerticesToHold && fitter_.has_precise_points(surface) &&
+                 !skips("hold");
         if (holds_ && options_.rounds == 0) rounds_ = std::max(rounds_, kRoundsWithHold);
         fitter_.set_directions(surface);
         at_start_ = fitter_.held_out();
@@ -149,7 +150,7 @@ private:
     bool solve(int round, Surface& surface, PointsByFace& points) {
         const bool hold = holds_ && round >= kFirstHold;
         const double error = fitter_.solve(points, surface, hold ? kHold : PointToPlaneSystem::kSliding);
-        if (!skips("sure_creases") && round > kFirstCreases && error > last_error_)
+        if (round > kFirstCreases && error > last_error_ && !skips("sure_creases"))
             crease_moves_ = CreaseMoves::sure;
         if (round == 0 || error < best_error_) {
             best_ = network_;

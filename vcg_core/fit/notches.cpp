@@ -66,7 +66,7 @@ bool is_notch(const Network& network, const Surface& surface, const PointsByFace
 std::vector<VertexId> find_notches(const Network& network, const Surface& surface,
                                    const PointsByFace& points) {
     std::vector<VertexId> notches;
-    if (skips("notches") || !surface.has_boundary()) return notches;
+    if (!surface.has_boundary() || skips("notches")) return notches;
     const PerVertex<float> density = inner_density(network, surface, points);
     for (VertexId v : network.vertices())
         if (is_notch(network, surface, points, density[v], v)) notches.push_back(v);

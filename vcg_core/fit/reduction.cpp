@@ -102,7 +102,7 @@ bool Fitter::reduce_by_costs(int vertices, bool calm, Surface& surface, PointsBy
     const int at_start = network_.vertex_count();
     const double removed_share = calm ? kCalmRemovedShare : kRemovedShare;
     // Not where each round finds the stray points anew.
-    const bool dense = !skips("dense_collapses") && at_start > kDenseFrom * vertices && !expects_strays_;
+    const bool dense = at_start > kDenseFrom * vertices && !expects_strays_ && !skips("dense_collapses");
     while (network_.vertex_count() > vertices) {
         if (!wants_reduction(vertices, at_start, progress)) return false;
         points = update_for_removal(surface, std::move(points));

@@ -13,7 +13,7 @@ namespace neuralmesh {
 std::optional<std::vector<SelfCrossing>> make_sound(Network& network, PerVertex<VertexId>& origins,
                                                     ThreadTeam& team, Progress& progress) {
     std::optional<std::vector<SelfCrossing>> left = untangle(network, kGentle, team, progress);
-    if (skips("cut_faces") || !left || left->empty() || network.boundary_loop_count() == 0) return left;
+    if (!left || left->empty() || network.boundary_loop_count() == 0 || skips("cut_faces")) return left;
     NoProgress unasked;  // a stop from here on would leave fewer vertices
     const int vertices = network.vertex_count();
     // What keeps the topology goes before the boundary draws back, which moves vertices away from the points.

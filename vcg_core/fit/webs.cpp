@@ -54,7 +54,7 @@ int face_of(const Surface& surface, VertexId a, VertexId b, VertexId c) {
 
 int open_webs(Network& network, const Surface& surface, const PointsByFace& points,
               const PerVertex<char>& barred) {
-    if (skips("webs") || !surface.has_boundary()) return 0;
+    if (!surface.has_boundary() || skips("webs")) return 0;
     const PerVertex<float> density = supported_density(network, surface, points);
     std::vector<VertexId> starts;  // of the boundary edges to look at
     for (const VertexId v : network.vertices())

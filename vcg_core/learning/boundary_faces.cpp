@@ -183,7 +183,7 @@ bool is_in_short_loop(const Network& network, VertexId v) {
 /// \return whether the boundary at \p v was changed
 bool mend_notch(LearningState& state, VertexId v, bool may_remove) {
     Network& network = state.network;
-    if (skips("learned_notches") || !network.can_fill_notch(v)) return false;
+    if (!network.can_fill_notch(v) || skips("learned_notches")) return false;
     const Ring& ring = network.ring(v);
     const VertexId after = ring[0], before = ring[ring.valence - 1];
     const Notch notch{v, after, before, cosine_at(network, v, after, before)};
@@ -198,10 +198,9 @@ bool mend_notch(LearningState& state, VertexId v, bool may_remove) {
 }  // namespace
 
 int mend_boundary_faces(LearningState& state, bool may_remove) {
-    if (skips("boundary_faces")) return 0;
     int changed = 0;
     const auto on_boundary = [&](VertexId v) {
-        return state.network.alive(v) && state.network.ring(v).open != 0;
+        return state.network.alive(v) && state.network.ring(v).open != 0 && !skips("boundary_faces");
     };
     for (const VertexId v : state.network.vertices()) {
         const Ring& ring = state.network.ring(v);

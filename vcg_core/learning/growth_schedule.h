@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "vcg_core/base/ablation.h"
 #include "vcg_core/learning/learner_options.h"
 
 namespace neuralmesh {
@@ -82,7 +81,6 @@ public:
     bool reached(int vertices, std::int64_t due) {
         constexpr std::int64_t kLeastGrowth = 10;
         constexpr int kPeriods = 4;
-        if (skips("saturation")) return false;
         const bool grows = kLeastGrowth * (vertices - vertices_) > due - due_;
         vertices_ = vertices;
         due_ = due;

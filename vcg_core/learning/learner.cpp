@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "vcg_core/base/ablation.h"
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/learning/boundary_faces.h"
@@ -100,7 +101,7 @@ StopReason Learner::grow(Progress& progress) {
         if (schedule_.exhausted(signals())) return StopReason::cut_short;
         if (collapses &&
             saturation_.reached(network().vertex_count(), state_.splits + state_.splits_refused) &&
-            state_.options.noise != nullptr) {
+            state_.options.noise != nullptr && !skips("saturation")) {
             const bool stop =
                 state_.options.learn_topology && !stages.over() && !learn_topology(true, standing);
             if (stop) return StopReason::cancelled;

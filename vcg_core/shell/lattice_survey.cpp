@@ -123,10 +123,9 @@ void Surveyor::grow() {
 }
 
 void Surveyor::examine_finer() {
-    if (skips("finer_lattice")) return;
     const float step = step_for(points_, box_, options_.max_nodes_per_side, kFineNodes * options_.max_nodes,
                                 kFinePointsPerNode * options_.points_per_node);
-    if (step * kCoarser > survey_.step) return;
+    if (step * kCoarser > survey_.step || skips("finer_lattice")) return;
     report();
     survey_.regions.insert(survey_.regions.begin(), region_at(step));
     report();
@@ -135,9 +134,9 @@ void Surveyor::examine_finer() {
 }
 
 void Surveyor::examine_coarser() {
-    if (skips("coarser_lattices")) return;
     for (float step = survey_.step * kCoarser * kCoarser;
-         confidence() < kLowConfidence && survey_.regions.size() < kMaxLattices; step *= kCoarser) {
+         confidence() < kLowConfidence && survey_.regions.size() < kMaxLattices && !skips("coarser_lattices");
+         step *= kCoarser) {
         report();
         survey_.regions.push_back(region_at(step));
         survey_.topologies.push_back(grown_topologies(survey_.regions.back(), team_));
@@ -161,7 +160,7 @@ LatticeSurvey survey_lattices(const std::vector<Point3f>& points, const std::vec
                               const Box3f& box, const ShellOptions& options, Progress& progress) {
     Surveyor surveyor(points, places, box, options, progress);
     surveyor.examine_plain();
-    if (skips("bridgeless_growth") || surveyor.confidence() >= kPlainConfidence) return surveyor.take();
+    if (surveyor.confidence() >= kPlainConfidence || skips("bridgeless_growth")) return surveyor.take();
     surveyor.grow();
     if (surveyor.confidence() < kFineConfidence) surveyor.examine_finer();
     surveyor.examine_coarser();

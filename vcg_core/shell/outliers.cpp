@@ -73,10 +73,10 @@ void remove_surface_nodes(const Region& region, const NodeSet& solid, int level,
 Box3f main_box(const std::vector<Point3f>& points) {
     Box3f box;
     for (const Point3f& p : points) box.Add(p);
-    if (skips("main_box")) return box;
     for (int round = 0; round < kMaxRounds; ++round) {
         const Box3f groups = box_of_groups(points, box);
-        if (groups.IsNull() || longest_side(groups) > kShrinkage * longest_side(box)) break;
+        if (groups.IsNull() || longest_side(groups) > kShrinkage * longest_side(box) || skips("main_box"))
+            break;
         box = groups;
     }
     return box;

@@ -62,16 +62,15 @@ double radius_of_opening(const SealedSpaces& sealed, const Lattice& lattice) {
 /// Adds to \p inside the spaces with openings wider than kMaxRadius, found on a coarser lattice.
 void seal_wide_openings(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, Region& region,
                         NodeSet& inside) {
-    if (skips("wide_lattice")) return;
     const float step = longest_side(box) / static_cast<float>(kCoarseSteps);
-    if (!(step > region.lattice.step)) return;
+    if (!(step > region.lattice.step) || skips("wide_lattice")) return;
     const Lattice coarse(box, step, Region::kMargin);
     const PerNode<SquaredRadius> distances =
         squared_distances(coarse, count_points(coarse, points), kCoarseMaxRadius);
     const PerNode<SquaredRadius> clearance = clearances(coarse, distances, kCoarseMaxRadius, {});
     SealedSpaces sealed =
         enclosed_spaces(coarse, distances, clearance, kWidthRatio, kSingleLayerSquaredDepth);
-    if (!skips("single_layer") && sealed.nodes == 0 && !region.encloses_space)
+    if (sealed.nodes == 0 && !region.encloses_space && !skips("single_layer"))
         sealed =
             enclosed_spaces(coarse, distances, clearance, kSingleLayerWidthRatio, kSingleLayerSquaredDepth);
     if (sealed.nodes == 0) return;

@@ -120,8 +120,8 @@ void copy_mesh(Network& network, IndexedMesh<float>& mesh) {
 }
 
 WallSides wall_sides(const Network& shell, const PerVertex<float>& thickenings) {
-    if (skips("thickening")) return {};
-    if (std::none_of(thickenings.begin(), thickenings.end(), [](float length) { return length > 0; }))
+    if (std::none_of(thickenings.begin(), thickenings.end(), [](float length) { return length > 0; }) ||
+        skips("thickening"))
         return {};
     WallSides result;
     for (const VertexId v : shell.vertices()) result.thickenings.push_back(thickenings[v]);
@@ -176,7 +176,7 @@ void set_mesh(ClosedMesh& closed, const Region& region, std::size_t points, cons
     const double told = static_cast<double>(points) / kPointsPerVertex;
     const double most = std::min(told, static_cast<double>(options.most_vertices));
     // A sheet is nowhere far from itself.
-    if (!skips("finer_start") && result.encloses_space && most > kWorthwhile * vertices) {
+    if (result.encloses_space && most > kWorthwhile * vertices && !skips("finer_start")) {
         result.walls = reduce(closed, region, vertices, most, options.target_vertices, progress);
     } else {
         simplify(network, vertices);
@@ -197,7 +197,7 @@ Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace
     result.sheet_share = sheet_share(survey.regions.front());
     result.widest_opening = survey.chosen_region().widest_opening;
     // Where the lattice shows no space, the points may lie on the two sides of walls too thin for it.
-    const bool unclear = !skips("walled") && (!result.encloses_space || result.sheet_share > kMostSheet);
+    const bool unclear = (!result.encloses_space || result.sheet_share > kMostSheet) && !skips("walled");
     result.walled = unclear && share_on_thin_walls(places, surveys) > kWalled;
     result.encloses_space |= result.walled;
     return result;

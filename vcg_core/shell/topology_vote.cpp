@@ -98,7 +98,7 @@ std::vector<int> levels_of(const Persistence& range, const Topologies& topologie
 
 TopologyVote persistent_topology(const std::vector<Topologies>& topologies,
                                  const std::vector<double>& steps) {
-    if (skips("topology_vote") && steps.size() > 1) return persistent_topology({topologies[0]}, {steps[0]});
+    if (steps.size() > 1 && skips("topology_vote")) return persistent_topology({topologies[0]}, {steps[0]});
     const std::vector<Radii> covered = covered_radii(topologies, steps);
     std::map<std::pair<int, int>, Tally> tallies;  // by components and genus
     double all = 0;

@@ -48,7 +48,7 @@ public:
         for (std::size_t i = 0; i < suspects_.size(); ++i)
             if (evidence_[i] > limit) out[suspects_[i].place] = 1;
         const auto marked = static_cast<double>(std::count(out.begin(), out.end(), 1));
-        if (skips("lifted_points") || marked <= kFew * static_cast<double>(cloud_.size())) return;
+        if (marked <= kFew * static_cast<double>(cloud_.size()) || skips("lifted_points")) return;
         for (const Place p : lifted()) out[p] = 1;
     }
 

@@ -271,9 +271,8 @@ bool are_opposite(const Membrane& a, const Membrane& b) {
 /// a web are opposite and lack signals by no accident. So small membranes beside a sharp edge are none.
 Reconnection Search::of_web(const Wide& a, const Wide& b) const {
     Reconnection found;
-    if (skips("membrane_webs")) return found;
     if (!are_opposite(a.front(), b.front()) ||
-        support_.lack_of(faces_of(a.front(), b.front())) < least_lack(surface_))
+        support_.lack_of(faces_of(a.front(), b.front())) < least_lack(surface_) || skips("membrane_webs"))
         return found;
     const float least = least_gain(a.front().missing + b.front().missing);
     for (std::size_t ring = 1; ring < std::min(a.size(), b.size()); ++ring) {
