@@ -97,6 +97,11 @@ std::string sentence_on_run(const Report& report, int action) {
     return text.str();
 }
 
+std::string message(const char* kind, std::string sentence) {
+    std::replace(sentence.begin(), sentence.end(), '\n', ' ');
+    return std::string(kind) + '\t' + sentence + '\n';
+}
+
 std::string sentence_if_memory_allows() {
     try {
         throw;
@@ -177,6 +182,16 @@ std::vector<std::string> log_lines(const Report& report, int action) {
     if (report.topology_confidence > 0) lines.push_back(sentence_on_topology(report));
     return lines;
 }
+
+std::string messages_of(const Report& report, int action) {
+    std::string lines = message("note", sentence_on_run(report, action));
+    if (report.topology_confidence > 0) lines += message("note", sentence_on_topology(report));
+    for (const std::string& note : report.notes) lines += message("note", note);
+    for (const std::string& warning : report.warnings) lines += message("warning", warning);
+    return lines;
+}
+
+std::string message_of_error(const std::string& sentence) { return message("error", sentence); }
 
 std::string sentence_on_origin(const Coordinates& origin) {
     std::ostringstream text = plain_stream();

@@ -66,6 +66,12 @@ std::vector<Figure> figures(const Report& report, int action = kReconstruct);
 /// learning started from a shell, the topology found and its confidence.
 std::vector<std::string> log_lines(const Report& report, int action = kReconstruct);
 
+/// What the log says of a run in words, a line each: "warning" or "note", a tab, and the sentence.
+std::string messages_of(const Report& report, int action = kReconstruct);
+
+/// The line of messages_of() of the run that ended with the error \p sentence.
+std::string message_of_error(const std::string& sentence);
+
 /// The warning that the new layer stores its coordinates relative to \p origin.
 std::string sentence_on_origin(const Coordinates& origin);
 

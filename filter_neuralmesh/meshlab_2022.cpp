@@ -18,6 +18,27 @@
 
 using namespace neuralmesh;
 
+namespace {
+
+/// See neural_mesh_messages().
+thread_local std::string messages;
+
+/// Lack of memory for \p make() is no failure: the result, or the exception, exists.
+template <class Make>
+void keep_messages(const Make& make) {
+    try {
+        messages = make();
+    } catch (const std::bad_alloc&) {
+        messages.clear();
+    }
+}
+
+}  // namespace
+
+/// What the last run in this thread told: the lines of messages_of(), or one of message_of_error(). For the
+/// Python package, because pymeshlab prints the log, or loses it. Valid until the next run in this thread.
+extern "C" Q_DECL_EXPORT const char* neural_mesh_messages() { return messages.c_str(); }
+
 FilterNeuralMeshPlugin::FilterNeuralMeshPlugin() {
     for (const Action& action : all_actions()) {
         typeList.push_back(action.id);
@@ -65,6 +86,7 @@ std::map<std::string, QVariant> FilterNeuralMeshPlugin::applyFilter(const QActio
                                                                     unsigned int& /*post_condition_mask*/,
                                                                     vcg::CallBackPos* call_back) {
     std::string sentence;
+    messages.clear();
     try {
         const int id = ID(action);
         const Settings settings = settings_from(list, action_of(id).settings, document);
@@ -82,6 +104,7 @@ std::map<std::string, QVariant> FilterNeuralMeshPlugin::applyFilter(const QActio
                                   ? count_current_layer(document, settings, call_back, report_to_host)
                                   : learn_current_layer(document, settings, call_back, complete, remove);
         log_run(report, id, [this](auto level, const std::string& line) { log(level, line); });
+        keep_messages([&report, id] { return messages_of(report, id); });
         return results;
     } catch (...) {
         sentence = sentence_of_current_exception();
@@ -91,6 +114,7 @@ std::map<std::string, QVariant> FilterNeuralMeshPlugin::applyFilter(const QActio
     } catch (const std::bad_alloc&) {
         // The exception holds the same sentence.
     }
+    keep_messages([&sentence] { return message_of_error(sentence); });
     throw MLException(QString::fromStdString(sentence));
 }
 

@@ -42,6 +42,19 @@ TEST(Actions, CountTheWarningsAndLogThemSeparately) {
     for (const std::string& line : log_lines(report)) EXPECT_EQ(line.find("One."), std::string::npos) << line;
 }
 
+TEST(Actions, TellMessagesALineEach) {
+    Report report;
+    report.topology_confidence = 0.9;
+    report.notes = {"Two\nlines."};
+    report.warnings = {"One."};
+    const std::string lines = messages_of(report);
+    EXPECT_EQ(lines.find("note\tNeural Mesh: 0 vertices"), 0U) << lines;
+    EXPECT_NE(lines.find("\nnote\tThe surface was found"), std::string::npos) << lines;
+    EXPECT_NE(lines.find("\nnote\tTwo lines.\nwarning\tOne.\n"), std::string::npos) << lines;
+    EXPECT_EQ(lines.find("vertices="), std::string::npos) << lines;  // the results
+    EXPECT_EQ(message_of_error("Bad."), "error\tBad.\n");
+}
+
 TEST(Actions, ReportCountersWithoutFiguresOfAReconstruction) {
     Report report;
     report.vertices = 642;

@@ -10,11 +10,19 @@
 
     ms.load_new_mesh("mesh.ply")
     ms.compute_scalar_by_neural_normal_counter_per_vertex(select_features=True)
+
+neural_mesh.log() gives the warnings and notes of the last run in this thread, also with MeshSet(verbose=False). Each
+warning is a Python warning, too, of the category neural_mesh.NeuralMeshWarning.
 """
 
 import sys
 from importlib import metadata
 from pathlib import Path
+
+from neural_mesh import run_log
+from neural_mesh.run_log import Log, Message, NeuralMeshWarning, log
+
+__all__ = ["COUNTERS", "FILTER", "Log", "Message", "NeuralMeshWarning", "log"]
 
 BUILT_FOR = "2025.7"  # the release of pymeshlab; its post-releases have the same interface
 FILTER = "generate_surface_reconstruction_neural_mesh"
@@ -42,8 +50,8 @@ The mesh has exactly `target_vertices` vertices (default 10000), dense where the
 flat. The vertex quality measures how much it bends. All parameters and results are in the pages of Neural Mesh;
 pymeshlab.print_filter_parameter_list('%s') lists the parameters.
 
-Returns a dict: vertices, faces, genus, components, rms_error, warnings and others. Raises PyMeshLabException with a
-sentence that says what to do.""",
+Returns a dict: vertices, faces, genus, components, rms_error, warnings and others. neural_mesh.log() gives the warnings
+and notes as sentences. Raises PyMeshLabException with a sentence that says what to do.""",
     COUNTERS: """Computes how much of a feature each vertex of the current mesh is, as its scalar.
 
 A copy of the mesh learns random points of the layer `signal_layer` (default: the mesh itself). The scalar holds the
@@ -51,19 +59,23 @@ normal counter or, with `feature_measure` 1, the crease measure; `select_feature
 changes. All parameters and results are in the pages of Neural Mesh; pymeshlab.print_filter_parameter_list('%s') lists
 the parameters.
 
-Returns a dict: vertices, signals, feature_vertices, mean_counter, seconds and others. Raises PyMeshLabException with a
-sentence that says what to do.""",
+Returns a dict: vertices, signals, feature_vertices, mean_counter, seconds and others. neural_mesh.log() gives the
+warnings and notes as sentences. Raises PyMeshLabException with a sentence that says what to do.""",
 }
 
 
 def _add_methods():
     import pymeshlab
-    if FILTER not in pymeshlab.filter_list():  # else the caller has loaded the plugin
+    if FILTER in pymeshlab.filter_list():  # the caller has loaded the plugin
+        run_log.read_messages_of(run_log.loaded_file(PLUGIN.name))
+    else:
         pymeshlab.load_plugin(str(PLUGIN))
+        run_log.read_messages_of(PLUGIN)
     for name, documentation in _DOCUMENTATION.items():
         method = pymeshlab.bind_function(name)  # as pymeshlab does for its own filters
         method.__doc__ = documentation % name
         setattr(pymeshlab.MeshSet, name, method)
+    run_log.warn_after(_DOCUMENTATION, pymeshlab.MeshSet)
 
 
 try:

@@ -6,12 +6,13 @@
 import argparse
 import importlib
 import sys
+import warnings
 from pathlib import Path
-from typing import List, Optional
+from typing import Any, List, Optional
 
 import pymeshlab
 
-from neural_mesh import FILTER
+from neural_mesh import FILTER, NeuralMeshWarning
 from neural_mesh.mesh_files import NotWhole, save
 from neural_mesh.parameters import WrongUsage, check, for_pymeshlab, line_of, sentence_of, settings_of
 
@@ -43,6 +44,20 @@ def arguments_of_one(parser: argparse.ArgumentParser) -> None:
         f"  neural-mesh {name:8}{what}" for name, what in SUBCOMMANDS.items())])
 
 
+def say_warnings() -> None:
+    """Lets warnings of the filter be sentences, without the place of the call."""
+    others = warnings.showwarning
+
+    def show(message: Any, category: Any, *place: Any, **more: Any) -> None:
+        if issubclass(category, NeuralMeshWarning):
+            print(f"neural-mesh: {message}", file=sys.stderr)
+        else:
+            others(message, category, *place, **more)
+
+    warnings.simplefilter("always", NeuralMeshWarning)
+    warnings.showwarning = show
+
+
 def main(arguments: Optional[List[str]] = None) -> int:
     words = sys.argv[1:] if arguments is None else arguments
     name = words[0] if words and words[0] in SUBCOMMANDS else ""
@@ -56,6 +71,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
         arguments_of_one(parser)
         run = learn_one
     given = parser.parse_intermixed_args(words[1:] if name else words)
+    say_warnings()
     try:
         return run(given)
     except WrongUsage as error:

@@ -13,12 +13,13 @@ import resource
 import signal
 import sys
 import time
+import warnings
 from pathlib import Path
 from typing import Any, Dict, List, Optional
 
 import pymeshlab
 
-from neural_mesh import FILTER
+from neural_mesh import FILTER, NeuralMeshWarning
 from neural_mesh.mesh_files import NotWhole, save
 from neural_mesh.parameters import for_pymeshlab, sentence_of
 
@@ -116,6 +117,7 @@ def answer_jobs(answers: Any, memory_limit: Optional[int]) -> None:
 
 def main() -> None:
     end_with(int(sys.argv[1]))
+    warnings.simplefilter("ignore", NeuralMeshWarning)  # the log has them, with those of loading
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # pymeshlab prints the parameters of each filter
     answer_jobs(answers, int(sys.argv[2]) or None)
