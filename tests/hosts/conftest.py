@@ -23,6 +23,7 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 import input_hosts  # noqa: E402
 import meshlabserver  # noqa: E402
 import models  # noqa: E402
+import python_site  # noqa: E402
 import times  # noqa: E402
 
 PYTHON_NAME = input_hosts.PYTHON_NAME
@@ -130,6 +131,12 @@ def installed(dist, tmp_path_factory):
     subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target",
                     str(folder), str(the_file(dist, "*.whl"))], check=True)
     return folder
+
+
+@pytest.fixture(scope="session")
+def site(build, tmp_path_factory):
+    """A folder to be searched for modules, with the Python package."""
+    return python_site.make(tmp_path_factory.mktemp("site"), meshlabserver.plugin_path(build, "pymeshlab-2025.7"))
 
 
 @pytest.fixture

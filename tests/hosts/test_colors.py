@@ -3,13 +3,18 @@
 
 """Vertex colours: those of the layer, the same in all hosts, and what the filter does if there are none."""
 
+from pathlib import Path
+
 import input_hosts
 import inputs
 import meshlabserver
 import numpy as np
 import pytest
-from conftest import few_of, write_points
+import python_site
+from conftest import FULL, few_of, write_points
+from PIL import Image
 
+EXAMPLE = Path(__file__).resolve().parent / "examples/texture_pymeshlab.py"
 WAVE = 1.0  # the period of waves() over a unit ball, ten edges of its mesh of 1,500 vertices
 OUTLIERS = 20
 
@@ -77,3 +82,25 @@ def test_the_colours_can_be_chosen(pymeshlab, meshes, tmp_path):
         assert meshes.current_mesh().has_vertex_color() == there
         if there:
             assert_counter_colors(meshes.current_mesh())
+
+
+@FULL
+def test_the_example_gives_a_coarse_mesh_the_colours_of_all_points(site, pymeshlab, meshes, tmp_path):
+    """Stripes that are a third as wide as its edges are long, and finer than its vertex colours."""
+    points = inputs.ball(40_000)
+    striped = np.modf(points[:, 2] * 20 + 20)[0] < .5
+    colors = np.where(striped[:, None], [.9, .2, .1, 1], [.1, .3, .8, 1])
+    meshes.add_mesh(pymeshlab.Mesh(points, v_color_matrix=colors))
+    meshes.save_current_mesh(str(tmp_path / "cloud.ply"), save_vertex_color=True)
+    (tmp_path / "out").mkdir()
+    done = python_site.run(site, EXAMPLE, "cloud.ply", "out/mesh.obj", 300, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    meshes.load_new_mesh(str(tmp_path / "out/mesh.obj"))
+    mesh = meshes.current_mesh()
+    assert mesh.vertex_number() == 300 and mesh.textures()
+    texture = np.asarray(Image.open(tmp_path / "out/mesh.png").convert("RGB"))
+    height = mesh.vertex_matrix()[mesh.face_matrix()][:, :, 2].mean(1) * 20 + 20
+    u, v = mesh.wedge_tex_coord_matrix().reshape(-1, 3, 2).mean(1).T
+    found = texture[((1 - v) * len(texture)).astype(int), (u * len(texture)).astype(int)]
+    within = np.abs(np.modf(height * 2)[0] - .5) < .3  # not at a border of stripes
+    assert ((found[:, 0] > found[:, 2]) == (np.modf(height)[0] < .5))[within].mean() > .95

@@ -4,29 +4,13 @@
 """What the Python package tells of a run besides its results: neural_mesh.log(), and warnings of Python."""
 
 import json
-import os
 import shutil
-import subprocess
-import sys
-from pathlib import Path
 
 import inputs
 import meshlabserver
 import pytest
+import python_site
 from conftest import FULL, PYTHON_NAME, write_points
-
-PACKAGE = Path(__file__).resolve().parents[2] / "filter_neuralmesh/python/neural_mesh"
-
-
-@pytest.fixture(scope="module")
-def site(build, tmp_path_factory):
-    """A folder to be searched for modules, with the package as the wheel installs it."""
-    folder = tmp_path_factory.mktemp("site")
-    shutil.copytree(PACKAGE, folder / "neural_mesh", ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copy(meshlabserver.plugin_path(build, "pymeshlab-2025.7"), folder / "neural_mesh")
-    (folder / "neural_mesh-0.dist-info").mkdir()
-    (folder / "neural_mesh-0.dist-info/METADATA").write_text("Metadata-Version: 2.1\nName: neural-mesh\nVersion: 0\n")
-    return folder
 
 
 @pytest.fixture(scope="module")
@@ -41,15 +25,10 @@ def ball(tmp_path_factory):
     return write_points(tmp_path_factory.mktemp("clouds") / "ball.ply", inputs.ball())
 
 
-def command(site, *words, **options):
-    return subprocess.run([sys.executable, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          check=False, env=dict(os.environ, PYTHONPATH=str(site)), **options)
-
-
 def run(site, tmp_path, script, *words):
     """The standard output of a script."""
     (tmp_path / "script.py").write_text(script)
-    done = command(site, tmp_path / "script.py", *words)
+    done = python_site.run(site, tmp_path / "script.py", *words)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -122,7 +101,7 @@ print(neural_mesh.log(), file=open(sys.argv[2], "w"))
 
 def test_the_messages_are_those_that_a_verbose_mesh_set_prints(site, sheet, tmp_path):
     (tmp_path / "script.py").write_text(AS_PRINTED)
-    done = command(site, tmp_path / "script.py", sheet, tmp_path / "log")
+    done = python_site.run(site, tmp_path / "script.py", sheet, tmp_path / "log")
     printed = done.stdout + done.stderr
     messages = [line.split(": ", 1) for line in (tmp_path / "log").read_text().splitlines()]
     assert done.returncode == 0 and "NeuralMeshWarning" not in printed
@@ -188,7 +167,7 @@ def test_it_reads_a_plugin_that_was_loaded_before(build, site, sheet, tmp_path):
 
 
 def test_the_command_says_warnings_as_sentences(site, sheet, tmp_path):
-    done = command(site, "-m", "neural_mesh", sheet, tmp_path / "mesh.ply", "target_vertices=100")
+    done = python_site.run(site, "-m", "neural_mesh", sheet, tmp_path / "mesh.ply", "target_vertices=100")
     said = done.stderr.splitlines()
     assert done.returncode == 0 and said and all(line.startswith("neural-mesh: ") and line.endswith(".") for line in said)
     assert done.stdout.endswith(f" warnings={len(said)}\n")
@@ -209,7 +188,7 @@ def test_a_notebook_shows_the_warnings_below_their_cell(site, sheet, tmp_path):
     (tmp_path / "notebook.ipynb").write_text(json.dumps({"cells": cells, "metadata": {}, "nbformat": 4,
                                                          "nbformat_minor": 5}))
     shutil.copy(sheet, tmp_path)
-    done = command(site, "-c", "import nbclient, nbformat, sys\n"
+    done = python_site.run(site, "-c", "import nbclient, nbformat, sys\n"
                    "notebook = nbformat.read('notebook.ipynb', 4)\n"
                    "nbclient.NotebookClient(notebook, kernel_name='python3').execute()\n"
                    "nbformat.write(notebook, 'done.ipynb')", cwd=tmp_path)
