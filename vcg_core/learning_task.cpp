@@ -14,6 +14,7 @@
 #include "vcg_core/base/text.h"
 #include "vcg_core/layer_normals.h"
 #include "vcg_core/open_or_closed.h"
+#include "vcg_core/rounded_coordinates.h"
 #include "vcg_core/shell/given_start.h"
 #include "vcg_core/shell/open_start.h"
 #include "vcg_core/shell/shell.h"
@@ -50,10 +51,12 @@ Network tetrahedron(bool large) {
 }
 
 /// Where many points repeat others, signals would be drawn there more often, and the mesh would be denser or
-/// grow a component.
+/// grow a component. A warning says so, or of rounding, which makes points repeat others.
 void remove_repeated_points(LearningTask& task) {
+    const std::string rounding = warning_of_rounding(task.given);
+    if (!rounding.empty()) task.warnings.push_back(rounding);
     task.cleaned = task.given.each_place_once();
-    if (!task.cleaned) return;
+    if (!task.cleaned || !rounding.empty()) return;
     const std::size_t all = task.given.positions().size();
     task.warnings.push_back(std::to_string(all - task.cleaned->positions().size()) + " of " +
                             std::to_string(all) + " points repeat others: every place was learned once.");
@@ -357,6 +360,7 @@ LearningTask points_to_learn(const TargetSpace& given, const Settings& settings)
 LearningTask prepare(const TargetSpace& given, const Settings& settings, const IndexedMesh<double>& start,
                      Progress& progress) {
     progress(0, "Start mesh: looking for outliers");
+    refuse_rounding(given, settings.target_vertices);
     Survey survey(settings.threads);
     LearningTask task = points_to_learn(given, settings, survey);
     progress(0, "Start mesh: examining the points");

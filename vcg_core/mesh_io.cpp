@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vcg_core/target/float_steps.h"
+
 namespace neuralmesh::detail {
 
 namespace {
@@ -34,6 +36,14 @@ TargetSpace target_of_points(std::size_t count, const std::function<Coordinates(
 TargetSpace target_of_triangles(std::size_t count,
                                 const std::function<Coordinates(std::size_t, int)>& corner_at) {
     return TargetSpace::triangles(count, [&](std::size_t i, int k) { return point(corner_at(i, k)); });
+}
+
+double rounding_of(std::size_t count, const std::function<Coordinates(std::size_t)>& at,
+                   const std::array<Coordinates, 3>& rows_of_matrix) {
+    Coordinates lengths{};
+    for (std::size_t k = 0; k < 3; ++k)
+        lengths[k] = vcg::Point3d(rows_of_matrix[0][k], rows_of_matrix[1][k], rows_of_matrix[2][k]).Norm();
+    return float_step(count, at, lengths);
 }
 
 Coordinates better_origin(const NeuralMesh& result, const Coordinates& of_layer, double rounding) {

@@ -79,6 +79,10 @@ TargetSpace target_of_points(std::size_t count, const std::function<Coordinates(
 TargetSpace target_of_triangles(std::size_t count,
                                 const std::function<Coordinates(std::size_t, int)>& corner_at);
 
+/// See float_step(). \p at(i): the coordinates of point i in the layer.
+double rounding_of(std::size_t count, const std::function<Coordinates(std::size_t)>& at,
+                   const std::array<Coordinates, 3>& rows_of_matrix);
+
 /// See origin_of(). \p rounding: relative error of the mesh's scalar type.
 Coordinates better_origin(const NeuralMesh& result, const Coordinates& of_layer, double rounding);
 
@@ -145,15 +149,20 @@ std::vector<Color> colors_of(std::size_t count, const ColorAt& color_at) {
     return colors;
 }
 
+/// The upper left part of \p matrix.
+inline std::array<Coordinates, 3> rows_of(const vcg::Matrix44d& matrix) {
+    std::array<Coordinates, 3> rows{};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+            rows[i][k] = matrix.ElementAt(static_cast<int>(i), static_cast<int>(k));
+    return rows;
+}
+
 /// The normals of \p vertices, in world coordinates.
 template <class Vertex>
 std::vector<PackedNormal> normals_of(const std::vector<const Vertex*>& vertices,
                                      const vcg::Matrix44d& to_world) {
-    std::array<Coordinates, 3> rows{};
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t k = 0; k < 3; ++k)
-            rows[i][k] = to_world.ElementAt(static_cast<int>(i), static_cast<int>(k));
-    const NormalTransform in_world(rows);
+    const NormalTransform in_world(rows_of(to_world));
     std::vector<PackedNormal> normals;
     normals.reserve(vertices.size());
     for (const Vertex* v : vertices) {
@@ -192,6 +201,11 @@ TargetSpace target_space_of(const MeshType& mesh, const Matrix& transform, const
         in_world);
     TargetSpace target =
         detail::target_of_points(vertices.size(), [&](std::size_t i) { return in_world(vertices[i]->cP()); });
+    const auto in_layer = [&](std::size_t i) {
+        const auto& p = vertices[i]->cP();
+        return Coordinates{double(p[0]), double(p[1]), double(p[2])};
+    };
+    target.set_rounding(detail::rounding_of(vertices.size(), in_layer, detail::rows_of(to_world)));
     if (colored)
         target.set_colors(
             detail::colors_of(vertices.size(), [&](std::size_t i) { return vertices[i]->cC(); }));

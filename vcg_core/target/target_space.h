@@ -72,6 +72,12 @@ public:
     /// and !has_faces()
     void set_normals(std::vector<PackedNormal> normals);
 
+    /// Tells how far single precision has rounded coordinates, see float_steps.h. The targets made of this
+    /// one do not keep it.
+    void set_rounding(double step) { rounding_ = step; }
+    /// In the units of the input; 0: not, or too little to matter.
+    double rounding() const { return rounding_; }
+
     /// A random point, in the frame of the core: what the sampler draws, uniform over the points, in
     /// proportion to their weights, or uniform over the area of the triangles. O(1) for points, O(log n) for
     /// n triangles.
@@ -155,6 +161,7 @@ private:
     AliasTable runs_;                    ///< draws runs
     std::vector<Color> colors_;          ///< of the positions; may be empty
     std::vector<PackedNormal> normals_;  ///< the same
+    double rounding_ = 0;
     Sampler sampler_;                    ///< may be empty
     Move move_;                          ///< of exact signals; may be empty
 };
