@@ -35,12 +35,7 @@ struct LearnedNetwork {
 /// Learns the points of \p task and fits the network to them if settings.fit_to_points.
 ///
 /// The fit judges better than the learning where vertices are needed. So the network first grows to more
-/// vertices than settings.target_vertices. On a closed surface, where the noise of the points is small beside
-/// the edges of the mesh, these are 4,000 to 10,000 more, and the fit reduces them by the shape of the mesh;
-/// below 2,000 vertices each split then takes half of settings.signals_per_split. Else they are up to four
-/// times as many for small targets and no more from a target of 5,000 on, and the fit removes the vertices
-/// whose removal costs least. On a closed surface whose noise exceeds .14 edges each split takes half
-/// the signals, too, because a network that learns for longer follows the noise.
+/// vertices than settings.target_vertices, with fewer signals for each, and the fit reduces it (plan.h).
 ///
 /// Where there are fewer than two points per vertex asked for, the network learns as many vertices as half
 /// the points. Then the fit inserts the others, which make the mesh smoother between the points. If \p

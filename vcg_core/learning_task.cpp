@@ -14,6 +14,7 @@
 #include "vcg_core/base/text.h"
 #include "vcg_core/layer_normals.h"
 #include "vcg_core/open_or_closed.h"
+#include "vcg_core/plan.h"
 #include "vcg_core/rounded_coordinates.h"
 #include "vcg_core/shell/given_start.h"
 #include "vcg_core/shell/open_start.h"
@@ -169,7 +170,8 @@ void remove_groups_without_component(LearningTask& task, const std::vector<std::
 OpenStart make_open_start(const TargetSpace& target, const Settings& settings, Survey& survey,
                           Progress& progress) {
     OpenStartOptions options;
-    const int grown = settings.target_vertices + surplus_vertices(settings, settings.target_vertices);
+    const int surplus = settings.redistributes_vertices() ? usual_surplus(settings.target_vertices) : 0;
+    const int grown = settings.target_vertices + surplus;
     options.wanted_vertices = std::clamp(static_cast<int>(kStartShare * grown), 4, kMostStartVertices);
     options.target_vertices = settings.target_vertices;
     options.close_holes_up_to = settings.close_holes_up_to / target.frame().diagonal;
@@ -345,12 +347,6 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
 }
 
 }  // namespace
-
-int surplus_vertices(const Settings& settings, int final_vertices) {
-    constexpr int kSurplus = 2500;
-    if (!settings.redistributes_vertices()) return 0;
-    return std::max(0, std::min(3 * final_vertices, kSurplus - final_vertices / 2));
-}
 
 LearningTask points_to_learn(const TargetSpace& given, const Settings& settings) {
     Survey survey(settings.threads);

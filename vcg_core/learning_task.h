@@ -4,7 +4,6 @@
 // Before learning: the points that are learned and the network that learning starts from.
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,9 +35,9 @@ struct LearningTask {
     int landing_signals = 0;  ///< per vertex, before growth, to bring a shell down to the points
     /// False for a sheet that is closed: its start mesh has two layers with nothing between them.
     bool encloses_space = true;
-    /// Noise of the points in mean edges of the mesh asked for (SurfaceSurvey::noise_in_edges()). Infinite
-    /// for layers with faces, where it is not known.
-    double noise = std::numeric_limits<double>::infinity();
+    /// Noise of the points in mean edges of the mesh asked for (SurfaceSurvey::noise_in_edges()); 0 for
+    /// layers with faces.
+    double noise = 0;
     /// Of target(). Nothing if the points are exact, too few, or show no surface anywhere.
     std::optional<NoiseByPlace> noise_by_place;
     TopologyRules topology_rules;    ///< with settings.learn_topology
@@ -50,10 +49,6 @@ struct LearningTask {
 /// The points of \p given without repeated ones and, if settings.remove_outliers is on, without outliers, and
 /// no network yet. \p given must outlive the result. O(points log points)
 LearningTask points_to_learn(const TargetSpace& given, const Settings& settings);
-
-/// Vertices that learning grows beyond \p final_vertices, of which the fit takes away those that matter
-/// least. 0 unless settings.redistributes_vertices().
-int surplus_vertices(const Settings& settings, int final_vertices);
 
 /// Removes repeated points and, if settings.remove_outliers is on, outliers from \p given and makes the start
 /// mesh that \p settings asks for: the shell of the cloud, an open mesh of one layer, a tetrahedron, or \p

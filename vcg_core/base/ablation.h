@@ -25,10 +25,10 @@ inline constexpr const char* kStages[] = {
     // the cloud
     "lifted_points", "clumps", "lattice_outliers", "main_box", "even_sampling", "noise_by_place",
     // the start mesh
-    "walled", "thickening", "finer_start", "hollows", "wide_lattice", "single_layer",
-    "bridgeless_growth", "finer_lattice", "coarser_lattices", "topology_vote", "short_handles",
+    "walled", "thickening", "finer_start", "hollows", "wide_lattice", "single_layer", "bridgeless_growth",
+    "finer_lattice", "coarser_lattices", "topology_vote", "short_handles",
     // learning
-    "brief_learning", "noisy_learning", "settling_surplus", "saturation", "boundary_faces", "learned_notches",
+    "brief_learning", "settling_surplus", "saturation", "boundary_faces", "learned_notches",
     // topology
     "membrane_groups", "membrane_webs", "wide_membranes", "corridors",
     // the fit

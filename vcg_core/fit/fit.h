@@ -27,13 +27,10 @@ struct FitOptions {
     int reduce_to = 0;
     /// Whether the noise is small beside the edges, or the shape tells what goes. Then the reduction makes do
     /// with fewer points, and its rounds remove all vertices whose costs do not depend on each other.
-    bool calm = false;
+    bool precise = false;
     /// Reduce by the shape of the fitted mesh (volume_collapse.h), if a third of the vertices or more are to
-    /// go, and end the fit with rounds that gain little. For points whose noise is at most .15 edges.
+    /// go, and end the fit with rounds that gain little.
     bool by_volume = false;
-    /// The network has learned with fewer signals than usual, and lags more behind the points. A reduction by
-    /// volume then begins with one more solution.
-    bool learned_briefly = false;
     /// Leave out stray points (stray_points.h). For clouds that had outliers: those close to the surface are
     /// still there.
     bool expect_strays = false;

@@ -137,7 +137,8 @@ private:
     bool wants_reduction(int vertices, int at_start, Progress& progress) const;
     bool reduce_by_volume(int vertices, const FitOptions& options, Surface& surface, PointsByFace points,
                           Progress& progress);
-    bool reduce_by_costs(int vertices, bool calm, Surface& surface, PointsByFace points, Progress& progress);
+    bool reduce_by_costs(int vertices, bool precise, Surface& surface, PointsByFace points,
+                         Progress& progress);
     PointsByFace update_for_removal(Surface& surface, PointsByFace points);
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
 

@@ -18,11 +18,12 @@ namespace neuralmesh {
 namespace {
 
 /// Largest share of the vertices that one round of the reduction by costs removes, and the number of points
-/// it uses for each vertex there is at the start. The second of each pair is for calm points; a reduction by
-/// volume uses as many. Clean, the eight models of the accuracy table have 1.00 to 1.01 times the error with
-/// them at 500 and 1,000 vertices. With noise of .3 % of the diagonal they would have 1.01 to 1.03 times.
-constexpr double kRemovedShare = 0.12, kCalmRemovedShare = 0.2;
-constexpr int kReducingPointsPerVertex = 25, kCalmReducingPointsPerVertex = 15;
+/// it uses for each vertex there is at the start. The second of each pair is for precise points; a reduction
+/// by volume uses as many. Clean, the eight models of the accuracy table have 1.00 to 1.01 times the error
+/// with them at 500 and 1,000 vertices. With noise of .3 % of the diagonal they would have 1.01 to 1.03
+/// times.
+constexpr double kRemovedShare = 0.12, kPreciseRemovedShare = 0.2;
+constexpr int kReducingPointsPerVertex = 25, kReducingPrecisePointsPerVertex = 15;
 constexpr std::size_t kMinReducingVertices = 1000;
 /// With more than this many times the vertices wanted, rounds remove densely: about 12 % of the vertices
 /// instead of 8 %. Clean, bunny, koala, fandisk, block, kitten and feline then have .98, 1.01 and 1.00 of the
@@ -32,9 +33,8 @@ constexpr int kDenseFrom = 2;
 constexpr double kByVolumeFrom = 1.5;
 /// Solutions before that, with edge flips between them. The learned mesh lags behind the points and has its
 /// vertices beside sharp edges, and the collapses keep what it shows. With three, 500 and 2,000 vertices have
-/// 1.02 and 1.01 times the error. Meshes of 500 and 1,000, which have learned briefly, have 1.01 times with
-/// four; 2,000 gain nothing from a fifth.
-constexpr int kSolutionsBefore = 4, kSolutionsAfterBriefLearning = 5;
+/// 1.02 and 1.01 times the error; a fifth gains 1 % at most.
+constexpr int kSolutionsBefore = 4;
 
 }  // namespace
 
@@ -44,14 +44,14 @@ bool Fitter::reduce_to(int vertices, const FitOptions& options, Progress& progre
     if (!wants_reduction(vertices, network_.vertex_count(), reducing)) return false;
     final_vertices_ = vertices;
     reduced_by_volume_ = options.by_volume && network_.vertex_count() >= kByVolumeFrom * vertices;
-    set_points_aside(options.calm ? kCalmReducingPointsPerVertex : kReducingPointsPerVertex);
+    set_points_aside(options.precise ? kReducingPrecisePointsPerVertex : kReducingPointsPerVertex);
     Surface surface(network_);
     PointsByFace points = locate_points(surface, reduced_by_volume_);
     set_directions(surface);
     solve(points, surface);
-    const bool reduced = reduced_by_volume_
-                             ? reduce_by_volume(vertices, options, surface, std::move(points), reducing)
-                             : reduce_by_costs(vertices, options.calm, surface, std::move(points), reducing);
+    const bool reduced =
+        reduced_by_volume_ ? reduce_by_volume(vertices, options, surface, std::move(points), reducing)
+                           : reduce_by_costs(vertices, options.precise, surface, std::move(points), reducing);
     if (!reduced) return false;
     fitted_.points.insert(fitted_.points.end(), set_aside_.points.begin(), set_aside_.points.end());
     fitted_.weights.insert(fitted_.weights.end(), set_aside_.weights.begin(), set_aside_.weights.end());
@@ -66,9 +66,9 @@ bool Fitter::reduce_by_volume(int vertices, const FitOptions& options, Surface& 
     excludes_layers_ = !layered_;
     PartOf fitting(progress, 0, 0.9);
     PartOf rest(progress, 0.9, 1);
-    const int solutions = options.learned_briefly ? kSolutionsAfterBriefLearning : kSolutionsBefore;
-    for (int found = 1; found < solutions; ++found) {
-        if (!fitting(static_cast<double>(found) / solutions, "Fitting to the points, before the reduction"))
+    for (int found = 1; found < kSolutionsBefore; ++found) {
+        if (!fitting(static_cast<double>(found) / kSolutionsBefore,
+                     "Fitting to the points, before the reduction"))
             return false;
         flip_edges(surface, points);
         surface = Surface(network_);
@@ -97,10 +97,10 @@ bool Fitter::reduce_by_volume(int vertices, const FitOptions& options, Surface& 
     return reduce_by_costs(vertices, true, surface, std::move(points), rest);
 }
 
-bool Fitter::reduce_by_costs(int vertices, bool calm, Surface& surface, PointsByFace points,
+bool Fitter::reduce_by_costs(int vertices, bool precise, Surface& surface, PointsByFace points,
                              Progress& progress) {
     const int at_start = network_.vertex_count();
-    const double removed_share = calm ? kCalmRemovedShare : kRemovedShare;
+    const double removed_share = precise ? kPreciseRemovedShare : kRemovedShare;
     // Not where each round finds the stray points anew.
     const bool dense = at_start > kDenseFrom * vertices && !expects_strays_ && !skips("dense_collapses");
     while (network_.vertex_count() > vertices) {

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/plan.h"
+
+#include <algorithm>
+
+#include "vcg_core/base/ablation.h"
+
+namespace neuralmesh {
+namespace {
+
+/// The fit inserts up to this many times the vertices that it finds. A number that is a slip of the pen, 20
+/// million from 500 points, would take all memory at once; learning takes its time and can be cancelled.
+constexpr std::size_t kMostPerCarried = 64;
+
+/// From 1 up to \p first down to 0 from \p last on.
+double falling(double x, double first, double last) {
+    return std::clamp((last - x) / (last - first), 0.0, 1.0);
+}
+
+double between(double low, double high, double share) { return low + share * (high - low); }
+
+/// All, unless the cloud is no sheet, the fit may redistribute vertices and only their number ends growth.
+int carried_vertices(const Circumstances& given) {
+    const auto wanted = static_cast<std::size_t>(given.vertices);
+    const bool fills_up = given.redistributes && given.encloses_space && !given.exact && !skips("refine");
+    if (!fills_up || wanted / kMostPerCarried > given.carried_by_points) return given.vertices;
+    const std::size_t placed =
+        std::max(given.carried_by_points, static_cast<std::size_t>(given.start_vertices));
+    return static_cast<int>(std::min(placed, wanted));
+}
+
+/// How far shape may choose what goes, in [0, 1]: not on open surfaces, and not where a tenth to a fifth of
+/// the points were outliers, of which some are left beside the surface.
+double trust_in_shape(const Circumstances& given) {
+    if (skips("volume_reduction")) return 0;
+    return given.closed && given.encloses_space && given.redistributes ? falling(given.outliers, 0.1, 0.2)
+                                                                       : 0;
+}
+
+/// Noise in edges that is small beside them: clean clouds come to .005 to .02.
+double calmness(const Circumstances& given) { return falling(given.noise, 0.05, 0.1); }
+
+/// The share of the noisy surplus. With noise, 5,000 vertices gain nothing from one in 1.4 times the time,
+/// and 1,000 may have twice the error where it is 2 % of the diagonal (.45 edges).
+double noisy_share(const Circumstances& given, int vertices) {
+    return falling(given.noise, 0.15, 0.2) * falling(vertices, 2000, 5000);
+}
+
+/// Points for each learned vertex. With 4 of them sharp edges of small meshes are doubled and corners cut
+/// off: 5 of 16 cubes of 400 and 600 vertices then have more than 12 crease lines. From 2,000 vertices on 3
+/// do, if they are calm.
+double points_per_learned(int vertices, double calm) {
+    return between(10, 3, calm * (1 - falling(vertices, 1000, 2000)));
+}
+
+/// Calm: with 2,500, 500 vertices would have 1.1 times the error, with 5,000, 2,000 would; a preview of 1,000
+/// has to come at once. With noise of .6 % of the diagonal and 10,000, 5,000 vertices would have 1.1 times
+/// the error.
+double surplus(const Circumstances& given, int vertices, double calm) {
+    constexpr double kLeast = 4000, kMost = 10000;
+    const double usual = usual_surplus(vertices);
+    const double noisy = between(usual, std::max(usual, kLeast), noisy_share(given, vertices));
+    const double of_calm = between(kMost, kLeast, falling(vertices, 1250, 2000));
+    return between(usual, between(noisy, of_calm, calm), trust_in_shape(given));
+}
+
+}  // namespace
+
+int usual_surplus(int vertices) {
+    constexpr int kSurplus = 2500;
+    return std::max(0, std::min(3 * vertices, kSurplus - vertices / 2));
+}
+
+Plan plan_for(const Circumstances& given) {
+    Plan plan;
+    plan.carried = carried_vertices(given);
+    plan.grow_to = std::max(plan.carried, given.start_vertices);
+    if (!given.redistributes || !given.encloses_space) return plan;
+    const double calm = trust_in_shape(given) * calmness(given);
+    plan.precise = calm > 0;
+    plan.by_volume = plan.precise || trust_in_shape(given) * noisy_share(given, plan.carried) > 0;
+    const double learned = plan.carried + surplus(given, plan.carried, calm);
+    const double supported = static_cast<double>(given.points) / points_per_learned(plan.carried, calm);
+    // Growth removes the vertices that the landing leaves without signals, far off.
+    const int least = given.start_vertices > plan.carried ? given.start_vertices + given.start_vertices / 4
+                                                          : given.start_vertices;
+    plan.grow_to = std::max(
+        {plan.carried, least, static_cast<int>(given.exact ? learned : std::min(learned, supported))});
+    const double kept = static_cast<double>(plan.carried) / plan.grow_to;
+    if (!skips("settling_surplus")) plan.settling_share = kept;
+    const double noisy = given.closed && !given.exact ? 1 - falling(given.noise, 0.05, 0.14) : 0;
+    if (!skips("brief_learning")) plan.growth_share = std::max(0.5, (1 + kept) / 2 * between(1, 0.5, noisy));
+    return plan;
+}
+
+}  // namespace neuralmesh
