@@ -26,7 +26,7 @@ OpenStart start_that_leaves_out(double share) {
 }
 
 TEST(OpenOrClosed, WideOpeningsAndSheetsMayBeOpen) {
-    const TargetSpace target = soundness::target_of(shapes::sphere_cloud(1000));
+    const TargetSpace target = targets::target_of(shapes::sphere_cloud(1000));
     const auto may_be = [&](const Enclosure& shell, double radius) {
         return may_be_open(shell, target, Settings(), radius);
     };
