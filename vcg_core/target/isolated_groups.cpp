@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Groups are connected components of occupied octree cells, level by level from coarse to fine.
 #include "vcg_core/target/isolated_groups.h"
 
 #include <algorithm>
@@ -9,20 +8,19 @@
 #include <utility>
 
 #include "vcg_core/base/ablation.h"
+#include "vcg_core/base/disjoint_sets.h"
+#include "vcg_core/base/median.h"
 #include "vcg_core/base/small_matrices.h"
-#include "vcg_core/target/cell_groups.h"
 
 namespace neuralmesh {
 namespace {
 
 using Place = NearestPoints::Place;
 
-constexpr int kCoarsestLevel = 4;
 constexpr std::size_t kPointsPerCell = 4;   ///< finer levels part the points of a surface
-constexpr std::size_t kCheapCells = 20000;  ///< of a level that takes a few milliseconds
+constexpr float kConnected = 0.5F;          ///< distance of the points of two cells over the side of cells
 constexpr std::size_t kSmallest = 6;        ///< points of a group; fewer are suspects by their spacing
 constexpr double kLargestShare = 0.01;      ///< of all points
-constexpr double kSmallShare = 0.002;       ///< of all points; larger groups need a wider gap
 constexpr double kMostInClumps = 0.05;      ///< of all points; above, the cloud as a whole consists of clumps
 constexpr int kNeighbours = 10;
 /// Noise as wide as the spacing fills the space between so few neighbours, also on a sheet. Larger groups
@@ -31,7 +29,7 @@ constexpr int kManyNeighbours = 40;
 constexpr std::size_t kLargeGroup = 320;
 constexpr double kFillsSpace = 0.08;  ///< mean surface variation; surfaces have .00 to .05, balls .11 to .17
 constexpr double kThickGroup = 0.1;   ///< surface variation of a group as a whole
-constexpr double kGap = 2.2, kWideGap = 6;  ///< distance to the rest in the group's own spacings
+constexpr float kGap = 2.2F;  ///< distance to the rest in the group's own spacings, to the tenth neighbour
 
 Eigen::Vector3d position(const NearestPoints& cloud, Place p) {
     const vcg::Point3f& q = cloud.point(p);
@@ -53,18 +51,73 @@ struct Extent {
     }
 };
 
+/// Consecutive places in one octree cell.
+struct Cell {
+    std::uint64_t code;
+    Place begin, end;
+    vcg::Box3f box;  ///< of its points
+};
+
+/// The cells at \p level that hold points not in \p out, by ascending code.
+std::vector<Cell> occupied_cells(const NearestPoints& cloud, const std::vector<std::uint8_t>& out,
+                                 int level) {
+    std::vector<Cell> cells;
+    for (Place p = 0; p < cloud.size(); ++p) {
+        if (out[p] != 0) continue;
+        const std::uint64_t code = cloud.cell(p, level);
+        if (cells.empty() || cells.back().code != code) cells.push_back({code, p, p, {}});
+        cells.back().end = p + 1;
+        cells.back().box.Add(cloud.point(p));
+    }
+    return cells;
+}
+
+/// The code of the cell one step along \p axis, by arithmetic on the bits of that axis alone. Beyond the
+/// border of the cube it is the cell at the opposite border.
+std::uint64_t stepped(std::uint64_t code, int axis, int step, int level) {
+    const std::uint64_t mask =
+        (std::uint64_t{0x1249249249249249} << axis) & ((std::uint64_t{1} << 3 * level) - 1);
+    const std::uint64_t one = std::uint64_t{1} << axis;
+    if (step == 0) return code;
+    const std::uint64_t moved = step > 0 ? (code | ~mask) + one : (code & mask) - one;
+    return (moved & mask) | (code & ~mask);
+}
+
+float squared_gap(const vcg::Box3f& a, const vcg::Box3f& b) {
+    float sum = 0;
+    for (int k = 0; k < 3; ++k) {
+        const float d = std::max({a.min[k] - b.max[k], b.min[k] - a.max[k], 0.0F});
+        sum += d * d;
+    }
+    return sum;
+}
+
+/// Joins every cell with those of its 26 neighbours whose points are closer than kConnected cell sides, as
+/// their boxes tell: whether a gap shows depends little on where cells end.
+DisjointSets connected(const std::vector<Cell>& cells, int level, float side) {
+    const float limit = kConnected * side * kConnected * side;
+    DisjointSets sets(static_cast<int>(cells.size()));
+    const auto by_code = [](const Cell& cell, std::uint64_t code) { return cell.code < code; };
+    for (std::size_t c = 0; c < cells.size(); ++c)
+        for (int k = 0; k < 13; ++k) {  // the others see this one
+            std::uint64_t code = stepped(cells[c].code, 0, k % 3 - 1, level);
+            code = stepped(stepped(code, 1, k / 3 % 3 - 1, level), 2, k / 9 - 1, level);
+            const auto at = std::lower_bound(cells.begin(), cells.end(), code, by_code);
+            if (at != cells.end() && at->code == code && squared_gap(at->box, cells[c].box) <= limit)
+                sets.join(static_cast<int>(c), static_cast<int>(at - cells.begin()));
+        }
+    return sets;
+}
+
 /// The points of every component that is small but not tiny, by ascending places.
-std::vector<std::vector<Place>> small_groups(const NearestPoints& cloud,
-                                             const std::vector<OccupiedCell>& cells, int level,
+std::vector<std::vector<Place>> small_groups(const std::vector<Cell>& cells, int level, float side,
                                              std::size_t largest, const std::vector<std::uint8_t>& out) {
-    const std::vector<std::size_t> component = connected_cells(cloud, cells, level, out);
-    std::vector<std::size_t> size(cells.size());
-    for (std::size_t c = 0; c < cells.size(); ++c) size[component[c]] += cells[c].end - cells[c].begin;
+    DisjointSets sets = connected(cells, level, side);
     std::vector<std::vector<Place>> groups(cells.size());
     for (std::size_t c = 0; c < cells.size(); ++c) {
-        if (size[component[c]] > largest + cells.size()) continue;
-        for (Place p = cells[c].begin; p < cells[c].end; ++p)
-            if (out[p] == 0 && groups[component[c]].size() <= largest) groups[component[c]].push_back(p);
+        std::vector<Place>& group = groups[static_cast<std::size_t>(sets.find(static_cast<int>(c)))];
+        for (Place p = cells[c].begin; p < cells[c].end && group.size() <= largest; ++p)
+            if (out[p] == 0) group.push_back(p);
     }
     groups.erase(std::remove_if(groups.begin(), groups.end(),
                                 [&](const auto& g) { return g.size() < kSmallest || g.size() > largest; }),
@@ -101,10 +154,7 @@ bool is_clump(const NearestPoints& cloud, const std::vector<Place>& group,
         inner.nearest(p, kNeighbours, near);
         spacings.push_back(std::sqrt(near.back().squared_distance));
     }
-    std::nth_element(spacings.begin(), spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2),
-                     spacings.end());
-    const bool small = static_cast<double>(group.size()) <= kSmallShare * static_cast<double>(cloud.size());
-    const auto gap = static_cast<float>(small ? kGap : kWideGap) * spacings[spacings.size() / 2];
+    const float gap = kGap * median(std::move(spacings));
     const auto other = [&](Place p) {
         return out[p] == 0 && !std::binary_search(group.begin(), group.end(), p);
     };
@@ -146,14 +196,13 @@ void mark_isolated_clumps(const NearestPoints& cloud, std::vector<std::uint8_t>&
     if (skips("clumps")) return;
     const auto points = static_cast<double>(cloud.size());
     const auto largest = static_cast<std::size_t>(kLargestShare * points);
-    const std::size_t n = cloud.size();
-    const std::size_t most_cells = std::max(n / kPointsPerCell, std::min(n / 2, kCheapCells));
     std::vector<std::uint8_t> marked = out;
     std::size_t in_clumps = 0;
-    for (int level = kCoarsestLevel; level <= cloud.finest_level(); ++level) {
-        const std::vector<OccupiedCell> cells = occupied_cells(cloud, marked, level);
-        if (cells.size() > most_cells && level > kCoarsestLevel) break;
-        for (const std::vector<Place>& group : small_groups(cloud, cells, level, largest, marked)) {
+    for (int level = 1; level <= cloud.finest_level(); ++level) {
+        const std::vector<Cell> cells = occupied_cells(cloud, marked, level);
+        if (kPointsPerCell * cells.size() > cloud.size()) break;
+        for (const std::vector<Place>& group :
+             small_groups(cells, level, cloud.cell_side(level), largest, marked)) {
             if (!is_clump(cloud, group, marked)) continue;
             for (const Place p : group) marked[p] = 1;
             in_clumps += group.size();
