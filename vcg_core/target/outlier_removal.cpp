@@ -255,34 +255,21 @@ void Suspects::combine() {
     }
 }
 
-/// The lowest evidence where next to none of the points lies, or that of a clear valley: the gap between
-/// orderly points and outliers, most of which have much evidence against them.
+/// The lowest evidence where next to none of the points lies: the gap between orderly points and outliers,
+/// most of which have much evidence against them.
 double Suspects::threshold() const {
-    constexpr double kLowest = -2, kStrict = 3.5, kMixed = 2.5, kStep = 0.5, kFarthestEvidence = 8;
-    constexpr double kEmptyShare = 0.0006, kMany = 0.01;  // shares of the points
-    constexpr double kEmptyOfSuspects = 0.05;
-    constexpr double kValley = 0.1;  // of the counts on both sides
-    const auto points = static_cast<double>(cloud_.size());
-    const double empty =
-        std::min(kEmptyShare * points, kEmptyOfSuspects * static_cast<double>(suspects_.size()));
+    constexpr double kLowest = -2, kStrict = 3.5, kMixed = 2.5, kStep = 0.5;
+    constexpr double kEmptyShare = 0.0006, kEmptyOfSuspects = 0.05;  // of the points, of the suspects
+    const double empty = std::min(kEmptyShare * static_cast<double>(cloud_.size()),
+                                  kEmptyOfSuspects * static_cast<double>(suspects_.size()));
     const auto count = [this](double low, double high) {
         return static_cast<double>(std::count_if(evidence_.begin(), evidence_.end(),
                                                  [&](double e) { return low <= e && e < high; }));
     };
-    const auto around = [&](double at) { return count(at - kStep, at + kStep); };
-    const auto most = [&](double low, double high) {
-        double highest = 0;
-        for (double at = low; at <= high; at += kStep) highest = std::max(highest, around(at));
-        return highest;
-    };
-    const auto are_wild = [&](double at) { return count(kMixed, HUGE_VAL) * 2 >= count(at, HUGE_VAL); };
-    for (double at = kLowest; at <= kStrict; at += kStep)
-        if (around(at) <= empty && are_wild(at)) return at;
-    for (double at = kLowest; at <= kStrict; at += kStep)
-        if (around(at) <= kValley * std::min(most(-kFarthestEvidence, at), most(at, kFarthestEvidence)) &&
-            are_wild(at))
+    for (double at = kLowest; at < kStrict; at += kStep)
+        if (count(at - kStep, at + kStep) <= empty && count(kMixed, HUGE_VAL) * 2 >= count(at, HUGE_VAL))
             return at;
-    return count(kStrict, HUGE_VAL) > kMany * points ? kMixed : kStrict;
+    return kStrict;
 }
 
 }  // namespace
