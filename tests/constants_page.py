@@ -51,7 +51,7 @@ UNITS = [  # an expression that the name or the comment has to match; the first 
 MEASURED = re.compile(r"_table|of the error|times the error|error of|shell_topology|measured|logistic|\bmodels?\b|bunny|fandisk"
                       r"|kitten|feline|koala|block|armadillo|homer|turbine|genus3|eight\b")
 SUBJECTS = {
-    "noise": r"[nN]oise|variance|\bcalm\b|is_calm|[dD]eviation",
+    "noise": r"[nN]oise|variance|\bcalm\b|[dD]eviation",
     "points per vertex": r"points_per_vertex|\bper_vertex\(|(?<!Signals)(?<!Wins)PerVertex\b|PerCarried|PerLearned|PrecisePoints"
                          r"|FewestToFill|points_per_node|PointsPer(Part|Node)",
     "vertices asked for": r"(target|final|wanted|fewest)_vertices|most_wanted|\bcarried\b|grow_to|reduce_to|VerticesToHold"

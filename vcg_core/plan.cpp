@@ -10,9 +10,10 @@
 namespace neuralmesh {
 namespace {
 
-/// The fit inserts up to this many times the vertices that it finds. A number that is a slip of the pen, 20
-/// million from 500 points, would take all memory at once; learning takes its time and can be cancelled.
-constexpr std::size_t kMostPerCarried = 64;
+/// Beyond a million vertices the fit inserts up to this many times those that it finds. A number that is a
+/// slip of the pen, 20 million from 500 points, would take all memory at once; learning takes its time and
+/// can be cancelled.
+constexpr std::size_t kMillion = 1000000, kMostPerCarried = 64;
 
 /// From 1 up to \p first down to 0 from \p last on.
 double falling(double x, double first, double last) {
@@ -21,11 +22,12 @@ double falling(double x, double first, double last) {
 
 double between(double low, double high, double share) { return low + share * (high - low); }
 
-/// All, unless the cloud is no sheet, the fit may redistribute vertices and only their number ends growth.
+/// All, unless the fit may redistribute vertices and only their number ends growth.
 int carried_vertices(const Circumstances& given) {
     const auto wanted = static_cast<std::size_t>(given.vertices);
-    const bool fills_up = given.redistributes && given.encloses_space && !given.exact && !skips("refine");
-    if (!fills_up || wanted / kMostPerCarried > given.carried_by_points) return given.vertices;
+    const bool fills_up = given.redistributes && !given.exact && !skips("refine");
+    const bool slip = wanted > kMillion && wanted / kMostPerCarried > given.carried_by_points;
+    if (!fills_up || slip) return given.vertices;
     const std::size_t placed =
         std::max(given.carried_by_points, static_cast<std::size_t>(given.start_vertices));
     return static_cast<int>(std::min(placed, wanted));

@@ -78,6 +78,12 @@ TEST(Plan, ShapeChoosesOnClosedSurfacesWithLittleNoiseAndFewOutliers) {
     EXPECT_FALSE(plan_for(given).by_volume);
 }
 
+TEST(Plan, TheMoreIsRemovedAndTheLargerTheNoiseTheFewerSignalsDo) {
+    EXPECT_LT(plan_for(circumstances(1000, 100000)).growth_share, 0.7);
+    const double calm = plan_for(circumstances(6000, 20000, 0.02)).growth_share;
+    EXPECT_LT(plan_for(circumstances(6000, 20000, 0.2)).growth_share, 0.6 * calm);
+}
+
 TEST(Plan, NothingIsRemovedThatTheFitMayNotRedistribute) {
     Circumstances given = circumstances(500, 100000);
     given.redistributes = false;

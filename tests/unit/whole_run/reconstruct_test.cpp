@@ -119,18 +119,6 @@ TEST(Reconstruct, SettlesWithAllSignalsWithoutTheFit) {
     EXPECT_EQ(signals_with(kSignalsPerVertex) - signals_with(0), kVertices * kSignalsPerVertex);
 }
 
-TEST(Reconstruct, LearnsBrieflyWhereTheFitFollowsAndTheNoiseIsLarge) {
-    const auto signals = [](double noise, bool fit) {
-        Settings settings = with_target(1000);
-        settings.fit_to_points = fit;
-        return static_cast<double>(
-            learn_watched(shapes::sphere_cloud(20000, noise), settings).report.signals);
-    };
-    // In a ball of this radius: across the surface .45 of it. The edges of 1,000 vertices are .12 long.
-    EXPECT_LT(signals(0.08, true), 0.75 * signals(0.02, true));
-    EXPECT_GT(signals(0.08, false), 0.9 * signals(0.02, false));
-}
-
 TEST(Reconstruct, RefusesSettingsOutOfRange) {
     Settings settings = with_target(3);
     EXPECT_THROW(learn_watched(shapes::sphere_cloud(100), settings), SettingError);
