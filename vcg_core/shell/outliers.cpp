@@ -50,7 +50,7 @@ int max_squared_depth(const Region& region, int level) {
     return static_cast<int>(std::min(depth * depth, kMaxSquaredDepth));
 }
 
-/// The occupied nodes that are far from all large groups.
+/// The occupied nodes, without the fringe, that are far from all large groups.
 NodeSet isolated_nodes(const Region& region, int level) {
     const NodeSet large = solid_of(region.lattice, region.distances, region.counts, level, region.min_points);
     NodeSet isolated(large.size());

@@ -31,7 +31,7 @@ std::string warning_of_outliers(long long ignored, long long all, long long leas
 /// - its group is too small for a component,
 /// - it is farther than the radius of \p level from all larger groups,
 /// - it lies outside \p solid, or too deep inside to be on the solid's surface.
-/// O(points + nodes).
+/// Fringe points, which examine() leaves out, are never outliers. O(points + nodes).
 std::vector<std::uint8_t> outliers_of(const std::vector<vcg::Point3f>& points, const Region& region,
                                       const NodeSet& solid, int level);
 

@@ -28,6 +28,11 @@ constexpr int kCoarseMaxRadius = 18;
 constexpr int kJoiningLevel = 4 * 4;
 constexpr double kFragmentShare = 0.05;
 
+// A node is fringe if its density is below this share of the highest density close by ...
+constexpr double kFringeShare = 0.2;
+// ... where that is at least this many points in 3 x 3 x 3 nodes: fewer may differ so much by chance.
+constexpr std::uint32_t kFringeMinPoints = 40;
+
 /// For every node combine() of the values in a cube of 2 * reach + 1 nodes per side around it, axis by axis.
 template <class Combine>
 PerNode<std::uint32_t> combine_boxes(const Lattice& l, const PerNode<std::uint32_t>& values, int reach,
@@ -40,10 +45,24 @@ PerNode<std::uint32_t> combine_boxes(const Lattice& l, const PerNode<std::uint32
     return out;
 }
 
+/// Points in the 3 x 3 x 3 nodes around every node.
+PerNode<std::uint32_t> box_sums(const Lattice& lattice, const PerNode<std::uint32_t>& counts) {
+    return combine_boxes(lattice, counts, 1, [](std::uint32_t a, std::uint32_t b, int) { return a + b; });
+}
+
 /// The largest value in the 5 x 5 x 5 nodes around every node.
 PerNode<std::uint32_t> box_maxima(const Lattice& lattice, const PerNode<std::uint32_t>& values) {
     return combine_boxes(lattice, values, 2,
                          [](std::uint32_t a, std::uint32_t b, int) { return a < b ? b : a; });
+}
+
+/// 0 instead of the counts of fringe nodes.
+PerNode<std::uint32_t> without_fringe(const Lattice& lattice, const PerNode<std::uint32_t>& counts) {
+    const PerNode<std::uint32_t> sums = box_sums(lattice, counts), most = box_maxima(lattice, sums);
+    PerNode<std::uint32_t> kept = counts;
+    for (NodeId i = 0; i < kept.size(); ++i)
+        if (most[i] >= kFringeMinPoints && sums[i] < kFringeShare * most[i] && !skips("fringe")) kept[i] = 0;
+    return kept;
 }
 
 /// Adds to \p inside the nodes of \p lattice whose nearest node of \p coarse is in \p coarse_inside.
@@ -145,7 +164,7 @@ Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, f
                double component_share, long long min_component_points,
                const std::vector<LayerPlace>& places) {
     Region region(Lattice(box, step, Region::kMargin));
-    region.counts = count_points(region.lattice, points);
+    region.counts = without_fringe(region.lattice, count_points(region.lattice, points));
     region.distances = squared_distances(region.lattice, region.counts, Region::kMaxRadius);
     seal(points, box, places, region);
     region.total_points = static_cast<long long>(points.size());

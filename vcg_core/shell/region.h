@@ -25,7 +25,7 @@ struct Region {
     static constexpr int kMargin = 2;  ///< empty nodes around the box
 
     Lattice lattice;
-    PerNode<std::uint32_t> counts;     ///< points per node
+    PerNode<std::uint32_t> counts;     ///< points per node, without fringe points
     PerNode<SquaredRadius> distances;  ///< to the nodes with points
     PerNode<SquaredRadius> clearance;  ///< with the enclosed spaces sealed
     bool encloses_space = false;
@@ -40,6 +40,9 @@ struct Region {
 };
 
 /// Examines \p points on a lattice over \p box with nodes \p step apart.
+///
+/// The fringe of a noisy cloud is left out: nodes with far fewer points than others close by. It would close
+/// narrow gaps between surfaces.
 ///
 /// Spaces with an opening of at most 0.6 of their width are sealed: on the lattice itself those with openings
 /// up to kMaxRadius, on one of about 40 steps per side those with wider ones. If there is neither, the points

@@ -88,6 +88,16 @@ TEST(Region, WideOpeningsAreSealedAndMeasured) {
     EXPECT_NEAR(region.widest_opening, 0.6, 0.05);  // the hole's radius; its rim is at z = 0.8
 }
 
+TEST(Region, TheFringeOfANoisyCloudIsLeftOut) {
+    std::vector<Point3f> points = sphere(100000);
+    const Region clean = region_of(points, 0.05F);
+    EXPECT_EQ(clean.counts, count_points(clean.lattice, points));
+    points.emplace_back(0.0F, 0.0F, 1.1F);  // two nodes from the surface
+    const Region fringed = region_of(points, 0.05F);
+    EXPECT_EQ(fringed.counts, clean.counts);
+    EXPECT_NE(fringed.counts, count_points(fringed.lattice, points));
+}
+
 TEST(Region, AFewPointsMakeAComponent) {
     EXPECT_EQ(region_of(sphere(4), 0.1F).min_points, 2);
     EXPECT_EQ(region_of(sphere(60), 0.1F).min_points, 16);
