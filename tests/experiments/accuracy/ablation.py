@@ -11,13 +11,14 @@ OUT/ablation.md. Every run is kept in OUT/ablation.jsonl under the checksum of t
 that --minutes ended, goes on where it stopped.
 
 A column of a group has the error (forward plus backward RMS) without the stage over that with everything on: the geometric
-mean of the group. "Failures" are runs whose topology is wrong, that are no oriented manifold, whose faces cut each other,
-or that end with an error: those that the stage saves, and those that occur with it only. "Cut faces" is the change of
-their number. "Time" is the ratio of the processor times. The row "another seed" says what chance does. Runs that never ask
-for a stage, and those whose result has the same bytes, count as unchanged.
+mean of the runs of the group whose topology is right with and without it. "Failures" are runs whose topology is wrong, that
+are no oriented manifold, whose faces cut each other, or that end with an error: those that the stage saves, and those that
+occur with it only. "Cut faces" is the change of their number. "Time" is the ratio of the processor times. The row "another
+seed" says what chance does. Runs that never ask for a stage, and those whose result has the same bytes, count as unchanged.
 
 A stage stays if it brings 3 % of the mean error of some group, saves a failure that nothing else saves, or brings 10 % of
-the time.
+the time. Where chance changes the error of the group by as much, the verdict says so. Stages that few runs ask for are
+measured first.
 """
 
 import argparse
@@ -52,6 +53,7 @@ from paper_runs import Kept  # noqa: E402
 
 LEAST_ERROR, LEAST_TIME = 1.03, 1.10  # that a stage has to bring
 OTHER_SEED = 1000  # added to a seed for the row that says what chance does
+OTHER = ("another seed",)
 CODE_MODELS = ("torus", "filleted-cube", "cup", "linked-tori", "two-spheres")
 GENUS_OF_PARTS = {"plate-with-bores": 4}  # of the others 0
 POINTS_PER_VERTEX_OF_WALLS = 40
@@ -317,7 +319,8 @@ def compared(pairs):
         result["caused"] += is_failure(before) and not is_failure(after)
         if "failed" in after or "failed" in before:
             continue
-        ratios.setdefault(group, []).append(after["error"] / max(before["error"], 1e-12) if changed else 1)
+        if before["right"] and after["right"]:
+            ratios.setdefault(group, []).append(after["error"] / max(before["error"], 1e-12) if changed else 1)
         times.append(after["cpu"] / before["cpu"] if after is not before else 1)
         result["cut"] += after["cut"] - before["cut"]
     result["error"] = {group: geometric_mean(values) for group, values in ratios.items()}
@@ -325,25 +328,29 @@ def compared(pairs):
     return result
 
 
-def verdict(result):
-    """By the rule of this script."""
-    reasons = [f"{100 * (ratio - 1):.0f} % of {group}" for group, ratio in result["error"].items() if ratio >= LEAST_ERROR]
+def verdict(result, chance=None):
+    """By the rule of this script. chance: the errors of the groups with another seed, over those with this one."""
+    def is_chance(group, ratio):
+        return abs(np.log(ratio)) <= abs(np.log((chance or {}).get(group, 1)))
+
+    reasons = [f"{100 * (ratio - 1):.0f} % of {group}" + (" (chance?)" if is_chance(group, ratio) else "")
+               for group, ratio in result["error"].items() if ratio >= LEAST_ERROR]
     if result["saved"] > result["caused"]:
         reasons.append(f"{result['saved'] - result['caused']} failure(s)")
     if result["time"] >= LEAST_TIME:
         reasons.append(f"{100 * (result['time'] - 1):.0f} % of the time")
     if reasons:
         return "stays: " + ", ".join(reasons)
-    better = [group for group, ratio in result["error"].items() if ratio <= 2 - LEAST_ERROR]
+    better = [group for group, ratio in result["error"].items() if ratio <= 2 - LEAST_ERROR and not is_chance(group, ratio)]
     if result["changed"] == 0:
         return "may go: changes no result here"
     return "may go" + (f": {', '.join(better)} better without" if better else "")
 
 
-def line(name, result, groups, judged=True):
+def line(name, result, groups, says):
     return [name, *(f"{result['error'][group]:.3f}" if group in result["error"] else "-" for group in groups),
             f"{result['changed']} of {result['runs']}", f"+{result['saved']} -{result['caused']}", f"{result['cut']:+d}",
-            f"{result['time']:.2f}", verdict(result) if judged else "chance"]
+            f"{result['time']:.2f}", says]
 
 
 def tasks_of(options):
@@ -357,25 +364,29 @@ def measured_table(options, note):
     base = runs.rows([(task, seed, (), None) for task, seed in cases])
     known = [(case, row) for case, row in zip(cases, base) if row is not None]
     note(f"everything on: {len(known)} of {len(cases)} runs, {sum(is_failure(row) for _, row in known)} failures")
-    lines, results = [], {}
+    lines, results = {}, {}
 
-    def compare(name, rows, judged=True):
+    def compare(names, rows):
         pairs = [(case[0].group, before, after) for (case, before), after in zip(known, rows) if after is not None]
         if not pairs:
             return
-        results[name] = compared(pairs)
-        lines.append(line(name if len(pairs) == len(cases) else f"{name} (unfinished)", results[name], groups, judged))
-        note(" | ".join(map(str, lines[-1])))
+        results[names] = result = compared(pairs)
+        says = verdict(result, results[OTHER]["error"]) if names != OTHER and OTHER in results else "chance"
+        lines[names] = line(", ".join(names) + ("" if len(pairs) == len(cases) else " (unfinished)"), result, groups, says)
+        note(" | ".join(map(str, lines[names])))
 
-    compare("another seed", runs.rows([(task, seed + OTHER_SEED, (), None) for (task, seed), _ in known]), False)
-    for names in [(stage,) for stage in options.stages] + ([tuple(options.all_losers)] if options.all_losers else []):
-        rows = runs.rows([(task, seed, names, before) for (task, seed), before in known])
-        compare(", ".join(names), rows)
+    def runs_of(names):
+        return sum(any(stage in row.get("asked", names) for stage in names) for _, row in known)
+
+    compare(OTHER, runs.rows([(task, seed + OTHER_SEED, (), None) for (task, seed), _ in known]))
+    wanted = [(stage,) for stage in options.stages] + ([tuple(options.all_losers)] if options.all_losers else [])
+    for names in sorted(wanted, key=runs_of):
+        compare(names, runs.rows([(task, seed, names, before) for (task, seed), before in known]))
     header = ["stage", *groups, "runs changed", "failures", "cut faces", "time", "verdict"]
     failures = sum(is_failure(row) for _, row in known)
     text = (f"{len(known)} runs for each stage, seeds {', '.join(map(str, seeds))}; with everything on {failures} of them "
-            f"fail.\n\n" + table(header, lines))
-    return text, results
+            f"fail.\n\n" + table(header, [lines[names] for names in [OTHER, *wanted] if names in lines]))
+    return text, {", ".join(names): result for names, result in results.items()}
 
 
 def check_plugin(options):
