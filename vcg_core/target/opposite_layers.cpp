@@ -9,7 +9,6 @@
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/base/small_matrices.h"
-#include "vcg_core/target/neighbour_scatter.h"
 
 namespace neuralmesh {
 namespace {
@@ -31,9 +30,24 @@ constexpr double kThickest = 0.4;
 /// Narrower ones, beside their length, are on one scan line, and the plane through them has any direction.
 constexpr double kLine = 0.1;
 
+/// Sum of the outer products of the differences of the point at \p place and those \p near it to their mean.
+Eigen::Matrix3d scatter(const NearestPoints& cloud, NearestPoints::Place place,
+                        const std::vector<NearestPoints::Neighbour>& near) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+    for (const NearestPoints::Neighbour& n : near) {
+        const vcg::Point3f d = cloud.point(n.place) - cloud.point(place);
+        const Eigen::Vector3d p(static_cast<double>(d[0]), static_cast<double>(d[1]),
+                                static_cast<double>(d[2]));
+        sum += p;
+        squares += p * p.transpose();
+    }
+    return squares - sum * sum.transpose() / (static_cast<double>(near.size()) + 1);
+}
+
 LayerPlace place_at(const NearestPoints& cloud, NearestPoints::Place place,
                     const std::vector<NearestPoints::Neighbour>& near) {
-    const PrincipalAxes principal = principal_axes(neighbour_scatter(cloud, place, near));
+    const PrincipalAxes principal = principal_axes(scatter(cloud, place, near));
     const Eigen::Vector3d n = principal.axes.col(0), spread = principal.values;
     LayerPlace result;
     result.position = cloud.point(place);
