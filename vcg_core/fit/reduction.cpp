@@ -50,7 +50,7 @@ bool Fitter::reduce_to(int vertices, const FitOptions& options, Progress& progre
     set_directions(surface);
     solve(points, surface);
     const bool reduced =
-        reduced_by_volume_ ? reduce_by_volume(vertices, options, surface, std::move(points), reducing)
+        reduced_by_volume_ ? reduce_by_volume(vertices, surface, std::move(points), reducing)
                            : reduce_by_costs(vertices, options.precise, surface, std::move(points), reducing);
     if (!reduced) return false;
     fitted_.points.insert(fitted_.points.end(), set_aside_.points.begin(), set_aside_.points.end());
@@ -61,8 +61,7 @@ bool Fitter::reduce_to(int vertices, const FitOptions& options, Progress& progre
     return true;
 }
 
-bool Fitter::reduce_by_volume(int vertices, const FitOptions& options, Surface& surface, PointsByFace points,
-                              Progress& progress) {
+bool Fitter::reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress) {
     excludes_layers_ = !layered_;
     PartOf fitting(progress, 0, 0.9);
     PartOf rest(progress, 0.9, 1);
