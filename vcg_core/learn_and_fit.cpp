@@ -17,8 +17,6 @@ namespace neuralmesh {
 
 namespace {
 
-bool has_boundary(const LearningTask& task) { return task.network.boundary_loop_count() > 0; }
-
 std::size_t carried_by_points(const LearningTask& task) {
     const std::size_t points = task.target().positions().size();
     return task.noise_by_place ? task.noise_by_place->carried_by(points) : points / kPointsPerCarried;
@@ -33,7 +31,7 @@ Plan plan_for(const LearningTask& task, const Settings& settings) {
     given.noise = task.noise;
     given.outliers = static_cast<double>(task.outliers) / static_cast<double>(given.points);
     given.carried_by_points = carried_by_points(task);
-    given.closed = !has_boundary(task);
+    given.closed = task.network.boundary_loop_count() == 0;
     given.encloses_space = task.encloses_space;
     given.redistributes = settings.redistributes_vertices();
     return plan_for(given);
@@ -66,8 +64,7 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
     options.expect_strays = task.outliers > 0;
     options.noise = task.noise_by_place ? &*task.noise_by_place : nullptr;
     options.reduce_to = plan.carried;
-    options.by_volume = plan.by_volume && network.vertex_count() > plan.carried;
-    options.precise = plan.precise || options.by_volume;
+    options.by_volume = options.precise = plan.by_volume;
     // Growth by the noise of each place may end early.
     const bool refines = plan.carried < settings.target_vertices || (task.noise_by_place && plan.fills_up);
     options.refine_to = refines ? settings.target_vertices : 0;

@@ -60,12 +60,12 @@ double points_per_learned(int vertices, double calm) {
 /// Calm: with 2,500, 500 vertices would have 1.1 times the error, with 5,000, 2,000 would; a preview of 1,000
 /// has to come at once. With noise of .6 % of the diagonal and 10,000, 5,000 vertices would have 1.1 times
 /// the error.
-double surplus(const Circumstances& given, int vertices, double calm) {
+double surplus(const Circumstances& given, int vertices, double trust, double calm) {
     constexpr double kLeast = 4000, kMost = 10000;
     const double usual = usual_surplus(vertices);
     const double noisy = between(usual, std::max(usual, kLeast), noisy_share(given, vertices));
     const double of_calm = between(kMost, kLeast, falling(vertices, 1250, 2000));
-    return between(usual, between(noisy, of_calm, calm), trust_in_shape(given));
+    return between(usual, between(noisy, of_calm, calm), trust);
 }
 
 /// What a preview saves on the signals of the vertices that go. Of 2,000 and more, accuracy is wanted: with
@@ -90,10 +90,9 @@ Plan plan_for(const Circumstances& given) {
                        : given.vertices;
     plan.grow_to = std::max(plan.carried, given.start_vertices);
     if (!given.redistributes || !given.encloses_space) return plan;
-    const double calm = trust_in_shape(given) * calmness(given);
-    plan.precise = calm > 0;
-    plan.by_volume = plan.precise || trust_in_shape(given) * noisy_share(given, plan.carried) > 0;
-    const double learned = plan.carried + surplus(given, plan.carried, calm);
+    const double trust = trust_in_shape(given), calm = trust * calmness(given);
+    plan.by_volume = calm > 0 || trust * noisy_share(given, plan.carried) > 0;
+    const double learned = plan.carried + surplus(given, plan.carried, trust, calm);
     const double supported = static_cast<double>(given.points) / points_per_learned(plan.carried, calm);
     // Growth removes the vertices that the landing leaves without signals, far off.
     const int least = given.start_vertices > plan.carried ? given.start_vertices + given.start_vertices / 4

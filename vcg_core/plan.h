@@ -34,14 +34,13 @@ struct Plan {
     /// Whether the fit reduces by the shape of the mesh (volume_collapse.h) instead of by distances to the
     /// points, which noise blurs less.
     bool by_volume = false;
-    bool precise = false;  ///< noise says little beside the edges: fewer points judge a collapse
 };
 
 /// Vertices beyond \p vertices of which the fit takes away those that matter least, whatever the noise.
 int usual_surplus(int vertices);
 
-/// All of it is continuous and monotone in the noise and the number of points, but by_volume and precise,
-/// which change where both choices give the same error. Chosen by
+/// All of it is continuous and monotone in the noise and the number of points, but by_volume, which changes
+/// where both choices give the same error, and fills_up. Chosen by
 /// tests/experiments/accuracy/accuracy_table.py and open_table.py.
 Plan plan_for(const Circumstances& given);
 
