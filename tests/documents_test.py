@@ -24,9 +24,9 @@ def pages(root):
                    *root.glob("filter_neuralmesh/**/*.md")])
 
 
-def anchors_of(text):
-    """What GitHub calls the headings of a page."""
-    return {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in HEADING.findall(text)}
+def anchor_of(heading):
+    """What GitHub calls a heading."""
+    return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
 
 
 def broken(root):
@@ -41,7 +41,7 @@ def broken(root):
             target = page.parent / name if name else page
             if not target.exists():
                 yield f"{where}: the link {link} leads nowhere."
-            elif anchor and anchor not in anchors_of(target.read_text(encoding="utf-8")):
+            elif anchor and anchor not in map(anchor_of, HEADING.findall(target.read_text(encoding="utf-8"))):
                 yield f"{where}: {link} is no heading."
         for name in NAMED.findall(text):
             if not any((folder / name).exists() for folder in (root, page.parent)):
@@ -72,8 +72,7 @@ class Documents(unittest.TestCase):
         text = (ROOT / "README.md").read_text(encoding="utf-8")
         links = LINK.findall(text)
         self.assertEqual([link[1:] for link in links if link.startswith("#")],
-                         [re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
-                          for heading in re.findall(r"^###? (.+)$", CODE.sub("", text), re.MULTILINE)])
+                         [anchor_of(heading) for heading in re.findall(r"^###? (.+)$", CODE.sub("", text), re.MULTILINE)])
         for page in ROOT.glob("filter_neuralmesh/docs/*.md"):
             self.assertIn(str(page.relative_to(ROOT)), links)
 

@@ -42,6 +42,16 @@ def save(path, vertices, faces, colors):
     return str(path)
 
 
+def learned_with_colors(points, path, **parameters):
+    """A MeshSet with the mesh learned from a PLY file of coloured points; the PLY file `path` shows its colours."""
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.load_new_mesh(points)
+    meshes.apply_filter(RECONSTRUCTION, **parameters)
+    mesh = meshes.current_mesh()
+    save(path, mesh.vertex_matrix(), mesh.face_matrix(), 255 * mesh.vertex_color_matrix()[:, :3])
+    return meshes  # which owns the mesh
+
+
 def marked(path, vertices, faces, selected):
     return save(path, vertices, faces, np.where(selected[:, None], SELECTED, PLAIN))
 
@@ -73,14 +83,13 @@ def painted(points):
 
 def learned_row(cloud, folder):
     points = save(folder / "creases_cloud.ply", cloud, None, painted(cloud))
-    meshes = pymeshlab.MeshSet(verbose=False)
-    meshes.load_new_mesh(points)
-    meshes.apply_filter(RECONSTRUCTION, target_vertices=VERTICES, vertex_color=1, select_features=True, select_by=1)
+    colored = folder / "creases_colored.ply"
+    meshes = learned_with_colors(points, colored, target_vertices=VERTICES, vertex_color=1, select_features=True,
+                                 select_by=1)
     mesh = meshes.current_mesh()
-    arrays = mesh.vertex_matrix(), mesh.face_matrix()
-    colored = save(folder / "creases_colored.ply", *arrays, 255 * mesh.vertex_color_matrix()[:, :3])
-    selected = marked(folder / "creases_selected.ply", *arrays, mesh.vertex_selection_array())
-    return [Picture(points, "points", True, point_size=1.5, **SEEN), Picture(colored, "smooth", True, **SEEN),
+    selected = marked(folder / "creases_selected.ply", mesh.vertex_matrix(), mesh.face_matrix(),
+                      mesh.vertex_selection_array())
+    return [Picture(points, "points", True, point_size=1.5, **SEEN), Picture(str(colored), "smooth", True, **SEEN),
             Picture(selected, "flat", True, **SEEN)]
 
 

@@ -20,7 +20,7 @@ import pymeshlab  # noqa: E402
 
 import models  # noqa: E402
 import python_site  # noqa: E402
-from creases import RECONSTRUCTION, save  # noqa: E402
+from creases import learned_with_colors, save  # noqa: E402
 from meshlab_picture import Picture, render  # noqa: E402
 from meshlab_picture_sheet import contact_sheet  # noqa: E402
 from PIL import Image  # noqa: E402
@@ -84,13 +84,9 @@ def main(arguments=None):
     done = python_site.run(site, EXAMPLE, points, obj, VERTICES)
     if done.returncode:
         sys.exit(done.stderr)
-    meshes = pymeshlab.MeshSet(verbose=False)
-    meshes.load_new_mesh(points)
-    meshes.apply_filter(RECONSTRUCTION, target_vertices=VERTICES)
-    mesh = meshes.current_mesh()
-    colored = save(options.out / "texture_colors.ply", mesh.vertex_matrix(), mesh.face_matrix(),
-                   255 * mesh.vertex_color_matrix()[:, :3])
-    files = [points, colored, textured(obj, options.out / "texture_texture.ply")]
+    colored = options.out / "texture_colors.ply"
+    learned_with_colors(points, colored, target_vertices=VERTICES)
+    files = [points, str(colored), textured(obj, options.out / "texture_texture.ply")]
     styles = [("points", {"point_size": 1.5}), ("flat", {}), ("flat", {})]
     drawn = render([Picture(file, style, True, **SEEN, **more) for file, (style, more) in zip(files, styles)], SIZE)
     captions = [f"{POINTS:,} coloured points", f"{VERTICES:,} vertices with their colours", "the same with a texture"]
