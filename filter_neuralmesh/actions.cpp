@@ -160,6 +160,7 @@ std::vector<Figure> figures(const Report& report, int action) {
             count("crease_lines", report.crease_lines),
             count("warnings", static_cast<long long>(report.warnings.size())),
             {"rms_error", report.rms_error, false},
+            {"held_out_error", report.held_out_error, false},
             {"mean_counter", report.mean_counter, false},
             {"topology_confidence", report.topology_confidence, false},
             {"seconds", report.seconds, false},

@@ -15,7 +15,7 @@ Value = Union[bool, int, float, str]
 Settings = Dict[str, Value]  # as in JSON; a percentage is a text such as "5%"
 
 SETTING = re.compile(r"[A-Za-z_]\w*=")
-LENGTHS = ("close_holes_up_to",)  # world units, or with a % of the diagonal
+LENGTHS = ("target_error", "close_holes_up_to")  # world units, or with a % of the diagonal
 
 
 class WrongUsage(Exception):
