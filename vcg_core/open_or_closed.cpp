@@ -14,9 +14,9 @@ namespace {
 /// Openings of closed models (places without points on large faces, cavities) are narrower than this share of
 /// the diagonal, those of scans and cut models wider. Chosen by open_table.py.
 constexpr double kWidestClosed = 0.066;
-/// Sparse points leave openings, and places that enclose nothing, in closed surfaces, too: openings as wide
-/// as 2.3 radii and a sheet share of 4.4 times the radius were found with 500 to 15,000 points of five
-/// closed models. Of the same models cut by a plane one of the two is above these bounds.
+/// Sparse and noisy points leave openings, and places that enclose nothing, in closed surfaces, too: openings
+/// as wide as 2.3 radii and a sheet share of 4.4 times the radius were found with 500 to 15,000 points of
+/// five closed models. Of the same models cut by a plane one of the two is above these bounds.
 constexpr double kOpeningRadii = 3, kSheetRadii = 5;
 
 }  // namespace

@@ -377,7 +377,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     if (options.use_normals) result.faced_by_normals = orient_by_normals(network, target);
     write_mesh(network, result);
     result.fewest_vertices = fewest_vertices(std::move(network), options.target_vertices);
-    result.radius = surface.sparse_radius();
+    result.radius = std::max(surface.sparse_radius(), surface.usual_radius());
     result.layers = surface.layers();
     set_outliers(std::move(out), options.learn_outliers || target.is_exact(), result);
     warn_of_cuts(target, sheet.contradictions, result);

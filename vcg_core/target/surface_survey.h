@@ -70,6 +70,8 @@ public:
     double curves() const { return share(&SurveyedPlace::on_curve); }
     /// The radius, by the spacing alone, that a quarter of the surface exceeds: its sparsest part.
     double sparse_radius() const { return static_cast<double>(sparse_radius_); }
+    /// The median of the radii, which spacing and noise determine. O(places)
+    double usual_radius() const { return median_of(&SurveyedPlace::radius); }
     LayerFigures layers() const;
     /// Median of the deviations, in edges of an even mesh with so many points for each vertex: 0.1 means that
     /// the points lie a tenth of an edge off the surface. Two layers are no noise. 0 if no place shows a

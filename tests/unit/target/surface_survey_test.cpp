@@ -99,6 +99,13 @@ TEST(SurfaceSurvey, TellsSpacingsOfUnevenPoints) {
     EXPECT_NEAR(survey.sparse_radius(), 0.04, 0.01);
 }
 
+TEST(SurfaceSurvey, HasTheRadiusOfTheNoiseWhereThatIsGreater) {
+    const SurfaceSurvey exact = survey_of(sheet(20000, 0, [](float) { return 0.0F; })),
+                        noisy = survey_of(sheet(20000, 0, [](float) { return 0.02F; }));
+    EXPECT_LT(exact.usual_radius(), 1.2 * exact.sparse_radius());
+    EXPECT_GT(noisy.usual_radius(), 5 * 0.02 * 0.9);
+}
+
 TEST(SurfaceSurvey, CallsScatteredPointsClutterAndLinesCurves) {
     Random random(3);
     std::vector<Point3f> cube, line;
