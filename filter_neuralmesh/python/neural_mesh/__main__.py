@@ -10,11 +10,7 @@ import warnings
 from pathlib import Path
 from typing import Any, List, Optional
 
-import pymeshlab
-
-from neural_mesh import FILTER, NeuralMeshWarning
-from neural_mesh.mesh_files import NotWhole, save
-from neural_mesh.parameters import WrongUsage, check, for_pymeshlab, line_of, sentence_of, settings_of
+from neural_mesh import FILTER, NeuralMeshWarning, __version__, filters
 
 # A subcommand is the module of that name, with add_arguments(parser) and run(given), which returns the exit status.
 SUBCOMMANDS = {
@@ -24,6 +20,10 @@ SUBCOMMANDS = {
 
 
 def learn_one(given: argparse.Namespace) -> int:
+    import pymeshlab
+
+    from neural_mesh.mesh_files import save
+    from neural_mesh.parameters import check, for_pymeshlab, line_of, settings_of
     settings = settings_of(given.settings)
     meshes = pymeshlab.MeshSet(verbose=False)
     check(settings, meshes)
@@ -59,6 +59,13 @@ def say_warnings() -> None:
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
+    if sentence := filters.why_not(__version__):
+        print(f"neural-mesh: {sentence}", file=sys.stderr)
+        return 1
+    import pymeshlab
+
+    from neural_mesh.mesh_files import NotWhole
+    from neural_mesh.parameters import WrongUsage, sentence_of
     words = sys.argv[1:] if arguments is None else arguments
     name = words[0] if words and words[0] in SUBCOMMANDS else ""
     if name:
