@@ -133,15 +133,15 @@ path_of() { case "$1" in /*) echo "$1" ;; *) echo "$called_from/$1" ;; esac; }
 build() {
     need $compile_packages $venv_packages
     need_venv
-    compile plugins
+    compile plugins neuralmesh_c_api
     say "Built:"
-    ls -1 "$build"/plugins/*/libfilter_neuralmesh.so
+    ls -1 "$build"/plugins/*/libfilter_neuralmesh.so "$build"/c_api/libneural_mesh.so
 }
 
 package() {
     need $compile_packages $venv_packages
     need_venv
-    compile plugins
+    compile plugins neuralmesh_c_api
     say "Packages:"
     "$python" packaging/package.py --plugins "$build/plugins" --out dist
 }
