@@ -96,17 +96,22 @@ need_sources() {
     filter_neuralmesh/sources/fetch_meshlab.sh
 }
 
-need_venv() {
-    local wanted
-    wanted="$(sha256sum < tests/requirements.txt)"
-    [ "$(cat "$venv/complete" 2> /dev/null)" = "$wanted" ] && return 0
-    say "Installing pymeshlab and the tools of the tests into $venv"
-    rm -rf "$venv"
-    "$python" -m venv "$venv"
-    "$venv/bin/pip" install --quiet --disable-pip-version-check --only-binary :all: \
-        --no-compile --require-hashes --requirement tests/requirements.txt
-    echo "$wanted" > "$venv/complete"
+# environment FOLDER REQUIREMENTS WHAT: makes a virtual environment of Python anew unless it is what REQUIREMENTS say.
+environment() {
+    local folder="$1" requirements="$2" what="$3" wanted
+    wanted="$(sha256sum < "$requirements")"
+    [ "$(cat "$folder/complete" 2> /dev/null)" = "$wanted" ] && return 0
+    say "Installing $what into $folder"
+    rm -rf "$folder"
+    "$python" -m venv "$folder"
+    "$folder/bin/pip" install --quiet --disable-pip-version-check --only-binary :all: \
+        --no-compile --require-hashes --requirement "$requirements"
+    echo "$wanted" > "$folder/complete"
 }
+
+need_venv() { environment "$venv" tests/requirements.txt "pymeshlab and the tools of the tests"; }
+
+need_zig() { environment "$build/zig" packaging/requirements.txt "zig, which compiles for other systems,"; }
 
 # cached NAME: the value of NAME in the CMake cache of the build folder.
 cached() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
@@ -141,9 +146,12 @@ build() {
 package() {
     need $compile_packages $venv_packages
     need_venv
+    need_zig
     compile plugins neuralmesh_c_api
+    say "Compiling the library for other systems"
+    "$python" packaging/libraries.py --zig "$build/zig" --build "$build/cross" --out "$build/libraries"
     say "Packages:"
-    "$python" packaging/package.py --plugins "$build/plugins" --out dist
+    "$python" packaging/package.py --plugins "$build/plugins" --libraries "$build/libraries" --out dist
 }
 
 # What a release must pass besides the tests. Not part of them: it takes half an hour.

@@ -54,7 +54,7 @@ def layer_of(pymeshlab, points, colors=None, normals=None, faces=(), **_):
 def filter_arguments(pymeshlab, points, **given):
     values = {name: value for name, value in given.items() if name not in ("colors", "normals", "faces")}
     if "close_holes_up_to" in values:
-        values["close_holes_up_to"] = pymeshlab.PercentageValue(float(values["close_holes_up_to"].rstrip("%")))
+        values["close_holes_up_to"] = pymeshlab.PureValue(values["close_holes_up_to"])
     return values
 
 
@@ -93,6 +93,13 @@ def test_the_same_bytes_as_the_filter(learned, pymeshlab, meshes, name):
         assert np.array_equal(lines.vertex_matrix(), mesh.creases.vertices)
         assert np.array_equal(lines.edge_matrix(), mesh.creases.edges)
         assert np.array_equal(lines.vertex_scalar_array(), mesh.creases.quality)
+
+
+def test_percentages_and_names_are_those_of_the_filter(library, pymeshlab, meshes):
+    mesh = library.reconstruct(BALL, close_holes_up_to="3.7%", surface="Open", target_vertices=60)
+    meshes.add_mesh(pymeshlab.Mesh(BALL))
+    meshes.apply_filter(PYTHON_NAME, close_holes_up_to=pymeshlab.PercentageValue(3.7), surface="Open", target_vertices=60)
+    assert np.array_equal(mesh.vertices, meshes.current_mesh().vertex_matrix())
 
 
 @pytest.mark.parametrize("with_points", [True, False])
