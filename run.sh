@@ -26,7 +26,7 @@ venv_packages="python3-venv"
 demo_packages="glmark2-data libgl1-mesa-dri python3-numpy python3-pil xauth xdotool xvfb"
 bench_packages="libcgal-dev"  # CGAL's surface reconstruction is timed beside ours
 test_packages="binutils libbenchmark-dev libgtest-dev parallel valgrind"
-release_packages="debootstrap lintian"
+release_packages="debootstrap lintian qemu-user wine64"
 declare -A platform_packages=([arm64]="g++-aarch64-linux-gnu googletest qemu-user" [portable]="libgtest-dev"
     [windows]="g++-mingw-w64-x86-64-posix googletest wine64" [libcxx]="clang googletest libc++-dev libc++abi-dev")
 python=/usr/bin/python3
@@ -111,6 +111,8 @@ environment() {
 
 need_venv() { environment "$venv" tests/requirements.txt "pymeshlab and the tools of the tests"; }
 
+need_checks() { environment "$build/checks" packaging/checks.txt "what checks wheels"; }
+
 need_zig() { environment "$build/zig" packaging/requirements.txt "zig, which compiles for other systems,"; }
 
 # cached NAME: the value of NAME in the CMake cache of the build folder.
@@ -160,6 +162,10 @@ release() {
     need_venv
     compile all
     export NEURALMESH_BUILD="$here/$build"
+    package
+    need_checks
+    as_root env NEURALMESH_BUILD="$NEURALMESH_BUILD" "$build/checks/bin/python" -m pytest -v -rs --noconftest \
+        tests/hosts/wheels.py
     "$venv/bin/python" -m pytest -v -rs tests/hosts/upstream.py
     as_root env NEURALMESH_BUILD="$NEURALMESH_BUILD" "$venv/bin/python" -m pytest -v -rs tests/hosts/installs.py
 }

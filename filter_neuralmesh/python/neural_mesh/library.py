@@ -73,11 +73,22 @@ class Parameter(NamedTuple):
     choices: Tuple[str, ...]
 
 
+class _Memory:
+    """Owns a result of the library."""
+
+    def __init__(self, address: int) -> None:
+        self.address = address
+        self._free = library().neural_mesh_free_result
+
+    def __del__(self) -> None:
+        self._free(self.address)
+
+
 class Result:
     """What a run has made: arrays that are views of the library's memory, which lives as long as any of them."""
 
     def __init__(self, address: int) -> None:
-        self._address = address
+        self._memory = _Memory(address)
         content = _Result.from_address(address)
         vertices, faces = content.vertex_count, content.face_count
         self.vertices = self._view(content.positions, np.float64, (vertices, 3))
@@ -96,17 +107,14 @@ class Result:
         self.notes: List[str] = [text for kind, text in messages if not kind]
         self.warnings: List[str] = [text for kind, text in messages if kind]
 
-    def __del__(self) -> None:
-        library().neural_mesh_free_result(self._address)
-
     def _view(self, pointer: Any, dtype: Any, shape: Tuple[int, ...]) -> Optional[np.ndarray]:
         """None for a null pointer."""
         if not pointer:
             return None
         count = math.prod(shape)
-        memory = (c_ubyte * (count * np.dtype(dtype).itemsize)).from_address(ctypes.addressof(pointer.contents))
-        memory.owner = self  # the array refers to `memory`, and so to the result
-        return np.frombuffer(memory, dtype).reshape(shape)
+        bytes_of_array = (c_ubyte * (count * np.dtype(dtype).itemsize)).from_address(ctypes.addressof(pointer.contents))
+        bytes_of_array.owner = self._memory  # the array refers to the bytes, and so to their owner
+        return np.frombuffer(bytes_of_array, dtype).reshape(shape)
 
 
 @functools.lru_cache(None)

@@ -192,4 +192,6 @@ def _run(task: Task, progress: Union[None, bool, Progress]) -> Result:
         def show(part: float, activity: str) -> None:
             bar.set_postfix_str(activity, refresh=False)
             bar.update(round(100 * part, 1) - bar.n)
-        return task.run(show)
+        result = task.run(show)
+        bar.update(100 - bar.n)
+        return result
