@@ -187,17 +187,17 @@ def test_the_command_makes_a_mesh(build, installed, model, tmp_path):
     (["{cloud}", "mesh.ply", "5000"], 2, "neural-mesh: '5000' is not of the form name=value"),
     (["{cloud}", "mesh.ply", "vertices=5000"], 2, "There is no parameter vertices. The parameters are target_"),
     (["{cloud}", "mesh.ply", "target_vertices=1"], 2, "Target vertices) is 1: choose a value from 4 to"),
-    (["{cloud}", "mesh.ply", "target_vertices=2.5"], 2, "target_vertices is '2.5': give a whole number."),
-    (["{cloud}", "mesh.ply", "target_vertices=many"], 2, "target_vertices is 'many': give a whole number"),
-    (["{cloud}", "mesh.ply", "target_vertices=99999999999"], 2, "is '99999999999': give a whole number of at most nine"),
+    (["{cloud}", "mesh.ply", "target_vertices=2.5"], 2, "target_vertices (Target vertices) is 2.5: give a whole number from 4"),
+    (["{cloud}", "mesh.ply", "target_vertices=many"], 2, "(Target vertices) is 'many': give a number."),
+    (["{cloud}", "mesh.ply", "target_vertices=99999999999"], 2, "is 99999999999: give a whole number from 4 to"),
     (["{cloud}", "mesh.ply", "target_vertices=5", "target_vertices=6"], 2, "target_vertices is given twice."),
     (["{cloud}", "mesh.ply", "learning_rate=nan"], 2, "Learning rate) is nan: choose a value from"),
-    (["{cloud}", "mesh.ply", "learning_rate=fast"], 2, "learning_rate is 'fast': give a number."),
-    (["{cloud}", "mesh.ply", "fit_to_points=2"], 2, "fit_to_points is '2': give true or false."),
-    (["{cloud}", "mesh.ply", "surface=7"], 2, "The parameter surface is '7': Enum 7 not valid."),
-    (["{cloud}", "mesh.ply", "surface=Shut"], 2, "Possible values are 'Automatic'; 'Closed'; 'Open'."),
-    (["{cloud}", "mesh.ply", "close_holes_up_to=wide"], 2, "close_holes_up_to is 'wide': give a length, such as"),
-    (["{cloud}", "mesh.ply", "close_holes_up_to=500%"], 2, "from 0 to 100, such as close_holes_up_to=5%."),
+    (["{cloud}", "mesh.ply", "learning_rate=fast"], 2, "(Learning rate) is 'fast': give a number."),
+    (["{cloud}", "mesh.ply", "fit_to_points=2"], 2, "(Fit to points) is 2: give a whole number from 0 to 1."),
+    (["{cloud}", "mesh.ply", "surface=7"], 2, "(Surface) is 7: choose a value from 0 to 2."),
+    (["{cloud}", "mesh.ply", "surface=Shut"], 2, "is 'Shut': give 'Automatic' or 'Closed' or 'Open'."),
+    (["{cloud}", "mesh.ply", "close_holes_up_to=wide"], 2, "(Close holes up to) is 'wide': give a length, or a percentage"),
+    (["{cloud}", "mesh.ply", "close_holes_up_to=500%"], 2, "from 0 to 100 such as '5%'."),
 ])
 def test_the_command_says_what_is_wrong(installed, model, words, status, sentence):
     words = [word.format(cloud=model("sphere")[0]) for word in words]
@@ -214,7 +214,7 @@ def test_the_command_takes_lengths_percentages_and_names(installed, model, tmp_p
 
 @pytest.mark.parametrize("other, words", [("2023.12", "pymeshlab 2023.12 is installed"),
                                           (None, "no pymeshlab is installed")])
-def test_beside_another_pymeshlab_or_none_there_is_no_filter_but_the_library(installed, tmp_path, other, words):
+def test_beside_another_pymeshlab_or_none_there_is_no_filter_but_the_library(installed, model, tmp_path, other, words):
     """A stand-in for an installed pymeshlab: the folder that names its release."""
     if other:
         (tmp_path / f"pymeshlab-{other}.dist-info").mkdir()
@@ -232,10 +232,13 @@ def test_beside_another_pymeshlab_or_none_there_is_no_filter_but_the_library(ins
     # Who has a pymeshlab may look for the filters in it.
     warning = f"NeuralMeshWarning: The filters of neural-mesh {packaging.project_version()} are built for pymeshlab 2025.7"
     assert (warning in imported.stderr) == bool(other)
-    # As a command: the sentence alone.
+    # As a command: a sentence, where pymeshlab is needed.
     script = tmp_path / "neural-mesh"
     script.write_text("import neural_mesh.__main__\nimport sys\nsys.exit(neural_mesh.__main__.main())")
-    for command in (["-m", "neural_mesh", "batch", "."], [script, "a.ply", "b.ply"]):
-        done = done_by("-W", "ignore", *command)
+    (tmp_path / "a.stl").write_text("solid")
+    for command in (["-m", "neural_mesh"], [script]):
+        done = done_by(*command, tmp_path / "a.stl", "b.ply")
         assert done.returncode == 1 and len(done.stderr.splitlines()) == 1, done.stderr
-        assert done.stderr.startswith("neural-mesh: The filters of neural-mesh ") and words in done.stderr
+        assert "no ending that is read without pymeshlab" in done.stderr and words in done.stderr
+    done = done_by("-m", "neural_mesh", model("sphere")[0], tmp_path / "mesh.ply", "target_vertices=20")
+    assert done.returncode == 0 and "vertices=20 " in done.stdout and not done.stderr, done.stderr

@@ -4,6 +4,7 @@
 #include "vcg_core/c_api/neural_mesh.h"
 
 #include <cmath>
+#include <iomanip>
 #include <locale>
 #include <memory>
 #include <new>
@@ -94,20 +95,21 @@ const SettingInfo& row_of(const std::string& name, int kind) {
     refuse_name(name, kind);
 }
 
-/// What a value of the parameter has to be; empty if \p value is that, or is to be checked by its range.
-const char* wanted_kind(const SettingInfo& info, double value) {
-    if (info.kind == Kind::boolean) return value == 0 || value == 1 ? "" : "0 or 1";
-    if (info.kind == Kind::real || info.kind == Kind::length) return "";
-    return std::isfinite(value) && value == std::floor(value) ? "" : "a whole number";
+/// Whether the value has the kind of the parameter. Its range is checked later, but for integers beyond int.
+bool has_kind(const SettingInfo& info, double value) {
+    if (info.kind == Kind::boolean) return value == 0 || value == 1;
+    if (info.kind == Kind::real || info.kind == Kind::length) return true;
+    constexpr double kBeyondInt = 2147483648.0;
+    return std::abs(value) < kBeyondInt && value == std::floor(value);
 }
 
 void set_parameter(neural_mesh_task& task, const std::string& name, double value) {
     const SettingInfo& info = row_of(name, task.kind);
-    if (const std::string wanted = wanted_kind(info, value); !wanted.empty()) {
+    if (!has_kind(info, value)) {
         std::ostringstream text;
         text.imbue(std::locale::classic());
-        text << "The parameter " << name << " (" << info.label << ") is " << value << ": give " << wanted
-             << '.';
+        text << std::setprecision(12) << "The parameter " << name << " (" << info.label << ") is " << value
+             << ": give a whole number from " << info.low << " to " << info.high << '.';
         throw SettingError(text.str());
     }
     Settings changed = task.settings;

@@ -23,8 +23,10 @@ MeshSet(verbose=False); mesh.report has those of reconstruct(). Each warning is 
 neural_mesh.NeuralMeshWarning.
 """
 
+import sys
 import warnings
 from importlib import metadata
+from pathlib import Path
 
 from neural_mesh import filters
 from neural_mesh.filters import COUNTERS, FILTER
@@ -38,7 +40,9 @@ __all__ = ["COUNTERS", "Creases", "FILTER", "Log", "Mesh", "Message", "NeuralMes
 __version__ = metadata.version("neural-mesh")
 
 if filters.is_expected():
-    if _sentence := filters.why_not(__version__):
-        warnings.warn(_sentence, NeuralMeshWarning, stacklevel=2)
-    else:
+    _sentence = filters.why_not(__version__)
+    _called = sys.argv[0] if sys.argv else ""
+    if not _sentence:
         filters.add_methods()
+    elif _called != "-m" and Path(_called).name != "neural-mesh":  # the command says it where it matters
+        warnings.warn(_sentence, NeuralMeshWarning, stacklevel=2)

@@ -10,7 +10,10 @@ import warnings
 from pathlib import Path
 from typing import Any, List, Optional
 
-from neural_mesh import FILTER, NeuralMeshWarning, __version__, filters
+from neural_mesh import NeuralMeshWarning, reconstruct
+from neural_mesh.clouds import CloudError
+from neural_mesh.files import NotWhole, load, save
+from neural_mesh.parameters import WrongUsage, check, line_of, settings_of
 
 # A subcommand is the module of that name, with add_arguments(parser) and run(given), which returns the exit status.
 SUBCOMMANDS = {
@@ -20,22 +23,16 @@ SUBCOMMANDS = {
 
 
 def learn_one(given: argparse.Namespace) -> int:
-    import pymeshlab
-
-    from neural_mesh.mesh_files import save
-    from neural_mesh.parameters import check, for_pymeshlab, line_of, settings_of
     settings = settings_of(given.settings)
-    meshes = pymeshlab.MeshSet(verbose=False)
-    check(settings, meshes)
-    meshes.load_new_mesh(given.cloud)
-    result = meshes.apply_filter(FILTER, **for_pymeshlab(settings))
-    save(meshes, Path(given.mesh))
-    print(line_of(result))
+    check(settings)
+    mesh = reconstruct(**load(Path(given.cloud)), **settings)
+    save(mesh, Path(given.mesh))
+    print(line_of(mesh.report))
     return 0
 
 
 def arguments_of_one(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("cloud", help="a file of points or a mesh, in any format of pymeshlab")
+    parser.add_argument("cloud", help="a file of points or a mesh")
     parser.add_argument("mesh", help="the file to write, such as mesh.ply")
     parser.add_argument("settings", nargs="*", metavar="name=value", help="parameters of the filter, such as "
                         "target_vertices=5000")
@@ -59,13 +56,6 @@ def say_warnings() -> None:
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
-    if sentence := filters.why_not(__version__):
-        print(f"neural-mesh: {sentence}", file=sys.stderr)
-        return 1
-    import pymeshlab
-
-    from neural_mesh.mesh_files import NotWhole
-    from neural_mesh.parameters import WrongUsage, sentence_of
     words = sys.argv[1:] if arguments is None else arguments
     name = words[0] if words and words[0] in SUBCOMMANDS else ""
     if name:
@@ -84,11 +74,8 @@ def main(arguments: Optional[List[str]] = None) -> int:
     except WrongUsage as error:
         print(f"neural-mesh: {error}", file=sys.stderr)
         return 2
-    except pymeshlab.PyMeshLabException as error:
-        print(f"neural-mesh: {sentence_of(error)}", file=sys.stderr)
-        return 1
-    except NotWhole as error:
-        print(f"neural-mesh: {error}", file=sys.stderr)
+    except (CloudError, NotWhole, ValueError, MemoryError) as error:
+        print(f"neural-mesh: {error or 'There is not enough memory.'}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("\nneural-mesh: stopped.", file=sys.stderr)

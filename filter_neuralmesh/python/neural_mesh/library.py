@@ -14,13 +14,14 @@ import sys
 import threading
 from ctypes import POINTER, c_char_p, c_double, c_float, c_int, c_size_t, c_ssize_t, c_ubyte, c_void_p
 from pathlib import Path
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
 ABI = 1  # NEURAL_MESH_ABI of the header that the structures below are those of
 RECONSTRUCTION, COUNTERS = 0, 1
 OK, NO_MEMORY, UNEXPECTED = 0, 3, 5  # other statuses are ValueErrors
+CANCELLED = 2  # the figure stop_reason
 NAMES = {"win32": "neural_mesh.dll", "darwin": "libneural_mesh.dylib"}
 FILE = Path(__file__).with_name(NAMES.get(sys.platform, "libneural_mesh.so"))
 
@@ -67,9 +68,9 @@ class Parameter(NamedTuple):
     label: str
     help: str
     kind: str
-    low: float
-    high: float
-    default: float
+    low: Union[bool, int, float]
+    high: Union[bool, int, float]
+    default: Union[bool, int, float]
     choices: Tuple[str, ...]
 
 
@@ -151,33 +152,35 @@ def parameters(kind: int) -> Dict[str, Parameter]:
         raise MemoryError
     table = {}
     for row in rows[:count.value]:
-        name = row.name.decode()
-        table[name] = Parameter(name, row.label.decode(), row.help.decode(), KINDS[row.kind], row.low, row.high,
-                                row.value, tuple(choice.decode() for choice in row.choice[:row.choices]))
+        name, kind = row.name.decode(), KINDS[row.kind]
+        number = {"boolean": bool, "integer": int, "choice": int}.get(kind, float)
+        table[name] = Parameter(name, row.label.decode(), row.help.decode(), kind, number(row.low), number(row.high),
+                                number(row.value), tuple(choice.decode() for choice in row.choice[:row.choices]))
     return table
 
 
 class _DelayedInterrupt:
     """Ctrl-C ends a `with` block of the main thread when it is left, not before: ctypes would lose an exception that is
-    raised on the way into a function that C calls. Python's own handler only; others stay."""
+    raised on the way into a function that C calls. Signals with Python's own handler for it only; others stay."""
 
     def __init__(self) -> None:
         self.came = False
-        self._ours = False
+        self._delayed: List[int] = []
 
     def __enter__(self) -> "_DelayedInterrupt":
         def remember(*_: Any) -> None:
             self.came = True
 
-        self._ours = (threading.current_thread() is threading.main_thread()
-                      and signal.getsignal(signal.SIGINT) is signal.default_int_handler)
-        if self._ours:
-            signal.signal(signal.SIGINT, remember)
+        if threading.current_thread() is threading.main_thread():
+            self._delayed = [number for number in (signal.SIGINT, signal.SIGTERM)
+                             if signal.getsignal(number) is signal.default_int_handler]
+        for number in self._delayed:
+            signal.signal(number, remember)
         return self
 
     def __exit__(self, *_: Any) -> None:
-        if self._ours:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
+        for number in self._delayed:
+            signal.signal(number, signal.default_int_handler)
         if self.came:
             raise KeyboardInterrupt
 
@@ -210,11 +213,13 @@ class Task:
         """`progress` gets the part that is done and what is being done; if it returns False, the run ends early.
         What it raises ends the run, too, and is raised again, as is KeyboardInterrupt."""
         raised: List[BaseException] = []
+        stopped = []
         with _DelayedInterrupt() as interrupt:
             def call_back(_: Any, fraction: float, activity: bytes) -> int:
                 try:  # without `progress`, too: Python sees signals where it runs
-                    going_on = progress is None or progress(fraction, activity.decode()) is not False
-                    return int(going_on and not interrupt.came)
+                    if interrupt.came or (progress is not None and progress(fraction, activity.decode()) is False):
+                        stopped.append(True)
+                    return int(not stopped)
                 except BaseException as error:
                     raised.append(error)
                     return 0
@@ -228,6 +233,8 @@ class Task:
                     raise
         if raised:
             raise raised[0]
+        if result.figures["stop_reason"] == CANCELLED and not stopped:
+            raise KeyboardInterrupt  # the handler of another signal has raised on the way into call_back()
         return result
 
     def _described(self, array: np.ndarray) -> _Array:

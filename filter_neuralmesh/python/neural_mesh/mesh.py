@@ -50,8 +50,8 @@ class Mesh:
     report: Report
 
     def save(self, path: Union[str, Path]) -> None:
-        """Writes a file: PLY with quality and colours, as MeshLab writes it, or OBJ with colours; coordinates in double
-        precision. The name's ending chooses. Raises ValueError for another ending, OSError if it cannot be written."""
+        """Writes a file: PLY with quality and colours, as MeshLab writes it, OBJ or OFF with colours; coordinates in
+        double precision. The name's ending chooses. Raises ValueError for another ending, OSError if it cannot be written."""
         from neural_mesh.mesh_writers import WRITERS
         path = Path(path)
         writer = WRITERS.get(path.suffix.lower())

@@ -59,4 +59,16 @@ def write_obj(file: BinaryIO, mesh: "Mesh") -> None:
         np.savetxt(file, mesh.faces[rows].astype(np.int64) + 1, "f %d %d %d")
 
 
-WRITERS = {".ply": write_ply, ".obj": write_obj}
+def write_off(file: BinaryIO, mesh: "Mesh") -> None:
+    """Colours from 0 to 255 follow the coordinates."""
+    file.write(f"{'OFF' if mesh.colors is None else 'COFF'}\n{len(mesh.vertices)} {len(mesh.faces)} 0\n".encode())
+    for rows in _blocks(len(mesh.vertices)):
+        values, words = mesh.vertices[rows], "%.17g %.17g %.17g"
+        if mesh.colors is not None:
+            values, words = np.column_stack([values, mesh.colors[rows]]), words + " %d %d %d 255"
+        np.savetxt(file, values, words)
+    for rows in _blocks(len(mesh.faces)):
+        np.savetxt(file, mesh.faces[rows], "3 %d %d %d")
+
+
+WRITERS = {".ply": write_ply, ".obj": write_obj, ".off": write_off}

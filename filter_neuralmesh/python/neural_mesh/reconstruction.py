@@ -54,7 +54,7 @@ def reconstruct(points: ArrayLike, *, colors: Optional[ArrayLike] = None, normal
         if start is not None:
             task.set_arrays("mesh", *_arrays_of(start, "start"))
             parameters.setdefault("start_mesh", GIVEN_MESH)
-        _set_parameters(task, parameters_of(RECONSTRUCTION), parameters, cloud)
+        set_parameters(task, parameters_of(RECONSTRUCTION), parameters, cloud)
         result = _run(task, progress)
     assert result.vertices is not None and result.faces is not None
     creases = None
@@ -83,7 +83,7 @@ def counters(mesh: Any, points: Optional[ArrayLike] = None, *, faces: Optional[A
             task.set_arrays("points", _rows(points, "points"))
         if faces is not None:
             task.set_arrays("faces", _indices(faces))
-        _set_parameters(task, parameters_of(COUNTERS), parameters, vertices)
+        set_parameters(task, parameters_of(COUNTERS), parameters, vertices)
         result = _run(task, progress)
     return _mesh(vertices, corners, getattr(mesh, "colors", None), None, result)
 
@@ -147,7 +147,8 @@ def _arrays_of(mesh: Any, name: str) -> Tuple[np.ndarray, np.ndarray]:
     return _rows(mesh.vertices, "vertices"), _indices(faces)
 
 
-def _set_parameters(task: Task, table: Dict[str, Parameter], given: Dict[str, Any], positions: np.ndarray) -> None:
+def set_parameters(task: Task, table: Dict[str, Parameter], given: Dict[str, Any], positions: np.ndarray) -> None:
+    """Sets the parameters that are given, for points at `positions`. Raises ValueError."""
     for name, value in given.items():
         task.set(name, _number(table[name], value, positions) if name in table else math.nan)
 
@@ -159,8 +160,8 @@ def _number(parameter: Parameter, value: Any, positions: np.ndarray) -> float:
         if value in parameter.choices:
             return parameter.choices.index(value)
         raise ValueError(wrong + " or ".join(map(repr, parameter.choices)) + ".")
-    if isinstance(value, str) and parameter.kind == "length" and value.endswith("%"):
-        return _percentage(wrong, value[:-1]) * _diagonal(positions) / 100
+    if isinstance(value, str) and parameter.kind == "length":
+        return _percentage(wrong, value) * _diagonal(positions) / 100
     if isinstance(value, str) or (isinstance(value, (bool, np.bool_)) and parameter.kind != "boolean"):
         raise ValueError(wrong + ("True or False." if parameter.kind == "boolean" else "a number."))
     try:
@@ -171,8 +172,8 @@ def _number(parameter: Parameter, value: Any, positions: np.ndarray) -> float:
 
 def _percentage(wrong: str, text: str) -> float:
     try:
-        if 0 <= float(text) <= 100:
-            return float(text)
+        if text.endswith("%") and 0 <= float(text[:-1]) <= 100:
+            return float(text[:-1])
     except ValueError:
         pass
     raise ValueError(f"{wrong}a length, or a percentage of the diagonal from 0 to 100 such as '5%'.")
