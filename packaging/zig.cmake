@@ -20,5 +20,7 @@ foreach(language C CXX)
     set(CMAKE_${language}_ARCHIVE_FINISH "\"${NEURALMESH_ZIG}\" ranlib <TARGET>")
 endforeach()
 set(CMAKE_SHARED_LINKER_FLAGS_INIT "-s")  # without symbols of its own
-set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)  # a program would be linked with a libc++ compiled for it
+# A program would be linked with a libc++ that is compiled for it, which takes minutes.
+set(CMAKE_CXX_COMPILER_ID_TEST_FLAGS_FIRST -c)
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)

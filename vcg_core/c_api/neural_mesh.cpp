@@ -99,8 +99,8 @@ const SettingInfo& row_of(const std::string& name, int kind) {
 bool has_kind(const SettingInfo& info, double value) {
     if (info.kind == Kind::boolean) return value == 0 || value == 1;
     if (info.kind == Kind::real || info.kind == Kind::length) return true;
-    constexpr double kBeyondInt = 2147483648.0;
-    return std::abs(value) < kBeyondInt && value == std::floor(value);
+    const double beyond_int = 2147483648.0;
+    return std::abs(value) < beyond_int && value == std::floor(value);
 }
 
 void set_parameter(neural_mesh_task& task, const std::string& name, double value) {

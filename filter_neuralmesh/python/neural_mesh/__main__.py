@@ -58,6 +58,9 @@ def say_warnings() -> None:
 def main(arguments: Optional[List[str]] = None) -> int:
     words = sys.argv[1:] if arguments is None else arguments
     name = words[0] if words and words[0] in SUBCOMMANDS else ""
+    if name and sys.platform != "linux":  # their processes, locks and limits are those of Linux
+        print(f"neural-mesh: '{name}' runs on Linux only. Call neural_mesh.reconstruct() in a loop.", file=sys.stderr)
+        return 2
     if name:
         module = importlib.import_module(f"neural_mesh.{name}")
         parser = argparse.ArgumentParser(prog=f"neural-mesh {name}", description=module.__doc__)

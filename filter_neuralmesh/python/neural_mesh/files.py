@@ -26,12 +26,18 @@ class NotWhole(Exception):
 def load(path: Path, verbose: bool = False) -> Dict[str, Any]:
     """The points of a file, with colours, normals and faces if it has them, as arguments of reconstruct(). `verbose`:
     pymeshlab's warnings are printed. Raises CloudError with a sentence."""
+    lack = filters.why_not(__version__)
     if path.suffix.lower() == ".ply":
-        cloud = open_cloud(path)
-        arrays = cloud.arrays() if isinstance(cloud, PlyCloud) else None
+        try:
+            arrays = PlyCloud(path).arrays()
+        except CloudError:  # a kind that PlyCloud does not know, or no PLY: then pymeshlab says so
+            arrays = None
+            if lack:
+                raise
+        except OSError as error:
+            raise CloudError(f"{path} cannot be read: {error.strerror}.") from None
         if arrays is not None:
             return arrays
-    lack = filters.why_not(__version__)
     if not lack:
         return _by_pymeshlab(path, verbose)
     if path.suffix.lower() not in FORMATS:
