@@ -124,12 +124,12 @@ def library() -> ctypes.CDLL:
     try:
         loaded = ctypes.CDLL(str(FILE))
     except OSError as error:
-        raise ImportError(f"The library of neural-mesh cannot be loaded ({error}): install the wheel for this system "
-                          "again, by 'pip install --force-reinstall neural-mesh'.") from None
+        raise ImportError(f"The library of neural-mesh cannot be loaded ({error}): install the wheel for this system, "
+                          "by 'pip install --force-reinstall neural_mesh-*.whl'.") from None
     found = loaded.neural_mesh_abi()
     if found != ABI:
         raise ImportError(f"The library {FILE.name} has the interface {found}, and this neural-mesh needs {ABI}: install "
-                          "it again, by 'pip install --force-reinstall neural-mesh'.")
+                          "it again, by 'pip install --force-reinstall neural_mesh-*.whl'.")
     for name, result, arguments in (
             ("version", c_char_p, ()), ("parameters", POINTER(_Parameter), (c_int, POINTER(c_size_t))),
             ("new", c_void_p, (c_int,)), ("free", None, (c_void_p,)), ("error", c_char_p, (c_void_p,)),
@@ -152,9 +152,9 @@ def parameters(kind: int) -> Dict[str, Parameter]:
         raise MemoryError
     table = {}
     for row in rows[:count.value]:
-        name, kind = row.name.decode(), KINDS[row.kind]
-        number = {"boolean": bool, "integer": int, "choice": int}.get(kind, float)
-        table[name] = Parameter(name, row.label.decode(), row.help.decode(), kind, number(row.low), number(row.high),
+        name, values = row.name.decode(), KINDS[row.kind]
+        number = {"boolean": bool, "integer": int, "choice": int}.get(values, float)
+        table[name] = Parameter(name, row.label.decode(), row.help.decode(), values, number(row.low), number(row.high),
                                 number(row.value), tuple(choice.decode() for choice in row.choice[:row.choices]))
     return table
 
@@ -189,7 +189,6 @@ class Task:
     """What to learn. Keeps the arrays that the library reads. For one thread at a time; a context manager."""
 
     def __init__(self, kind: int) -> None:
-        self._kind = kind
         self._handle = library().neural_mesh_new(kind)
         if not self._handle:
             raise MemoryError

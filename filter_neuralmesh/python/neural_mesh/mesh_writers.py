@@ -53,7 +53,8 @@ def write_obj(file: BinaryIO, mesh: "Mesh") -> None:
     for rows in _blocks(len(mesh.vertices)):
         values, words = mesh.vertices[rows], "v %.17g %.17g %.17g"
         if mesh.colors is not None:
-            values, words = np.column_stack([values, np.minimum((mesh.colors[rows] + .25) / 255, 1)]), words + " %.6g %.6g %.6g"
+            values = np.column_stack([values, np.minimum((mesh.colors[rows] + .25) / 255, 1)])
+            words += " %.6g %.6g %.6g"
         np.savetxt(file, values, words)
     for rows in _blocks(len(mesh.faces)):
         np.savetxt(file, mesh.faces[rows].astype(np.int64) + 1, "f %d %d %d")

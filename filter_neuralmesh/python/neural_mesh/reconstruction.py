@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import warnings
 from typing import Any, Dict, Optional, Tuple, Union
@@ -12,7 +13,7 @@ from typing import Any, Dict, Optional, Tuple, Union
 import numpy as np
 from numpy.typing import ArrayLike
 
-from neural_mesh.library import COUNTERS, RECONSTRUCTION, TYPES, Parameter, Progress, Result, Task
+from neural_mesh.library import COUNTERS, RECONSTRUCTION, Parameter, Progress, Result, Task
 from neural_mesh.library import parameters as parameters_of
 from neural_mesh.mesh import Creases, Mesh, Report
 from neural_mesh.run_log import NeuralMeshWarning
@@ -43,18 +44,11 @@ def reconstruct(points: ArrayLike, *, colors: Optional[ArrayLike] = None, normal
     Raises ValueError with a sentence that says what to do: wrong parameters or shapes, coordinates that are not finite,
     points that show no surface; MemoryError; and what `progress` raises."""
     with Task(RECONSTRUCTION) as task:
-        cloud = _rows(points, "points")
-        task.set_arrays("points", cloud)
-        if colors is not None:
-            task.set_arrays("colors", _colors(colors))
-        if normals is not None:
-            task.set_arrays("normals", _rows(normals, "normals"))
-        if faces is not None:
-            task.set_arrays("faces", _indices(faces))
+        cloud = _give(task, points=points, colors=colors, normals=normals, faces=faces)
         if start is not None:
             task.set_arrays("mesh", *_arrays_of(start, "start"))
             parameters.setdefault("start_mesh", GIVEN_MESH)
-        set_parameters(task, parameters_of(RECONSTRUCTION), parameters, cloud)
+        set_parameters(task, parameters_of(RECONSTRUCTION), parameters, cloud["points"])
         result = _run(task, progress)
     assert result.vertices is not None and result.faces is not None
     creases = None
@@ -79,10 +73,7 @@ def counters(mesh: Any, points: Optional[ArrayLike] = None, *, faces: Optional[A
     vertices, corners = _arrays_of(mesh, "mesh")
     with Task(COUNTERS) as task:
         task.set_arrays("mesh", vertices, corners)
-        if points is not None:
-            task.set_arrays("points", _rows(points, "points"))
-        if faces is not None:
-            task.set_arrays("faces", _indices(faces))
+        _give(task, points=points, faces=faces)
         set_parameters(task, parameters_of(COUNTERS), parameters, vertices)
         result = _run(task, progress)
     return _mesh(vertices, corners, getattr(mesh, "colors", None), None, result)
@@ -92,6 +83,16 @@ def parameter_list(what: str = "reconstruct") -> Dict[str, Parameter]:
     """The parameters of reconstruct() or, given "counters", of counters(), by name: label, help, kind, range, default
     and the names of choices."""
     return dict(parameters_of({"reconstruct": RECONSTRUCTION, "counters": COUNTERS}[what]))
+
+
+def _give(task: Task, **arrays: Any) -> Dict[str, np.ndarray]:
+    """Gives the task the arrays that are not None, and returns them as it takes them. Raises ValueError."""
+    taken = {}
+    for what, values in arrays.items():
+        if values is not None:
+            taken[what] = {"colors": _colors, "faces": _indices}.get(what, functools.partial(_rows, name=what))(values)
+            task.set_arrays(what, taken[what])
+    return taken
 
 
 def _mesh(vertices: np.ndarray, faces: np.ndarray, colors: Optional[np.ndarray], creases: Optional[Creases],
