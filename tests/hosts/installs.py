@@ -104,7 +104,7 @@ def let_pip_download(debian):
 
 
 @pytest.mark.parametrize("packages, others, blocks", [("", "", 1), ("libgl1 libopengl0", "pymeshlab==2025.7.*", 1),
-                                                      ("libgl1 libegl1 libgomp1 libx11-6", "open3d trimesh scipy", 99)])
+                                                      ("libgl1 libegl1 libgomp1 libx11-6 libusb-1.0-0", "open3d trimesh scipy", 99)])
 def test_the_wheel_from_numpy(system, packages, others, blocks):
     """The first block of the page as written, also beside pymeshlab; all blocks beside open3d and trimesh."""
     debian = system("bookworm")
