@@ -24,6 +24,7 @@
 #include "vcg_core/shell/normal_orientation.h"
 #include "vcg_core/shell/outliers.h"
 #include "vcg_core/shell/point_triangulation.h"
+#include "vcg_core/shell/sensor_place.h"
 #include "vcg_core/shell/short_handles.h"
 #include "vcg_core/shell/start_points.h"
 #include "vcg_core/shell/viewpoint.h"
@@ -143,12 +144,14 @@ std::vector<std::pair<int, int>> neighbours_of(const ConsolidatedPoints& points)
 }
 
 /// \param origin of the input
-Sheet sheet_of(ConsolidatedPoints points, const Point3f& origin, ThreadTeam& team) {
+/// \param sensor see sensor_place()
+Sheet sheet_of(ConsolidatedPoints points, const Point3f& origin, const std::optional<Point3f>& sensor,
+               ThreadTeam& team) {
     Sheet sheet;
     const std::vector<std::pair<int, int>> neighbours = neighbours_of(points);
     Orientation orientation = orient_normals(points.positions, neighbours, {}, points.normals);
     sheet.contradictions = std::move(orientation.contradictions);
-    sheet.faces_viewer = turn_to_viewer(neighbours, orientation.parts, origin, points);
+    sheet.faces_viewer = turn_to_viewer(neighbours, orientation.parts, origin, sensor, points);
     std::vector<int> source;
     sheet.mesh = triangulation(points.positions, points.normals, points.radii, team, source);
     cut_short_handles(sheet.mesh, kEdgesOfHandle, source);
@@ -354,7 +357,8 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     ConsolidatedPoints consolidated = consolidated_points(
         surveys.points().cloud, surface, std::max(wanted, kFewestConsolidated), random, team);
     progress(0.6, "Start mesh: building an open mesh");
-    Sheet sheet = sheet_of(std::move(consolidated), target.frame().inside({0, 0, 0}), team);
+    Sheet sheet = sheet_of(std::move(consolidated), target.frame().inside({0, 0, 0}),
+                           sensor_place(surveys.points().cloud, surface.places()), team);
     const Enough enough = enough_points(points.size(), options);
     std::vector<std::uint8_t> out = drop_small_parts(surveys, enough, team, sheet);
     if (sheet.mesh.faces.empty())

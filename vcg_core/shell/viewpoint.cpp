@@ -90,8 +90,9 @@ bool turn_to(const Viewpoint& viewpoint, const std::vector<std::pair<int, int>>&
 }  // namespace
 
 bool turn_to_viewer(const std::vector<std::pair<int, int>>& neighbours, const std::vector<int>& parts,
-                    const Point3f& origin, ConsolidatedPoints& points) {
-    return (may_be_sensor(origin, points.positions) && turn_to({origin, 1}, neighbours, parts, points)) ||
+                    const Point3f& origin, const std::optional<Point3f>& sensor, ConsolidatedPoints& points) {
+    return (sensor && turn_to({*sensor, 1}, neighbours, parts, points)) ||
+           (may_be_sensor(origin, points.positions) && turn_to({origin, 1}, neighbours, parts, points)) ||
            turn_to({{0, 0, 1}, 0}, neighbours, parts, points);
 }
 

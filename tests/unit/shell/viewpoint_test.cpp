@@ -47,7 +47,9 @@ struct Seen {
         if (over) points.normals.front() = -points.normals.front();
         parts = orient_normals(points.positions, neighbours, {}, points.normals).parts;
     }
-    bool turn_to(const vcg::Point3f& origin) { return turn_to_viewer(neighbours, parts, origin, points); }
+    bool turn_to(const vcg::Point3f& origin, const std::optional<vcg::Point3f>& sensor = {}) {
+        return turn_to_viewer(neighbours, parts, origin, sensor, points);
+    }
 
     /// The share of the normals that point to \p viewpoint; with \p far the direction of one.
     double turned_to(const vcg::Point3f& viewpoint, bool far = false) const {
@@ -101,6 +103,16 @@ TEST(Viewpoint, OfAFrameInItsSensorsCoordinatesIsTheSensor) {
             EXPECT_TRUE(seen.turn_to({0, 0, 0}));
             EXPECT_EQ(seen.turned_to({0, 0, 0}), 1) << distance;
         }
+}
+
+TEST(Viewpoint, IsASensorThatSeesAllRatherThanTheOrigin) {
+    for (const bool over : {false, true}) {
+        Seen seen(frame(1), over);
+        EXPECT_TRUE(seen.turn_to({0, 0, 0}, vcg::Point3f(0, 0, 2)));
+        EXPECT_EQ(seen.turned_to({0, 0, 2}), 1);
+        EXPECT_TRUE(seen.turn_to({0, 0, 0}, vcg::Point3f(0, 0, 1.2F)));  // between the squares
+        EXPECT_EQ(seen.turned_to({0, 0, 1.2F}), 1);
+    }
 }
 
 TEST(Viewpoint, TellsADepthStepFromTheSidesOfAWall) {

@@ -32,10 +32,10 @@ NeuralMesh learn(const Cloud& cloud, int vertices) {
 /// Of the faces of a mesh.
 struct Figures {
     double median_angle = 0;  ///< to the surface of the scene, in degrees
-    double facing = 0;        ///< share of the area that faces the origin
+    double facing = 0;        ///< share of the area that faces the camera
 };
 
-Figures figures_of(const NeuralMesh& mesh) {
+Figures figures_of(const NeuralMesh& mesh, const Point3d& camera = {0, 0, 0}) {
     std::vector<double> angles;
     double all = 0, facing = 0;
     for (const auto& f : mesh.faces) {
@@ -45,7 +45,7 @@ Figures figures_of(const NeuralMesh& mesh) {
         if (!(area > 0)) continue;
         const Point3d middle = (at(0) + at(1) + at(2)) / 3;
         all += area;
-        facing += across * middle < 0 ? area : 0;
+        facing += across * (middle - camera) < 0 ? area : 0;
         angles.push_back(sensors::angle_to_scene(middle, across / area));
     }
     std::nth_element(angles.begin(), angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2),
@@ -74,6 +74,15 @@ TEST(RawScans, ADepthFrameIsOneLayerThatFacesTheCamera) {
         // More vertices do not follow the noise, whose slopes between neighbouring points are 60 degrees.
         EXPECT_LT(figures.median_angle, std::max(4.0, 1.2 * least)) << vertices;
         least = std::min(least, figures.median_angle);
+    }
+}
+
+TEST(RawScans, AFrameFacesItsCameraInTheCoordinatesOfARoom) {
+    // Above or below the camera, and the origin between camera and wall: neither tells the side.
+    for (const Point3d& camera : {Point3d(10, 40, 5), Point3d(0.2, 0.3, -2)}) {
+        Cloud cloud = sensors::depth_frame(200);
+        for (Point3d& p : cloud) p += camera;
+        EXPECT_GT(figures_of(learn(cloud, 1500), camera).facing, 0.9) << camera[2];
     }
 }
 
