@@ -69,13 +69,15 @@ def learned(library):
     return learn
 
 
-@pytest.mark.parametrize("name", library_clouds.clouds())
+FIRST_TIER = ("creases of floats", "open with normals", "uneven, far away")
+
+
+@pytest.mark.parametrize("name", few_of(library_clouds.clouds(), (*FIRST_TIER, "colours")))
 def test_the_same_bytes_as_recorded(learned, name):
     assert library_clouds.sum_of(library_clouds.arrays_of(learned(name)[1])) == library_clouds.recorded()[name]
 
 
-@pytest.mark.parametrize("name", few_of(library_clouds.clouds(), ("creases of floats", "open with normals",
-                                                                  "uneven, far away")))
+@pytest.mark.parametrize("name", few_of(library_clouds.clouds(), FIRST_TIER))
 def test_the_same_bytes_as_the_filter(learned, pymeshlab, meshes, name):
     given, mesh = learned(name)
     meshes.add_mesh(layer_of(pymeshlab, **given))
@@ -105,7 +107,7 @@ def test_percentages_and_names_are_those_of_the_filter(library, pymeshlab, meshe
 
 @pytest.mark.parametrize("with_points", [True, False])
 def test_counters_are_those_of_the_filter(library, pymeshlab, meshes, with_points):
-    mesh = library.reconstruct(BALL, target_vertices=200)
+    mesh = library.reconstruct(BALL, **FAST)
     meshes.add_mesh(pymeshlab.Mesh(BALL))
     meshes.add_mesh(pymeshlab.Mesh(mesh.vertices, mesh.faces))
     figures = meshes.apply_filter(COUNTERS_NAME, signal_layer=0 if with_points else 1, feature_measure=1,
@@ -166,7 +168,7 @@ def test_colours_are_bytes_or_parts_of_one(library):
 def test_results_live_as_long_as_their_arrays(library):
     vertices = library.reconstruct(FEW, **FAST).vertices
     before = vertices.copy()
-    for _ in range(5):
+    for _ in range(2):
         library.reconstruct(FEW[:500], **FAST)
     assert np.array_equal(vertices, before)
 
@@ -227,8 +229,8 @@ def test_progress_is_told_and_can_stop(library):
     library.reconstruct(BALL, progress=lambda part, activity: told.append((part, activity)), **FAST)
     parts = [part for part, _ in told]
     assert parts == sorted(parts) and 0 <= parts[0] and parts[-1] <= 1 and any("Learning" in words for _, words in told)
-    mesh = library.reconstruct(BALL, target_vertices=2000, progress=lambda part, _: part < .5)
-    assert mesh.report["stop_reason"] == 2 and 4 <= len(mesh.vertices) < 2000
+    mesh = library.reconstruct(BALL, target_vertices=500, progress=lambda part, _: part < .5)
+    assert mesh.report["stop_reason"] == 2 and 4 <= len(mesh.vertices) < 500
     assert mesh.faces.max() < len(mesh.vertices)
 
 
