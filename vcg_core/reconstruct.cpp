@@ -16,6 +16,7 @@
 #include "vcg_core/feature_measures.h"
 #include "vcg_core/fit/rms_error.h"
 #include "vcg_core/learn_and_fit.h"
+#include "vcg_core/learn_to_error.h"
 #include "vcg_core/learning_task.h"
 
 namespace neuralmesh {
@@ -145,12 +146,8 @@ void warn_if_not_opened(const Settings& settings, Report& report) {
         "nothing faces. Choose start_mesh 0 for an open one.");
 }
 
-}  // namespace
-
-NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progress& progress,
-                       const IndexedMesh<double>& start) {
-    const auto begin = std::chrono::steady_clock::now();
-    settings.check();
+NeuralMesh learn(const TargetSpace& given, const Settings& settings, Progress& progress,
+                 const IndexedMesh<double>& start) {
     MonotoneProgress monotone(progress);
     PartOf preparing(monotone, 0, kPrepared);
     LearningTask task = prepare_or_stop(given, settings, start, preparing);
@@ -174,6 +171,20 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     ThreadTeam team(thread_count(settings.threads));
     mesh.report.rms_error =
         100 * rms_distance(task.target(), learned.network, kDistanceSamples, random, team);
+    return mesh;
+}
+
+}  // namespace
+
+NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progress& progress,
+                       const IndexedMesh<double>& start) {
+    const auto begin = std::chrono::steady_clock::now();
+    settings.check();
+    const Learn once = [&start](const TargetSpace& target, const Settings& of_run, Progress& reports) {
+        return learn(target, of_run, reports, start);
+    };
+    NeuralMesh mesh = settings.target_error > 0 ? learn_to_error(given, settings, progress, once)
+                                                : once(given, settings, progress);
     mesh.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return mesh;
 }

@@ -34,6 +34,9 @@ struct Report {
     /// Learned points to mesh, % of the diagonal of their bounding box; weighted by area if the cloud was
     /// sampled evenly (settings.even_sampling).
     double rms_error = 0;
+    /// Distance of points that were held out to the mesh, root mean square less their noise, in the units of
+    /// the input; 0 without settings.target_error.
+    double held_out_error = 0;
     double mean_counter = 0;  ///< mean of NeuralMesh::counters; of the normal counter, Mean(n_c) of eq 7
     double seconds = 0;       ///< wall-clock time of reconstruct()
     StopReason stop_reason = StopReason::target_reached;

@@ -40,6 +40,7 @@ std::vector<Figure> figures_of_reconstruction(const Report& report) {
             count_of("crease_lines", report.crease_lines),
             warning_count(report),
             {"rms_error", report.rms_error, false},
+            {"held_out_error", report.held_out_error, false},
             {"mean_counter", report.mean_counter, false},
             {"topology_confidence", report.topology_confidence, false},
             {"seconds", report.seconds, false},

@@ -45,10 +45,10 @@ SettingInfo row(double Settings::*member, const char* id, const char* label, dou
     return info;
 }
 
-/// A length that is negative by default: chosen by the filter.
-SettingInfo length_row(double Settings::*member, const char* id, const char* label, const char* help) {
+SettingInfo length_row(double Settings::*member, const char* id, const char* label, double low,
+                       const char* help) {
     constexpr double kLongest = 1e30;  // the hosts keep lengths as float
-    SettingInfo info = row(member, id, label, -1, kLongest, help);
+    SettingInfo info = row(member, id, label, low, kLongest, help);
     info.kind = Kind::length;
     return info;
 }
@@ -84,19 +84,24 @@ std::vector<SettingInfo> mesh_rows() {
     using S = Settings;
     return {
         row(&S::target_vertices, "target_vertices", "Target vertices", 4, 20e6,
-            "The mesh gets exactly this many vertices."),
+            "The mesh gets exactly this many vertices; with a target error it gets at most as many."),
+        length_row(
+            &S::target_error, "target_error", "Target error", 0,
+            "The mesh gets as many vertices as are needed for the points to lie this far from it (root "
+            "mean square, less their noise). 0: the number of vertices is given."),
         row(&S::surface, "surface", "Surface", {"Automatic", "Closed", "Open"},
             "Whether the mesh has boundaries. Closed: it has none; a single scan is closed around both of its "
             "sides. Open: it ends wherever the points end. Automatic: it is closed where the points enclose "
             "space and no opening is wider than 'Close holes up to', else open."),
         length_row(
-            &S::close_holes_up_to, "close_holes_up_to", "Close holes up to",
+            &S::close_holes_up_to, "close_holes_up_to", "Close holes up to", -1,
             "Holes of an open surface are closed up to this diameter; negative: chosen from the spacing of the "
             "points. With Surface set to Automatic, wider openings keep the whole surface open."),
-        row(&S::utility_counter, "utility_counter", "Utility counter",
+        advanced(row(
+            &S::utility_counter, "utility_counter", "Utility counter",
             {"Where the normal varies", "Where signals arrive"},
             "Which vertices are split. Where the normal varies: the mesh is dense where the surface bends "
-            "and sparse where it is flat. Where signals arrive: the mesh is as dense as the cloud."),
+            "and sparse where it is flat. Where signals arrive: the mesh is as dense as the cloud.")),
     };
 }
 

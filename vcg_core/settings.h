@@ -51,6 +51,7 @@ struct SettingInfo;
 /// All parameters of both filters. setting_table() and counter_table() have their ranges and meanings.
 struct Settings {
     int target_vertices = 10000;
+    double target_error = 0;  ///< in the units of the input, see learn_to_error.h; 0: off
     int surface = kAutomatic;
     double close_holes_up_to = -1;  ///< a diameter in the units of the input; negative: chosen by the filter
     int utility_counter = kNormalVariation;

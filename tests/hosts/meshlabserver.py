@@ -90,7 +90,7 @@ def reconstruct(folder, cloud, script, out, timeout=600):
     return figures(text)
 
 
-MEASURES = ("rms_error", "mean_counter", "topology_confidence", "seconds")  # the others are counts
+MEASURES = ("rms_error", "held_out_error", "mean_counter", "topology_confidence", "seconds")  # the others are counts
 
 
 def figures(text):

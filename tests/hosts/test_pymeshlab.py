@@ -117,6 +117,18 @@ def test_a_length_is_given_in_world_units_or_percent(pymeshlab, meshes):
         assert report["boundary_loops"] == loops, length
 
 
+def test_a_target_error_is_a_length_or_a_percentage(pymeshlab, meshes):
+    points = shapes.sphere(radius=10, subdivisions=5)[0]
+    diagonal = np.linalg.norm(np.ptp(points, axis=0))
+    vertices = []
+    for error in (pymeshlab.PureValue(0.003 * diagonal), pymeshlab.PercentageValue(0.3)):
+        meshes.add_mesh(pymeshlab.Mesh(points))
+        report = learn(meshes, target_error=error)
+        assert report["held_out_error"] == pytest.approx(0.003 * diagonal, rel=0.25)
+        vertices.append(report["vertices"])
+    assert vertices[0] == vertices[1] < 2000
+
+
 @pytest.mark.parametrize("draw_from_faces", [True, False])
 def test_selected_only_learns_the_selected_part(pymeshlab, meshes, draw_from_faces):
     both = shapes.merged(shapes.sphere(subdivisions=4), shapes.sphere(centre=(5, 0, 0), subdivisions=4))

@@ -17,10 +17,11 @@ enum class Stream {
     fit = 3,        ///< the points for the fit
     colors = 4,     ///< the points that give faces their colours
     topology = 5,   ///< the signals by which membranes are told
+    held_out = 6,   ///< the points by which the mesh is judged
 };
 
 /// The seed of the generator for one purpose in a run with the given seed, at least 0. Runs whose seeds
-/// differ by less than 6 share sequences, for different purposes.
+/// differ by less than 7 share sequences, for different purposes.
 constexpr std::uint64_t stream_seed(int seed, Stream purpose) {
     return static_cast<std::uint64_t>(seed) + static_cast<std::uint64_t>(purpose);
 }

@@ -24,7 +24,7 @@ constexpr int kGuessesPerAxis = 12;
 constexpr float kGuessStep = 0.25F;
 constexpr std::size_t kFollowedGuesses = 16;
 /// In diagonals. From further off the density of the points is even.
-constexpr float kFarthest = 4;
+constexpr float kFarthestGuess = 4;
 /// Cost beside that of even density. Frames of a range camera have 0.2 to 0.44, two stations of a scanner, an
 /// aerial survey and a cloud without a sensor 0.69 to 1.
 constexpr double kMostLeft = 0.5;
@@ -32,7 +32,7 @@ constexpr double kMostLeft = 0.5;
 /// it is 4 / (3 pi) = 0.42.
 constexpr float kMostAside = 0.2F;
 /// Grazing sight: noise of the normals hides smaller cosines.
-constexpr float kLeastCosine = 0.05F;
+constexpr float kGrazingCosine = 0.05F;
 
 /// A place of the surface with the logarithm of the density of its points.
 struct Sample {
@@ -102,7 +102,7 @@ private:
         for (const Sample& s : samples_) {
             const Point3f sight = sensor - s.position;
             const float squared = std::max(sight.SquaredNorm(), 1e-12F);
-            const float cosine = std::max(std::abs(s.normal * sight) / std::sqrt(squared), kLeastCosine);
+            const float cosine = std::max(std::abs(s.normal * sight) / std::sqrt(squared), kGrazingCosine);
             left_.push_back(s.density - portable_log(static_cast<double>(cosine / squared)));
         }
         return {mean_deviation(left_), sensor};
@@ -129,7 +129,7 @@ private:
                 place[way / 2] += way % 2 == 0 ? step : -step;
                 best = std::min(best, guess_at(place), cheaper);
             }
-            if ((best.place - box_.Center()).Norm() > kFarthest * box_.Diag()) break;
+            if ((best.place - box_.Center()).Norm() > kFarthestGuess * box_.Diag()) break;
             if (best.cost < guess.cost)
                 guess = best;
             else

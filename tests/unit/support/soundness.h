@@ -48,11 +48,19 @@ inline void expect_exact(const NeuralMesh& mesh, const Settings& settings) {
     EXPECT_EQ(mesh.report.stop_reason, StopReason::target_reached);
 }
 
+/// True if one of \p sentences contains \p words.
+inline bool has_one(const std::vector<std::string>& sentences, const std::string& words) {
+    return std::any_of(sentences.begin(), sentences.end(),
+                       [&](const std::string& each) { return each.find(words) != std::string::npos; });
+}
+
 /// True if a warning of the report contains \p words.
 inline bool has_warning(const NeuralMesh& mesh, const std::string& words) {
-    const std::vector<std::string>& all = mesh.report.warnings;
-    return std::any_of(all.begin(), all.end(),
-                       [&](const std::string& warning) { return warning.find(words) != std::string::npos; });
+    return has_one(mesh.report.warnings, words);
+}
+
+inline bool has_note(const NeuralMesh& mesh, const std::string& words) {
+    return has_one(mesh.report.notes, words);
 }
 
 }  // namespace neuralmesh::soundness

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// A mesh with as many vertices as the error that is asked for needs: the paper's end of growth by quality, in
+// a unit that a user knows.
+#pragma once
+
+#include <functional>
+
+#include "vcg_core/base/progress.h"
+#include "vcg_core/result.h"
+#include "vcg_core/settings.h"
+#include "vcg_core/target/target_space.h"
+
+namespace neuralmesh {
+
+/// Learns \p target with \p settings.
+using Learn =
+    std::function<NeuralMesh(const TargetSpace& target, const Settings& settings, Progress& progress)>;
+
+/// Calls \p learn with several numbers of vertices, at most settings.target_vertices. Points that are held
+/// out of the cloud - a twentieth, at most 5,000, without clutter and outliers - are to lie
+/// settings.target_error from the mesh: root mean square, less the deviation by their noise, for which the
+/// median stands. Of points drawn from faces or by a function more are drawn. \return the smallest of the
+/// meshes that is as good, with its error in the report or, if none is, the best one, with a warning; the one
+/// at hand if \p progress asks to stop. Takes two to four times as long as a run with as many vertices.
+/// \throws what \p learn throws for settings.target_vertices
+NeuralMesh learn_to_error(const TargetSpace& given, const Settings& settings, Progress& progress,
+                          const Learn& learn);
+
+}  // namespace neuralmesh
