@@ -26,7 +26,7 @@ venv_packages="python3-venv"
 demo_packages="glmark2-data libgl1-mesa-dri python3-numpy python3-pil xauth xdotool xvfb"
 bench_packages="libcgal-dev"  # CGAL's surface reconstruction is timed beside ours
 test_packages="binutils libbenchmark-dev libgtest-dev parallel valgrind"
-release_packages="debootstrap lintian"
+release_packages="debootstrap lintian qemu-user wine64"
 declare -A platform_packages=([arm64]="g++-aarch64-linux-gnu googletest qemu-user" [portable]="libgtest-dev"
     [windows]="g++-mingw-w64-x86-64-posix googletest wine64" [libcxx]="clang googletest libc++-dev libc++abi-dev")
 python=/usr/bin/python3
@@ -96,17 +96,24 @@ need_sources() {
     filter_neuralmesh/sources/fetch_meshlab.sh
 }
 
-need_venv() {
-    local wanted
-    wanted="$(sha256sum < tests/requirements.txt)"
-    [ "$(cat "$venv/complete" 2> /dev/null)" = "$wanted" ] && return 0
-    say "Installing pymeshlab and the tools of the tests into $venv"
-    rm -rf "$venv"
-    "$python" -m venv "$venv"
-    "$venv/bin/pip" install --quiet --disable-pip-version-check --only-binary :all: \
-        --no-compile --require-hashes --requirement tests/requirements.txt
-    echo "$wanted" > "$venv/complete"
+# environment FOLDER REQUIREMENTS WHAT: makes a virtual environment of Python anew unless it is what REQUIREMENTS say.
+environment() {
+    local folder="$1" requirements="$2" what="$3" wanted
+    wanted="$(sha256sum < "$requirements")"
+    [ "$(cat "$folder/complete" 2> /dev/null)" = "$wanted" ] && return 0
+    say "Installing $what into $folder"
+    rm -rf "$folder"
+    "$python" -m venv "$folder"
+    "$folder/bin/pip" install --quiet --disable-pip-version-check --only-binary :all: \
+        --no-compile --require-hashes --requirement "$requirements"
+    echo "$wanted" > "$folder/complete"
 }
+
+need_venv() { environment "$venv" tests/requirements.txt "pymeshlab and the tools of the tests"; }
+
+need_checks() { environment "$build/checks" packaging/checks.txt "what checks wheels"; }
+
+need_zig() { environment "$build/zig" packaging/requirements.txt "zig, which compiles for other systems,"; }
 
 # cached NAME: the value of NAME in the CMake cache of the build folder.
 cached() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
@@ -133,17 +140,20 @@ path_of() { case "$1" in /*) echo "$1" ;; *) echo "$called_from/$1" ;; esac; }
 build() {
     need $compile_packages $venv_packages
     need_venv
-    compile plugins
+    compile plugins neuralmesh_c_api
     say "Built:"
-    ls -1 "$build"/plugins/*/libfilter_neuralmesh.so
+    ls -1 "$build"/plugins/*/libfilter_neuralmesh.so "$build"/c_api/libneural_mesh.so
 }
 
 package() {
     need $compile_packages $venv_packages
     need_venv
-    compile plugins
+    need_zig
+    compile plugins neuralmesh_c_api
+    say "Compiling the library for other systems"
+    "$python" packaging/libraries.py --zig "$build/zig" --build "$build/cross" --out "$build/libraries"
     say "Packages:"
-    "$python" packaging/package.py --plugins "$build/plugins" --out dist
+    "$python" packaging/package.py --plugins "$build/plugins" --libraries "$build/libraries" --out dist
 }
 
 # What a release must pass besides the tests. Not part of them: it takes half an hour.
@@ -152,6 +162,10 @@ release() {
     need_venv
     compile all
     export NEURALMESH_BUILD="$here/$build"
+    package
+    need_checks
+    as_root env NEURALMESH_BUILD="$NEURALMESH_BUILD" "$build/checks/bin/python" -m pytest -v -rs --noconftest \
+        tests/hosts/wheels.py
     "$venv/bin/python" -m pytest -v -rs tests/hosts/upstream.py
     as_root env NEURALMESH_BUILD="$NEURALMESH_BUILD" "$venv/bin/python" -m pytest -v -rs tests/hosts/installs.py
 }

@@ -120,11 +120,6 @@ std::string sentence_if_memory_allows() {
 
 }  // namespace
 
-int Figure::count() const {
-    constexpr int kLargest = std::numeric_limits<int>::max();
-    return value < kLargest ? static_cast<int>(value) : kLargest;
-}
-
 const std::vector<Action>& all_actions() {
     static const std::vector<Action> all = {
         {kReconstruct, "Surface Reconstruction: Neural Mesh", "generate_surface_reconstruction_neural_mesh",
@@ -137,34 +132,7 @@ const std::vector<Action>& all_actions() {
 const Action& action_of(int id) { return all_actions().at(static_cast<std::size_t>(id)); }
 
 std::vector<Figure> figures(const Report& report, int action) {
-    const auto count = [](const char* key, long long n) { return Figure{key, static_cast<double>(n), true}; };
-    if (action == kCounters)
-        return {count("vertices", report.vertices),
-                count("signals", report.signals),
-                count("outliers", report.outliers),
-                count("feature_vertices", report.feature_vertices),
-                count("warnings", static_cast<long long>(report.warnings.size())),
-                {"mean_counter", report.mean_counter, false},
-                {"seconds", report.seconds, false},
-                count("stop_reason", static_cast<int>(report.stop_reason))};
-    return {count("vertices", report.vertices),
-            count("faces", report.faces),
-            count("signals", report.signals),
-            count("splits", report.splits),
-            count("collapses", report.collapses),
-            count("genus", report.genus),
-            count("boundary_loops", report.boundary_loops),
-            count("components", report.components),
-            count("outliers", report.outliers),
-            count("feature_vertices", report.feature_vertices),
-            count("crease_lines", report.crease_lines),
-            count("warnings", static_cast<long long>(report.warnings.size())),
-            {"rms_error", report.rms_error, false},
-            {"held_out_error", report.held_out_error, false},
-            {"mean_counter", report.mean_counter, false},
-            {"topology_confidence", report.topology_confidence, false},
-            {"seconds", report.seconds, false},
-            count("stop_reason", static_cast<int>(report.stop_reason))};
+    return action == kCounters ? figures_of_counters(report) : figures_of_reconstruction(report);
 }
 
 std::vector<std::string> log_lines(const Report& report, int action) {

@@ -14,6 +14,7 @@
 #include "vcg_core/mesh_io.h"
 #include "vcg_core/reconstruct.h"
 #include "vcg_core/result.h"
+#include "vcg_core/run_figures.h"
 #include "vcg_core/settings.h"
 
 namespace neuralmesh {
@@ -48,16 +49,6 @@ const std::vector<Action>& all_actions();
 
 /// \pre id is one of all_actions()
 const Action& action_of(int id);
-
-/// One figure of a run under the key it has in the filter's results.
-struct Figure {
-    const char* key;
-    double value;
-    bool is_count;  ///< an int for Python, else a double
-
-    /// \pre is_count. Counts that exceed int, as signals may, become the largest int.
-    int count() const;
-};
 
 /// The figures of \p report, of a run of \p action, in the order of the log.
 std::vector<Figure> figures(const Report& report, int action = kReconstruct);

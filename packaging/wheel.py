@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The wheel for pymeshlab: pure Python and the plugin, without Python's ABI, so one wheel serves all versions of it.
+"""The wheels: pure Python and the library, on Linux on x86-64 with the plugin for pymeshlab, too. They have nothing of
+Python's ABI, so one wheel serves all versions of it.
 
-It does not require pymeshlab, so that pip never replaces the one there is; the extra `pymeshlab` does. Other extras:
+They do not require pymeshlab, so that pip never replaces the one there is; the extra `pymeshlab` does. Other extras:
 `dask` for batches on many machines, `las` and `e57` for clouds in these formats."""
 
 import base64
@@ -20,11 +21,12 @@ EARLIEST = 315532800  # 1980-01-01
 METADATA = """Metadata-Version: 2.1
 Name: neural-mesh
 Version: {version}
-Summary: A point cloud to a triangle mesh with exactly the vertices you ask for, as a filter of pymeshlab
+Summary: A point cloud to a triangle mesh with exactly the vertices you ask for, from numpy or in pymeshlab
 Maintainer: {maintainer[0]}
 Maintainer-email: {maintainer[1]}
 License: GPL-3.0-or-later
 Requires-Python: >=3.9
+Requires-Dist: numpy >=1.21
 Provides-Extra: pymeshlab
 Requires-Dist: pymeshlab ==2025.7.*; extra == "pymeshlab"
 Provides-Extra: dask
@@ -35,6 +37,14 @@ Requires-Dist: laspy[lazrs]; extra == "las"
 Provides-Extra: e57
 Requires-Dist: pye57; extra == "e57"
 Description-Content-Type: text/markdown
+
+```python
+import neural_mesh
+mesh = neural_mesh.reconstruct(points, target_vertices=5000)  # points: an array of shape (n, 3)
+mesh.save("mesh.ply")
+```
+
+On Linux on x86-64 with pymeshlab as a filter, too:
 
 ```python
 import neural_mesh, pymeshlab
@@ -50,15 +60,16 @@ Or as a command: `neural-mesh cloud.ply mesh.ply target_vertices=5000`, for a fo
 """
 
 
-def write(out, plugin, version, date, glibc, maintainer):
-    """Writes the wheel to the folder `out` and returns its path. `glibc`: the oldest version it runs with.
-    `maintainer`: (name, address)."""
-    tag = f"py3-none-manylinux_{glibc.replace('.', '_')}_x86_64"
+def write(out, platform, binaries, version, date, maintainer):
+    """Writes a wheel to the folder `out` and returns its path. `platform`: its tag, several joined by dots. `binaries`:
+    the files beside the Python modules. `maintainer`: (name, address)."""
+    tag = f"py3-none-{platform}"
+    tags = "".join(f"Tag: py3-none-{one}\n" for one in platform.split("."))
     info = f"neural_mesh-{version}.dist-info"
-    files = {f"neural_mesh/{path.name}": path.read_bytes() for path in sorted(MODULE.iterdir()) if path.is_file()}
-    files[f"neural_mesh/{plugin.name}"] = plugin.read_bytes()
+    modules = [path for path in MODULE.iterdir() if path.is_file()]
+    files = {f"neural_mesh/{path.name}": path.read_bytes() for path in sorted([*modules, *binaries])}
     files[f"{info}/METADATA"] = METADATA.format(version=version, maintainer=maintainer).encode()
-    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: neural-mesh\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
+    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: neural-mesh\nRoot-Is-Purelib: false\n{tags}".encode()
     files[f"{info}/entry_points.txt"] = b"[console_scripts]\nneural-mesh = neural_mesh.__main__:main\n"
     files[f"{info}/licenses/LICENSE"] = (ROOT / "LICENSE").read_bytes()
     files[f"{info}/RECORD"] = record(files, f"{info}/RECORD").encode()

@@ -13,7 +13,7 @@ mkdir -p "$folder/vcg_core"
 cd "$project/filter_neuralmesh"
 cp actions.cpp actions.h host_layer.h host_parameters.h meshlab_2022.cpp meshlab_2022.h "$folder/"
 cd "$project/vcg_core"
-find . -name '*.cpp' -o -name '*.h' | while read -r file; do
+find . -path ./c_api -prune -o \( -name '*.cpp' -o -name '*.h' \) -print | while read -r file; do
     mkdir -p "$folder/vcg_core/$(dirname "$file")"
     cp "$file" "$folder/vcg_core/$file"
 done

@@ -15,7 +15,6 @@ of a million further points to both meshes are compared, with noise and without.
 import argparse
 import json
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -26,7 +25,10 @@ from pathlib import Path
 import numpy as np
 import psutil
 
-ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "hosts"))
+
+import python_site  # noqa: E402
+
 NOISE = .001  # of the radius: .03 % of the diagonal
 CHUNK = 1_000_000
 ORIGIN, RADIUS = np.array([451234.0, 5801234.0, 312.0]), 100.0  # of LAS files: metres, as in UTM
@@ -69,17 +71,6 @@ def write_cloud(path, count, seed=1):
                 points.astype("<f4").tofile(file)
             else:
                 np.savetxt(file, points, "%.7g")
-
-
-def install(plugin, folder):
-    """The Python package with the plugin, as the wheel installs it. Returns the folder for PYTHONPATH."""
-    (folder / "neural_mesh-0.dist-info").mkdir(parents=True)
-    (folder / "neural_mesh-0.dist-info/METADATA").write_text("Metadata-Version: 2.1\nName: neural-mesh\nVersion: 0\n")
-    (folder / "neural_mesh").mkdir()
-    for file in (ROOT / "filter_neuralmesh/python/neural_mesh").glob("*.py"):
-        shutil.copy(file, folder / "neural_mesh")
-    (folder / "neural_mesh" / Path(plugin).name).symlink_to(Path(plugin).resolve())
-    return folder
 
 
 def memory_of_group(group):
@@ -163,7 +154,7 @@ def main():
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(dir=options.folder) as name:
         folder = Path(name)
-        sys.path.insert(0, str(install(options.plugin, folder / "site")))
+        sys.path.insert(0, str(python_site.make(folder / "site", options.plugin)))
         cloud, mesh = folder / f"cloud.{options.format}", folder / "mesh.ply"
         started = time.monotonic()
         write_cloud(cloud, int(options.points * 1e6), options.seed)

@@ -78,7 +78,7 @@ def main():
     parser.add_argument("clouds", nargs="*", help=f"of: {', '.join(CLOUDS)}")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        sys.path.insert(0, str(stream.install(options.plugin, Path(folder))))
+        sys.path.insert(0, str(stream.python_site.make(folder, options.plugin)))
         import neural_mesh
         import pymeshlab
         meshes = pymeshlab.MeshSet(verbose=False)

@@ -104,9 +104,9 @@ def pymeshlab(build):
 
 
 def make_packages(build, out, **environment):
-    """`package.py`, as run.sh calls it. Returns what it printed."""
+    """`package.py`, as run.sh calls it, but without libraries for other systems. Returns what it printed."""
     return subprocess.run(["/usr/bin/python3", str(ROOT / "packaging/package.py"), "--plugins", str(build / "plugins"),
-                           "--out", str(out)], check=True, stdout=subprocess.PIPE, text=True,
+                           "--libraries", str(out / "none"), "--out", str(out)], check=True, stdout=subprocess.PIPE, text=True,
                           env=dict(os.environ, **environment)).stdout
 
 
@@ -131,12 +131,6 @@ def installed(dist, tmp_path_factory):
     subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target",
                     str(folder), str(the_file(dist, "*.whl"))], check=True)
     return folder
-
-
-@pytest.fixture(scope="session")
-def site(build, tmp_path_factory):
-    """A folder to be searched for modules, with the Python package."""
-    return python_site.make(tmp_path_factory.mktemp("site"), meshlabserver.plugin_path(build, "pymeshlab-2025.7"))
 
 
 @pytest.fixture
@@ -191,8 +185,7 @@ def out_of_range(build, filter_name=PYTHON_NAME):
 @pytest.fixture(scope="module")
 def site(build, tmp_path_factory):
     """The Python package as installed: the folder for PYTHONPATH, in this process's path, too."""
-    from stream_clouds import bench
-    folder = bench.install(meshlabserver.plugin_path(build, "pymeshlab-2025.7"), tmp_path_factory.mktemp("site"))
+    folder = python_site.make(tmp_path_factory.mktemp("site"), meshlabserver.plugin_path(build, "pymeshlab-2025.7"))
     sys.path.insert(0, str(folder))
     yield folder
     sys.path.remove(str(folder))

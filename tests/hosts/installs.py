@@ -96,12 +96,31 @@ def check(build, mesh, vertices):
     assert found["vertices"] == vertices and found["watertight"] and found["oriented"] and found["genus"] == 0
 
 
-def test_the_wheel(build, system):
-    debian = system("bookworm")
-    debian.prepare("python3-pip python3-venv ca-certificates libgl1 libopengl0")
+def let_pip_download(debian):
+    """As this system's pip does."""
     for config in ("/etc/pip.conf", "/etc/ssl/certs/ca-certificates.crt"):
         if Path(config).exists():
             shutil.copy(config, f"{debian.folder}{config}")
+
+
+@pytest.mark.parametrize("packages, others, blocks", [("", "", 1), ("libgl1 libopengl0", "pymeshlab==2025.7.*", 1),
+                                                      ("libgl1 libegl1 libgomp1 libx11-6 libusb-1.0-0", "open3d trimesh scipy", 99)])
+def test_the_wheel_from_numpy(system, packages, others, blocks):
+    """The first block of the page as written, also beside pymeshlab; all blocks beside open3d and trimesh."""
+    debian = system("bookworm")
+    debian.prepare(f"python3-venv ca-certificates {packages}")
+    let_pip_download(debian)
+    for file in ("tests/hosts/library_page.py", "filter_neuralmesh/docs/python.md"):
+        (debian.folder / "root" / file).parent.mkdir(parents=True)
+        shutil.copy(ROOT / file, debian.folder / "root" / file)
+    debian.run(f"python3 -m venv own && own/bin/pip install --quiet neural_mesh-*.whl {others}")
+    assert ", 0 printed something else" in debian.run(f"own/bin/python tests/hosts/library_page.py {blocks}")
+
+
+def test_the_wheel(build, system):
+    debian = system("bookworm")
+    debian.prepare("python3-pip python3-venv ca-certificates libgl1 libopengl0")
+    let_pip_download(debian)
     debian.run("pip install --quiet --break-system-packages pymeshlab==2025.7.* neural_mesh-*.whl")
     debian.run("neural-mesh cloud.ply mesh.ply target_vertices=300")
     check(build, debian.folder / "root/mesh.ply", 300)

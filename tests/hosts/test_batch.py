@@ -167,7 +167,7 @@ def test_limits_of_time_memory_and_file_size(batch, few, tmp_path):
     status, text = batch(cloud, "--out", tmp_path, "--time-limit", .3, "target_vertices=60",
                          "settling_signals_per_vertex=100000")
     assert status == 1 and "cloud_0000.ply: It took longer than the limit of 0.3 seconds." in text
-    big = write_points(tmp_path / "big.ply", np.random.default_rng(1).normal(size=(1_000_000, 3)))
+    big = write_points(tmp_path / "big.ply", np.random.default_rng(1).normal(size=(4_000_000, 3)))
     status, text = batch(big, cloud, "--out", tmp_path / "out", "--memory-limit", "180M", "--workers", 1,
                          *many_clouds.SETTINGS)
     assert status == 1 and "1 of 2 clouds failed" in text and "enough memory" in text, text

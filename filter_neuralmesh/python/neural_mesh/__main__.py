@@ -10,11 +10,10 @@ import warnings
 from pathlib import Path
 from typing import Any, List, Optional
 
-import pymeshlab
-
-from neural_mesh import FILTER, NeuralMeshWarning
-from neural_mesh.mesh_files import NotWhole, save
-from neural_mesh.parameters import WrongUsage, check, for_pymeshlab, line_of, sentence_of, settings_of
+from neural_mesh import NeuralMeshWarning, reconstruct
+from neural_mesh.clouds import CloudError
+from neural_mesh.files import NotWhole, load, save
+from neural_mesh.parameters import WrongUsage, check, line_of, settings_of
 
 # A subcommand is the module of that name, with add_arguments(parser) and run(given), which returns the exit status.
 SUBCOMMANDS = {
@@ -25,17 +24,15 @@ SUBCOMMANDS = {
 
 def learn_one(given: argparse.Namespace) -> int:
     settings = settings_of(given.settings)
-    meshes = pymeshlab.MeshSet(verbose=False)
-    check(settings, meshes)
-    meshes.load_new_mesh(given.cloud)
-    result = meshes.apply_filter(FILTER, **for_pymeshlab(settings))
-    save(meshes, Path(given.mesh))
-    print(line_of(result))
+    check(settings)
+    mesh = reconstruct(**load(Path(given.cloud)), **settings)
+    save(mesh, Path(given.mesh))
+    print(line_of(mesh.report))
     return 0
 
 
 def arguments_of_one(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("cloud", help="a file of points or a mesh, in any format of pymeshlab")
+    parser.add_argument("cloud", help="a file of points or a mesh")
     parser.add_argument("mesh", help="the file to write, such as mesh.ply")
     parser.add_argument("settings", nargs="*", metavar="name=value", help="parameters of the filter, such as "
                         "target_vertices=5000")
@@ -61,6 +58,9 @@ def say_warnings() -> None:
 def main(arguments: Optional[List[str]] = None) -> int:
     words = sys.argv[1:] if arguments is None else arguments
     name = words[0] if words and words[0] in SUBCOMMANDS else ""
+    if name and sys.platform != "linux":  # their processes, locks and limits are those of Linux
+        print(f"neural-mesh: '{name}' runs on Linux only. Call neural_mesh.reconstruct() in a loop.", file=sys.stderr)
+        return 2
     if name:
         module = importlib.import_module(f"neural_mesh.{name}")
         parser = argparse.ArgumentParser(prog=f"neural-mesh {name}", description=module.__doc__)
@@ -77,11 +77,8 @@ def main(arguments: Optional[List[str]] = None) -> int:
     except WrongUsage as error:
         print(f"neural-mesh: {error}", file=sys.stderr)
         return 2
-    except pymeshlab.PyMeshLabException as error:
-        print(f"neural-mesh: {sentence_of(error)}", file=sys.stderr)
-        return 1
-    except NotWhole as error:
-        print(f"neural-mesh: {error}", file=sys.stderr)
+    except (CloudError, NotWhole, ValueError, MemoryError) as error:
+        print(f"neural-mesh: {error or 'There is not enough memory.'}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("\nneural-mesh: stopped.", file=sys.stderr)

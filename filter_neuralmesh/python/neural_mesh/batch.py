@@ -12,8 +12,6 @@ import sys
 from pathlib import Path
 from typing import Any, Generator, List
 
-import pymeshlab
-
 from neural_mesh.batch_files import Job, jobs_of, remove, remove_asides
 from neural_mesh.manifest import Busy, Manifest, Record
 from neural_mesh.parameters import WrongUsage, check, files_and_settings
@@ -59,7 +57,7 @@ def run(given: argparse.Namespace) -> int:
         raise WrongUsage("--address is for --engine dask.")
     if given.address and given.workers:
         raise WrongUsage("--workers is for this machine: a cluster at an --address has its own workers.")
-    vertices = check(settings, pymeshlab.MeshSet(verbose=False))["target_vertices"]
+    vertices = check(settings)["target_vertices"]
     jobs = jobs_of(inputs, given.out, settings)
     manifest = opened(given.out)
     try:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
-from typing import BinaryIO, Iterator, Optional, Union
+from typing import BinaryIO, Dict, Iterator, Optional, Union
 
 import numpy as np
 
@@ -128,8 +128,9 @@ class PlyCloud(Cloud):
             file.seek(-1, 1)
 
     def _parse(self, lines: list[list[str]]) -> None:
-        """Sets _order ('' for ASCII), _fields of a vertex, count, and _skipped: bytes or lines before the vertices."""
-        self._order, self._fields, self._skipped = "", [], 0
+        """Sets _order ('' for ASCII), _fields of a vertex, count, _skipped: bytes or lines before the vertices, and _others:
+        how many other elements there are."""
+        self._order, self._fields, self._skipped, self._others = "", [], 0, 0
         element, number = "", 0
         try:
             for words in lines:
@@ -137,6 +138,7 @@ class PlyCloud(Cloud):
                     self._order = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}[words[1]]
                 elif words[:1] == ["element"]:
                     element, number = words[1], int(words[2])
+                    self._others += number * (element != "vertex")
                     if element == "vertex":
                         self.count = number
                     elif self.count is None and not self._order:
@@ -153,6 +155,25 @@ class PlyCloud(Cloud):
             raise CloudError(f"{self.path} has the header line '{' '.join(words)}', which is not PLY.") from None
         if self.count is None:
             raise CloudError(f"{self.path} has no vertices.")
+
+    def arrays(self) -> Optional[Dict[str, np.ndarray]]:
+        """All points, with normals and colours if there are any: arguments of reconstruct(). None if the file has faces or
+        other elements, is ASCII, or has colours of an unusual kind. Raises CloudError."""
+        if self._others or not self._order:
+            return None
+        try:
+            records = np.fromfile(self.path, self._record, self.count, offset=self._start)
+        except OSError as error:
+            raise CloudError(f"{self.path} cannot be read: {error.strerror}.") from error
+        kinds = dict(self._fields)
+        if any(name.startswith("diffuse_") or (name == "red" and kind != "u1") for name, kind in self._fields):
+            return None
+        arrays = {}
+        for what, names in (("points", ("x", "y", "z")), ("normals", ("nx", "ny", "nz")),
+                            ("colors", ("red", "green", "blue"))):
+            if all(name in kinds for name in names):
+                arrays[what] = np.column_stack([records[name] for name in names])
+        return arrays
 
     def _read(self, size: int) -> Iterator[np.ndarray]:
         with self.path.open("rb") as file:

@@ -1,21 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Parameters of the filter as words `name=value` of a command: read, checked before any work, given to pymeshlab."""
+"""Parameters of the filter as words `name=value` of a command: read, and checked before any work."""
 
 import re
 from typing import Any, Dict, Iterable, List, Tuple, Union
 
-import numpy
-import pymeshlab
+import numpy as np
 
-from neural_mesh import FILTER
+from neural_mesh.library import RECONSTRUCTION, Task
+from neural_mesh.reconstruction import parameter_list, set_parameters
 
 Value = Union[bool, int, float, str]
 Settings = Dict[str, Value]  # as in JSON; a percentage is a text such as "5%"
 
 SETTING = re.compile(r"[A-Za-z_]\w*=")
-LENGTHS = ("target_error", "close_holes_up_to")  # world units, or with a % of the diagonal
 
 
 class WrongUsage(Exception):
@@ -53,79 +52,22 @@ def files_and_settings(words: Iterable[str]) -> Tuple[List[str], Settings]:
     return [word for word in words if not SETTING.match(word)], settings_of(filter(SETTING.match, words))
 
 
-def for_pymeshlab(settings: Settings) -> Dict[str, Any]:
-    """The keyword arguments of the filter. Throws WrongUsage if a length or percentage is none."""
-    arguments: Dict[str, Any] = dict(settings)
-    for name in LENGTHS:
-        if name in settings:
-            text = str(settings[name])
-            try:
-                kind = pymeshlab.PercentageValue if text.endswith("%") else pymeshlab.PureValue
-                arguments[name] = kind(float(text.rstrip("%")))
-            except (ValueError, pymeshlab.InvalidPercentageException):
-                raise WrongUsage(f"The parameter {name} is '{text}': give a length, such as {name}=0.5, or a "
-                                 f"percentage of the diagonal from 0 to 100, such as {name}=5%.") from None
-    return arguments
-
-
-def sentence_of(error: Exception) -> str:
-    """What is wrong, without pymeshlab's line about the filter that failed."""
-    return str(error).rpartition("\nDetails: ")[2].strip() or type(error).__name__
-
-
 def line_of(result: Dict[str, Any]) -> str:
-    """The results of the filter as words name=value: counts in full, other numbers with six digits."""
-    return " ".join(f"{name}={value if isinstance(value, int) else f'{value:.6g}'}" for name, value in result.items())
+    """The results of a run as words name=value: counts in full, other numbers with six digits."""
+    return " ".join(f"{name}={value if isinstance(value, int) else f'{value:.6g}'}"
+                    for name, value in sorted(result.items()))
 
 
-def check(settings: Settings, meshes: pymeshlab.MeshSet) -> Dict[str, Any]:
-    """Throws WrongUsage if the filter has no such parameter or does not accept a value. Returns the values of all
-    parameters. Needs an empty MeshSet, and leaves it empty."""
-    def refusal(arguments: Dict[str, Any]) -> str:
+def check(settings: Settings) -> Dict[str, Any]:
+    """Throws WrongUsage if there is no such parameter or it does not accept a value. Returns the values of all
+    parameters."""
+    table = parameter_list()
+    with Task(RECONSTRUCTION) as task:
         try:
-            meshes.apply_filter(FILTER, **arguments)
-        except pymeshlab.PyMeshLabException as error:
-            return sentence_of(error)
-        return ""
-
-    # The filter looks at the parameters first. A layer of one point is refused after that.
-    meshes.add_mesh(pymeshlab.Mesh(numpy.zeros((1, 3))))
-    try:
-        accepted = refusal({})
-        defaults = meshes.filter_parameter_values(FILTER)
-        _check_names_and_types(settings, defaults)
-        sentence = accepted
-        for name, argument in for_pymeshlab(settings).items():
-            try:
-                sentence = refusal({name: argument})
-            except pymeshlab.InvalidEnumException as error:
-                sentence = f"{str(error).strip(' ;')}."
-            except (RuntimeError, TypeError):  # of pybind11: it cannot convert the value
-                sentence = "give a whole number of at most nine digits."
-            if sentence != accepted:
-                raise WrongUsage(sentence if name in sentence else f"The parameter {name} is '{argument}': {sentence}")
-        sentence = refusal(for_pymeshlab(settings))
-        if sentence != accepted:
-            raise WrongUsage(sentence)
-        if settings.get("crease_lines") is True:
-            raise WrongUsage("With crease_lines the filter makes a second layer, and this command writes the mesh only: "
-                             "leave crease_lines out.")
-        return {**defaults, **settings}
-    finally:
-        meshes.clear()
-
-
-def _check_names_and_types(settings: Settings, defaults: Dict[str, Any]) -> None:
-    for name, value in settings.items():
-        if name not in defaults:
-            raise WrongUsage(f"There is no parameter {name}. The parameters are {', '.join(defaults)}.")
-        default = defaults[name]
-        wanted = ""
-        if isinstance(default, bool):
-            wanted = "" if isinstance(value, bool) else "true or false"
-        elif isinstance(default, float) and name not in LENGTHS:
-            wanted = "a number" if isinstance(value, (bool, str)) else ""
-        elif isinstance(default, int):  # or the name of a choice
-            wanted = "a whole number" if isinstance(value, (bool, float)) else ""
-        if wanted:
-            raise WrongUsage(f"The parameter {name} is '{value}': give {wanted}.")
+            set_parameters(task, table, settings, np.zeros((1, 3)))
+        except ValueError as error:
+            raise WrongUsage(str(error)) from None
+    if settings.get("crease_lines") is True:
+        raise WrongUsage("With crease_lines the filter makes a second layer, and this command writes the mesh only: "
+                         "leave crease_lines out.")
+    return {**{name: parameter.default for name, parameter in table.items()}, **settings}

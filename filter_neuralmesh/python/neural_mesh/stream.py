@@ -17,23 +17,22 @@ from pathlib import Path
 from typing import Any, Dict, Iterator, Optional
 
 import numpy as np
-import pymeshlab
 
-from neural_mesh import FILTER
+from neural_mesh import __version__, filters, reconstruct
 from neural_mesh.aside_folder import aside_folder
 from neural_mesh.averages import POINT_BYTES as AVERAGED_BYTES
 from neural_mesh.averages import Averages
 from neural_mesh.clouds import FORMATS, Cloud, CloudError, open_cloud
 from neural_mesh.distances import POINT_BYTES, VERTEX_BYTES, Unmeasured, measure
 from neural_mesh.even_sample import CHUNK_BYTES, HOLD_BYTES, EvenSample
-from neural_mesh.mesh_files import NotWhole, save
-from neural_mesh.parameters import Settings, WrongUsage, check, for_pymeshlab, line_of, settings_of
+from neural_mesh.files import NotWhole, save
+from neural_mesh.mesh_writers import WRITERS
+from neural_mesh.parameters import Settings, WrongUsage, check, line_of, settings_of
 from neural_mesh.sizes import check_space, gigabytes, memory_size
 
 PER_VERTEX = 100  # points of the sample for each vertex wanted
 FEWEST_PER_VERTEX = 10  # with fewer the mesh suffers
 HELD = 4  # points held while reading for each of the sample, at most
-KEEPS_COORDINATES = (".ply", ".obj", ".off")  # files for which pymeshlab writes doubles; georeferenced clouds need them
 # Bytes, measured with 1 to 10 million points and 10,000 to 100,000 vertices (tests/bench/stream.py), rounded up.
 PROCESS = 120e6  # Python with numpy and pymeshlab
 LEARNED_POINT = 220
@@ -44,7 +43,7 @@ CHUNK, SMALL_CHUNK = 500_000, 50_000  # points; in smaller ones pymeshlab's grid
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("cloud", type=Path, help=f"a file of points: {' '.join(FORMATS)}")
-    parser.add_argument("mesh", type=Path, help=f"the file to write: {' '.join(KEEPS_COORDINATES)}")
+    parser.add_argument("mesh", type=Path, help=f"the file to write: {' '.join(WRITERS)}")
     parser.add_argument("settings", nargs="*", metavar="name=value", help="parameters of the filter, such as "
                         "target_vertices=100000")
     parser.add_argument("--memory", type=memory_size, default="2GB", metavar="SIZE", help="what all processes together "
@@ -53,23 +52,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     settings = settings_of(given.settings)
-    meshes = pymeshlab.MeshSet(verbose=False)
-    values = check(settings, meshes)
-    if given.mesh.suffix.lower() not in KEEPS_COORDINATES:
-        raise WrongUsage(f"{given.mesh} cannot be written: stream writes {', '.join(KEEPS_COORDINATES)}, which keep "
+    values = check(settings)
+    if given.mesh.suffix.lower() not in WRITERS:
+        raise WrongUsage(f"{given.mesh} cannot be written: stream writes {', '.join(WRITERS)}, which keep "
                          "coordinates in double precision.")
     if given.mesh.exists() and given.cloud.exists() and given.mesh.samefile(given.cloud):
         raise WrongUsage(f"The mesh {given.mesh} would replace its cloud: give another name.")
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # removes what is written aside
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C: removes what is written aside
     try:
         cloud = open_cloud(given.cloud)
         processors = values["threads"] or len(os.sched_getaffinity(0))
         plan = plan_for(given.memory, values["target_vertices"], cloud.count, processors)
         with _folder_beside(given.mesh) as folder:
-            check_space(given.mesh.parent, plan.file_bytes(), "The sample and the mesh")
+            check_space(given.mesh.parent, plan.file_bytes(), "The mesh")
             print(plan.sentence(), flush=True)
-            _Stream(cloud, plan, meshes, folder).run(settings, given.mesh)
-    except (CloudError, NotWhole, Unmeasured) as error:
+            _Stream(cloud, plan, folder).run(settings, given.mesh)
+    except (CloudError, NotWhole, Unmeasured, ValueError) as error:
         sentence = str(error)
     except OSError as error:
         sentence = f"{error.filename or given.mesh} cannot be written: {error.strerror}."
@@ -106,7 +104,7 @@ class Plan:
         return PROCESS + CHUNK_BYTES * self.chunk + self.workers * worker
 
     def file_bytes(self) -> float:
-        return 24 * self.sample + SAVED_VERTEX * self.target
+        return SAVED_VERTEX * self.target
 
     def bytes(self) -> float:
         return max(self.reading_bytes(), self.averaging_bytes(), self.learning_bytes(), self.measuring_bytes())
@@ -153,16 +151,21 @@ def _folder_beside(mesh: Path) -> Iterator[Path]:
 class _Stream:
     """The two passes over a cloud, and learning between them."""
 
-    def __init__(self, cloud: Cloud, plan: Plan, meshes: pymeshlab.MeshSet, folder: Path) -> None:
-        self._cloud, self._plan, self._meshes, self._folder = cloud, plan, meshes, folder
+    def __init__(self, cloud: Cloud, plan: Plan, folder: Path) -> None:
+        self._cloud, self._plan, self._folder = cloud, plan, folder
         self._started = time.monotonic()
 
     def run(self, settings: Settings, out: Path) -> None:
         """Writes the mesh to `out` when it is whole, then measures the distances. Prints what was done."""
         sample = self._read()
         diagonal = float(np.linalg.norm(sample.high - sample.low))
-        size = self._write_sample(sample)
-        result = {**self._learn(settings, out), "sample": size}
+        points = self._points_of(sample)
+        result = {**self._learn(points, settings, out), "sample": len(points)}
+        del points
+        if lack := filters.why_not(__version__):
+            print(f"The distances of the points are not measured. {lack}")
+            print(line_of({**result, "points": sample.seen, "skipped": sample.skipped, "diagonal": diagonal}))
+            return
         found = measure(out, self._cloud.chunks(self._plan.chunk), diagonal * 2, self._plan.workers,
                         lambda: self._show("Measuring"))
         percent = 100 / diagonal if diagonal else 0
@@ -182,8 +185,8 @@ class _Stream:
             raise CloudError(f"{self._cloud.path} holds no point with finite coordinates.")
         return sample
 
-    def _write_sample(self, sample: EvenSample) -> int:
-        """Writes the points to learn from, and returns their number. Those of a larger cloud stand for all points."""
+    def _points_of(self, sample: EvenSample) -> np.ndarray:
+        """The points to learn from. Those of a larger cloud stand for all points."""
         points = sample.take()
         skipped = f" {sample.skipped:,} of them are left out: they are not finite." if sample.skipped else ""
         print(f"Read {sample.seen:,} points in {self._seconds():.1f} s.{skipped} The sample has {len(points):,}.",
@@ -195,23 +198,16 @@ class _Stream:
                 self._show("Averaging")
             print(f"Moved {averages.move():,} points of the sample to the mean of all points around them in "
                   f"{self._seconds():.1f} s.", flush=True)
-        _write_ply(self._folder / "sample.ply", points)
-        return len(points)
+        return points
 
-    def _learn(self, settings: Settings, out: Path) -> Dict[str, Any]:
-        """Learns from the sample, writes the mesh, returns the filter's results."""
-        self._meshes.load_new_mesh(str(self._folder / "sample.ply"))
-        (self._folder / "sample.ply").unlink()
-        result = self._meshes.apply_filter(FILTER, **for_pymeshlab(settings))
+    def _learn(self, points: np.ndarray, settings: Settings, out: Path) -> Dict[str, Any]:
+        """Learns from the sample, writes the mesh, returns the results of the run."""
+        mesh = reconstruct(points, **settings)
         aside = self._folder / out.name
-        try:
-            save(self._meshes, aside)
-        except pymeshlab.PyMeshLabException as error:
-            raise OSError(0, str(error).splitlines()[-1], str(out)) from error
-        self._meshes.clear()
+        save(mesh, aside)
         os.replace(aside, out)
-        print(f"Learned {result['vertices']:,} vertices in {self._seconds():.1f} s and wrote {out}.", flush=True)
-        return result
+        print(f"Learned {len(mesh.vertices):,} vertices in {self._seconds():.1f} s and wrote {out}.", flush=True)
+        return mesh.report
 
     def _seconds(self) -> float:
         """Since the last call. Ends the line of the progress."""
@@ -223,11 +219,3 @@ class _Stream:
     def _show(self, what: str) -> None:
         if sys.stderr.isatty():
             print(f"\r{what}: {100 * self._cloud.done:.0f} %", end="", file=sys.stderr, flush=True)
-
-
-def _write_ply(path: Path, points: np.ndarray) -> None:
-    header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}",
-              *(f"property double {axis}" for axis in "xyz"), "end_header", ""]
-    with path.open("wb") as file:
-        file.write("\n".join(header).encode())
-        file.write(np.ascontiguousarray(points, "<f8"))  # unlike tofile(), it says what failed

@@ -17,11 +17,9 @@ import warnings
 from pathlib import Path
 from typing import Any, Dict, List, Optional
 
-import pymeshlab
-
-from neural_mesh import FILTER, NeuralMeshWarning
-from neural_mesh.mesh_files import NotWhole, save
-from neural_mesh.parameters import for_pymeshlab, sentence_of
+from neural_mesh import NeuralMeshWarning, reconstruct
+from neural_mesh.clouds import CloudError
+from neural_mesh.files import NotWhole, load, save
 
 PR_SET_PDEATHSIG = 1  # of linux/prctl.h
 # After each cloud it would cost 4 % of the time of small ones: their pages have to be mapped again.
@@ -69,22 +67,21 @@ def peak_memory() -> int:
 
 
 def learn(job: Dict[str, Any]) -> Dict[str, Any]:
-    """Makes the mesh of a job. Returns the filter's results, or an error, after which the process must end."""
-    # With one MeshSet for all clouds pymeshlab 2025.7 loses 20 kB each.
-    meshes = pymeshlab.MeshSet(verbose=True)
+    """Makes the mesh of a job. Returns the results and warnings of the run, or an error, after which the process must
+    end."""
     aside = Path(job["aside"])
     try:
-        meshes.load_new_mesh(job["input"])
-        result = meshes.apply_filter(FILTER, **for_pymeshlab(job["settings"]))
-        save(meshes, aside)
+        mesh = reconstruct(**load(Path(job["input"]), verbose=True), **job["settings"])
+        save(mesh, aside)
         size = aside.stat().st_size
         os.replace(aside, job["result"])
-        return {"output_size": size, "result": result}
-    except MemoryError:
-        return {"error": "There was not enough memory."}
-    except (pymeshlab.PyMeshLabException, OSError, NotWhole) as error:
-        reason = str(error).partition("Error details: ")[2]  # of loading
-        return {"error": f"The file cannot be loaded: {reason}." if reason else " ".join(sentence_of(error).split())}
+        return {"output_size": size, "result": dict(mesh.report), "warnings": mesh.report.warnings}
+    except CloudError as error:
+        return {"error": f"The file cannot be loaded: {error}"}
+    except MemoryError as error:
+        return {"error": str(error) or "There was not enough memory."}
+    except (ValueError, OSError, NotWhole) as error:
+        return {"error": " ".join(str(error).split())}
 
 
 def return_free_memory() -> None:
@@ -109,7 +106,7 @@ def answer_jobs(answers: Any, memory_limit: Optional[int]) -> None:
         answer = learn(job)
         answer["seconds"] = round(time.monotonic() - start, 3)
         answer["peak_memory"] = peak_memory()
-        answer["warnings"] = [words for words in log.warnings() if words != answer.get("error")]
+        answer["warnings"] = log.warnings() + answer.get("warnings", [])
         print(json.dumps(answer), file=answers, flush=True)
         if number % CLOUDS_PER_RETURN == 0:
             return_free_memory()
@@ -117,7 +114,7 @@ def answer_jobs(answers: Any, memory_limit: Optional[int]) -> None:
 
 def main() -> None:
     end_with(int(sys.argv[1]))
-    warnings.simplefilter("ignore", NeuralMeshWarning)  # the log has them, with those of loading
+    warnings.simplefilter("ignore", NeuralMeshWarning)  # the report has them
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # pymeshlab prints the parameters of each filter
     answer_jobs(answers, int(sys.argv[2]) or None)

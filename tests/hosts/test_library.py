@@ -1,0 +1,415 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Copyright the Neural Mesh authors
+
+"""The core as a shared library: neural_mesh.reconstruct() and counters() give the bytes of the filter; arrays of all
+kinds, progress, errors, threads, memory; the files and objects of a mesh; the example in C."""
+
+import ctypes
+import functools
+import os
+import re
+import subprocess
+import sys
+import threading
+import types
+import warnings
+
+import inputs
+import library_clouds
+import meshlabserver
+import numpy as np
+import psutil
+import pytest
+from conftest import FULL, PYTHON_NAME, few_of, parameters
+from python_site import LIBRARY
+
+BALL = library_clouds.directions(2000, 1)
+FEW = BALL[:500]
+FAST = {"target_vertices": 40, "settling_signals_per_vertex": 0}
+COUNTERS_NAME = inputs.COUNTERS
+
+
+@pytest.fixture(scope="module")
+def library(site, pymeshlab):
+    """The module neural_mesh beside pymeshlab, whose warnings are not shown."""
+    import neural_mesh
+    warnings.simplefilter("ignore", neural_mesh.NeuralMeshWarning)
+    return neural_mesh
+
+
+def equal(one, other):
+    return all((a is None and b is None) or (a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes())
+               for a, b in zip(library_clouds.arrays_of(one), library_clouds.arrays_of(other)))
+
+
+# --- the same as the filter ------------------------------------------------------------------------------------------
+
+
+def layer_of(pymeshlab, points, colors=None, normals=None, faces=(), **_):
+    arrays = {} if colors is None else {"v_color_matrix": np.column_stack([colors / 255, np.ones(len(colors))])}
+    if normals is not None:
+        arrays["v_normals_matrix"] = np.asarray(normals, dtype=float)
+    return pymeshlab.Mesh(np.asarray(points, dtype=float), np.asarray(faces, dtype=np.int32).reshape(-1, 3), **arrays)
+
+
+def filter_arguments(pymeshlab, points, **given):
+    values = {name: value for name, value in given.items() if name not in ("colors", "normals", "faces")}
+    if "close_holes_up_to" in values:
+        values["close_holes_up_to"] = pymeshlab.PureValue(values["close_holes_up_to"])
+    return values
+
+
+@pytest.fixture(scope="module")
+def learned(library):
+    """learned(name) -> what reconstruct() takes, and the mesh that it gives."""
+    @functools.lru_cache(None)
+    def learn(name):
+        given = library_clouds.clouds()[name]
+        return given, library.reconstruct(**given)
+    return learn
+
+
+FIRST_TIER = ("creases of floats", "open with normals", "uneven, far away")
+
+
+@pytest.mark.parametrize("name", few_of(library_clouds.clouds(), (*FIRST_TIER, "colours")))
+def test_the_same_bytes_as_recorded(learned, name):
+    assert library_clouds.sum_of(library_clouds.arrays_of(learned(name)[1])) == library_clouds.recorded()[name]
+
+
+@pytest.mark.parametrize("name", few_of(library_clouds.clouds(), FIRST_TIER))
+def test_the_same_bytes_as_the_filter(learned, pymeshlab, meshes, name):
+    given, mesh = learned(name)
+    meshes.add_mesh(layer_of(pymeshlab, **given))
+    figures = meshes.apply_filter(PYTHON_NAME, select_features=True, **filter_arguments(pymeshlab, **given))
+    assert {**mesh.report, "seconds": 0} == {**figures, "seconds": 0}
+    layer = meshes.current_mesh()
+    assert np.array_equal(layer.vertex_matrix(), mesh.vertices) and np.array_equal(layer.face_matrix(), mesh.faces)
+    assert np.array_equal(layer.vertex_scalar_array(), mesh.quality)
+    assert np.array_equal(layer.vertex_selection_array(), mesh.features)
+    if "colors" in given and mesh.colors is not None:  # pymeshlab gives each layer made of arrays white points
+        assert np.array_equal(np.rint(layer.vertex_color_matrix()[:, :3] * 255), mesh.colors)
+    assert (mesh.creases is None) == ("crease_lines" not in given)
+    if mesh.creases is not None:
+        meshes.set_current_mesh(meshes.mesh_number() - 1)
+        lines = meshes.current_mesh()
+        assert np.array_equal(lines.vertex_matrix(), mesh.creases.vertices)
+        assert np.array_equal(lines.edge_matrix(), mesh.creases.edges)
+        assert np.array_equal(lines.vertex_scalar_array(), mesh.creases.quality)
+
+
+def test_percentages_and_names_are_those_of_the_filter(library, pymeshlab, meshes):
+    mesh = library.reconstruct(BALL, close_holes_up_to="3.7%", surface="Open", target_vertices=60)
+    meshes.add_mesh(pymeshlab.Mesh(BALL))
+    meshes.apply_filter(PYTHON_NAME, close_holes_up_to=pymeshlab.PercentageValue(3.7), surface="Open", target_vertices=60)
+    assert np.array_equal(mesh.vertices, meshes.current_mesh().vertex_matrix())
+
+
+@pytest.mark.parametrize("with_points", [True, False])
+def test_counters_are_those_of_the_filter(library, pymeshlab, meshes, with_points):
+    mesh = library.reconstruct(BALL, **FAST)
+    meshes.add_mesh(pymeshlab.Mesh(BALL))
+    meshes.add_mesh(pymeshlab.Mesh(mesh.vertices, mesh.faces))
+    figures = meshes.apply_filter(COUNTERS_NAME, signal_layer=0 if with_points else 1, feature_measure=1,
+                                  select_features=True)
+    counted = library.counters(mesh, BALL if with_points else None, feature_measure="Crease measure")
+    assert np.array_equal(counted.quality, meshes.current_mesh().vertex_scalar_array())
+    assert np.array_equal(counted.features, meshes.current_mesh().vertex_selection_array())
+    assert {**counted.report, "seconds": 0} == {**figures, "seconds": 0}
+    assert counted.vertices is mesh.vertices and np.shares_memory(counted.faces, mesh.faces)
+
+
+def test_learning_starts_from_a_given_mesh(library, pymeshlab, meshes):
+    start = library.reconstruct(BALL, **FAST)
+    mesh = library.reconstruct(BALL, start=start, target_vertices=90)
+    meshes.add_mesh(pymeshlab.Mesh(start.vertices, start.faces))
+    meshes.add_mesh(pymeshlab.Mesh(BALL))
+    meshes.apply_filter(PYTHON_NAME, start_mesh=2, start_layer=0, target_vertices=90)
+    assert np.array_equal(mesh.vertices, meshes.current_mesh().vertex_matrix())
+
+
+def test_parameters_are_those_of_the_filters(library, build):
+    for what, name in (("reconstruct", PYTHON_NAME), ("counters", COUNTERS_NAME)):
+        of_filter = {row[0]: row for row in parameters(build, name) if row[1] != "RichMesh"}
+        of_filter.pop("selected_only", None)  # of layers
+        found = library.parameter_list(what)
+        assert list(found) == list(of_filter)
+        for name, row in of_filter.items():
+            assert (found[name].low, found[name].high) == (row[2], row[3]), name
+            assert found[name].help.endswith(".") and bool(found[name].choices) == (found[name].kind == "choice")
+
+
+# --- arrays ----------------------------------------------------------------------------------------------------------
+
+
+def test_arrays_of_any_layout_are_read_where_they_are(library):
+    expected = library.reconstruct(FEW, **FAST)
+    records = np.zeros(len(FEW), [("id", "u1"), ("x", "f8"), ("y", "f8"), ("z", "f8")])  # at odd addresses
+    for column, axis in enumerate("xyz"):
+        records[axis] = FEW[:, column]
+    wide = np.zeros((len(FEW) * 2, 5))
+    wide[::2, 3:0:-1] = FEW
+    fixed = FEW.copy()
+    fixed.flags.writeable = False
+    for points in (np.asfortranarray(FEW), wide[::2, 3:0:-1], fixed, FEW.tolist(), FEW.astype(">f8"),
+                   FEW[::-1][::-1], np.lib.stride_tricks.as_strided(records["x"], FEW.shape, (25, 8))):
+        assert equal(library.reconstruct(points, **FAST), expected)
+    assert np.array_equal(library.reconstruct((FEW * 100).astype(int), **FAST).vertices,
+                          library.reconstruct((FEW * 100).astype(int).astype(float), **FAST).vertices)
+
+
+def test_colours_are_bytes_or_parts_of_one(library):
+    paint = library_clouds.paint(FEW)
+    expected = library.reconstruct(FEW, colors=paint, **FAST)
+    for colors in (paint / 255, np.column_stack([paint, paint[:, 0]]), (paint / 255).astype("f4")):
+        assert equal(library.reconstruct(FEW, colors=colors, **FAST), expected)
+
+
+def test_results_live_as_long_as_their_arrays(library):
+    vertices = library.reconstruct(FEW, **FAST).vertices
+    before = vertices.copy()
+    for _ in range(2):
+        library.reconstruct(FEW[:500], **FAST)
+    assert np.array_equal(vertices, before)
+
+
+BAD = [
+    (dict(vertices=5), "There is no parameter vertices. The parameters are target_vertices, "),
+    (dict(start_layer=0), "There is no parameter start_layer."),
+    (dict(target_vertices=1), "(Target vertices) is 1: choose a value from 4 to 20000000."),
+    (dict(target_vertices=2.5), "(Target vertices) is 2.5: give a whole number from 4 to 20000000."),
+    (dict(target_vertices=99999999999), "is 99999999999: give a whole number from 4 to 20000000."),
+    (dict(target_vertices="many"), "is 'many': give a number."),
+    (dict(target_vertices=True), "is True: give a number."),
+    (dict(learning_rate=float("nan")), "(Learning rate) is nan: choose a value from 0.001 to 1."),
+    (dict(fit_to_points=2), "(Fit to points) is 2: give a whole number from 0 to 1."),
+    (dict(fit_to_points="yes"), "is 'yes': give True or False."),
+    (dict(surface="Shut"), "is 'Shut': give 'Automatic' or 'Closed' or 'Open'."),
+    (dict(surface=7), "(Surface) is 7: choose a value from 0 to 2."),
+    (dict(close_holes_up_to="500%"), "a percentage of the diagonal from 0 to 100"),
+    (dict(start_mesh=2), "start from a given mesh (start_mesh), but none is given."),
+    (dict(points=BALL[:, :2]), "points have the shape (2000, 2): give an array of shape (n, 3)."),
+    (dict(points=BALL[:0]), "no points to learn"),
+    (dict(points=BALL[[0, 1, 1]]), "only 2 distinct points: a surface needs at least 4."),
+    (dict(points=np.where(np.arange(6000).reshape(-1, 3) == 7, np.nan, BALL)),
+     "1 of the 2000 points have coordinates that are not finite (NaN or infinite): remove them."),
+    (dict(points=[["a", "b", "c"]]), "points are no numbers"),
+    (dict(colors=library_clouds.paint(BALL)[:5]), "There are 5 colours for 2000 points: give one for each."),
+    (dict(colors=BALL + 7), "colors are neither uint8 from 0 to 255 nor floats from 0 to 1"),
+    (dict(colors=BALL[:, 0]), "colors have the shape (2000,): give an array of shape (n, 3) or (n, 4)."),
+    (dict(normals=BALL[:5]), "There are 5 normals for 2000 points: give one for each."),
+    (dict(faces=[[0, 1, 2000]]), "Face 0 has the corner 2000, but corners are numbers from 0 of 2000 points"),
+    (dict(faces=[[0, 1, -1]]), "Face 0 has the corner -1"),
+    (dict(faces=[[0, 1, .5]]), "faces have the shape (1, 3) and the type float64: give whole numbers"),
+    (dict(start=5), "start is no mesh: give an object with vertices and faces, or a pair of arrays."),
+    (dict(start=(BALL, [[0, 1, 2], [0, 1, 2]])), "."),
+]
+
+
+@pytest.mark.parametrize("given, sentence", BAD)
+def test_bad_input_raises_a_sentence(library, given, sentence):
+    with pytest.raises(ValueError) as caught:
+        library.reconstruct(**{"points": BALL, **given})
+    assert sentence in str(caught.value) and str(caught.value).endswith(".")
+
+
+def test_counters_of_a_mesh_that_is_none_raise_a_sentence(library):
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, np.nan]])
+    for faces, sentence in (([[0, 1, 3]], "Vertex 3 of the given mesh has coordinates that are not finite"),
+                            ([[0, 1, 2], [0, 1, 2]], "."), (np.zeros((0, 3), int), "."), ([[0, 1, 9]], "corner 9")):
+        with pytest.raises(ValueError, match=re.escape(sentence)):
+            library.counters((corners, faces))
+
+
+# --- progress, Ctrl-C, threads, memory -------------------------------------------------------------------------------
+
+
+def test_progress_is_told_and_can_stop(library):
+    told = []
+    library.reconstruct(BALL, progress=lambda part, activity: told.append((part, activity)), **FAST)
+    parts = [part for part, _ in told]
+    assert parts == sorted(parts) and 0 <= parts[0] and parts[-1] <= 1 and any("Learning" in words for _, words in told)
+    mesh = library.reconstruct(BALL, target_vertices=500, progress=lambda part, _: part < .5)
+    assert mesh.report["stop_reason"] == 2 and 4 <= len(mesh.vertices) < 500
+    assert mesh.faces.max() < len(mesh.vertices)
+
+
+def test_what_progress_raises_comes_out(library):
+    def refuse(part, _):
+        if part > .3:
+            raise LookupError("enough")
+    with pytest.raises(LookupError, match="enough"):
+        library.reconstruct(BALL, progress=refuse, **FAST)
+
+
+CTRL_C = """
+import neural_mesh, numpy, os, signal, threading, time
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may have told children to ignore it
+points = numpy.random.default_rng(1).normal(size=(100_000, 3))
+points /= numpy.linalg.norm(points, axis=1)[:, None]
+def interrupt():
+    global sent
+    sent = time.monotonic()
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Timer(.8, interrupt).start()
+try:
+    neural_mesh.reconstruct(points, target_vertices=1_000_000)
+    raise SystemExit("not interrupted")
+except KeyboardInterrupt:
+    assert time.monotonic() - sent < 1, time.monotonic() - sent
+"""
+
+
+def test_ctrl_c_ends_a_run_within_a_second(site):
+    done = subprocess.run([sys.executable, "-c", CTRL_C], env=dict(os.environ, PYTHONPATH=str(site)), check=False,
+                          stderr=subprocess.PIPE, text=True, timeout=30)
+    assert done.returncode == 0, done.stderr
+
+
+def test_two_threads_at_once_give_the_bytes_of_one(library):
+    clouds = [BALL[:1000], library_clouds.box(1000, 1)]
+    alone = [library.reconstruct(points, target_vertices=100) for points in clouds]
+    together = [None, None]
+
+    def learn(index):
+        together[index] = library.reconstruct(clouds[index], target_vertices=100)
+
+    threads = [threading.Thread(target=learn, args=(index,)) for index in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all(map(equal, alone, together))
+
+
+@FULL
+def test_memory_does_not_grow(library):
+    """Over 1,000 runs, after the first ones have filled the allocator's pools."""
+    process = psutil.Process()
+
+    def learn(times):
+        for number in range(times):
+            library.reconstruct(BALL[:300], colors=library_clouds.paint(BALL[:300]), threads=1, **FAST)
+            if number % 3 == 0:
+                with pytest.raises(ValueError):
+                    library.reconstruct(BALL[:2], **FAST)
+    learn(100)
+    before = process.memory_info().rss
+    learn(1000)
+    assert process.memory_info().rss < 1.01 * before
+
+
+# --- the mesh as files and objects -----------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def painted(library):
+    return library.reconstruct(FEW, colors=library_clouds.paint(FEW), **FAST)
+
+
+def test_ply_is_what_pymeshlab_writes(painted, meshes, tmp_path):
+    painted.save(tmp_path / "mesh.ply")
+    meshes.add_mesh(painted.to_pymeshlab())
+    meshes.save_current_mesh(str(tmp_path / "theirs.ply"), save_vertex_quality=True)
+    theirs = (tmp_path / "theirs.ply").read_bytes().replace(b"comment VCGLIB generated\n", b"")
+    assert (tmp_path / "mesh.ply").read_bytes() == theirs
+
+
+@pytest.mark.parametrize("ending", ["ply", "obj"])
+def test_files_hold_the_mesh(painted, meshes, tmp_path, ending):
+    painted.save(tmp_path / f"mesh.{ending}")
+    meshes.load_new_mesh(str(tmp_path / f"mesh.{ending}"))
+    layer = meshes.current_mesh()
+    assert np.array_equal(layer.vertex_matrix(), painted.vertices) and np.array_equal(layer.face_matrix(), painted.faces)
+    assert np.array_equal(np.rint(layer.vertex_color_matrix()[:, :3] * 255), painted.colors)
+    assert ending == "obj" or np.array_equal(layer.vertex_scalar_array(), painted.quality)
+
+
+def test_other_endings_are_refused(painted, tmp_path):
+    with pytest.raises(ValueError, match="must end in .ply or .obj"):
+        painted.save(tmp_path / "mesh.stl")
+
+
+def test_trimesh_gets_the_mesh(painted):
+    pytest.importorskip("trimesh")  # not among the requirements of the tests; installs.py has it
+    mesh = painted.to_trimesh()
+    assert np.array_equal(mesh.vertices, painted.vertices) and np.array_equal(mesh.faces, painted.faces)
+    assert mesh.is_watertight and mesh.volume > 0
+    assert np.array_equal(mesh.visual.vertex_colors[:, :3], painted.colors)
+    assert np.array_equal(mesh.vertex_attributes["quality"], painted.quality)
+
+
+def test_meshes_of_other_modules_are_taken(library, painted):
+    expected = library.counters(painted, FEW).quality
+    for mesh in (types.SimpleNamespace(vertices=painted.vertices, faces=painted.faces.astype(np.int64)),  # as trimesh's
+                 types.SimpleNamespace(vertices=painted.vertices, triangles=painted.faces)):  # as Open3D's
+        assert np.array_equal(library.counters(mesh, FEW).quality, expected)
+
+
+# --- C, and what the library exports ---------------------------------------------------------------------------------
+
+
+def example_in_c(build, *words, points):
+    text = "".join(" ".join(map(repr, map(float, point))) + "\n" for point in points)
+    return subprocess.run([str(build / "tests/c_example"), *words], input=text, capture_output=True, text=True,
+                          check=False)
+
+
+def test_the_example_in_c_makes_a_mesh(build, tmp_path):
+    done = example_in_c(build, "150", points=BALL)
+    assert done.returncode == 0 and "vertices=150 faces=296 " in done.stderr, done.stderr
+    (tmp_path / "mesh.obj").write_text(done.stdout)
+    found = meshlabserver.check_mesh(build, tmp_path / "mesh.obj")
+    assert found["vertices"] == 150 and found["watertight"] and found["oriented"]
+
+
+def test_the_example_in_c_shows_the_sentence_of_an_error(build):
+    done = example_in_c(build, "150", points=BALL[:3])
+    assert done.returncode == 1 and done.stderr.splitlines()[-1].endswith("a surface needs at least 4.")
+    done = example_in_c(build, "1", points=BALL)
+    assert done.returncode == 1 and "is 1: choose a value from 4 to" in done.stderr
+
+
+def test_wrong_calls_have_a_status_and_a_sentence(library):
+    """Of C, which the Python package never makes."""
+    from neural_mesh.library import _Array, _CallBack
+    from neural_mesh.library import library as loaded
+    c, no_progress, wrong_call = loaded(), _CallBack(), 4
+    assert re.fullmatch(rb"\d+\.\d+\.\d+", c.neural_mesh_version()) and c.neural_mesh_error(None) == b"There is no task."
+    assert c.neural_mesh_new(7) is None and not c.neural_mesh_parameters(7, ctypes.c_size_t())
+    assert c.neural_mesh_set(None, b"surface", 1) == c.neural_mesh_run(None, no_progress, None, None) == wrong_call
+    c.neural_mesh_free(None)
+    c.neural_mesh_free_result(None)
+    task = c.neural_mesh_new(0)
+    for call, words in ((lambda: c.neural_mesh_set(task, None, 1), b"name of the parameter is missing."),
+                        (lambda: c.neural_mesh_set_points(task, _Array(None, 3, 1, 24, 8)), b"has rows, but no data."),
+                        (lambda: c.neural_mesh_set_points(task, _Array(None, 0, 2, 24, 8)), b"is none of those allowed."),
+                        (lambda: c.neural_mesh_run(task, no_progress, None, None), b"no place for the result.")):
+        assert call() == wrong_call and c.neural_mesh_error(task).endswith(words)
+    assert c.neural_mesh_set(task, b"surface", 1) == 0 and c.neural_mesh_error(task) == b""
+    c.neural_mesh_free(task)
+
+
+def test_only_functions_of_the_header_are_exported(build):
+    names = subprocess.run(["nm", "-D", "--defined-only", str(build / LIBRARY)], check=True, stdout=subprocess.PIPE,
+                           text=True).stdout
+    exported = set(re.findall(r" T (\w+)@@NEURAL_MESH_1$", names, re.MULTILINE))
+    header = (library_clouds.RECORD.parents[2] / "vcg_core/c_api/neural_mesh.h").read_text()
+    assert exported == set(re.findall(r"^NEURAL_MESH_API .*?\b(neural_mesh_\w+)\(", header, re.MULTILINE))
+    assert len(names.splitlines()) == len(exported) + 1  # and the version's name
+
+
+WITHOUT_PYMESHLAB = """
+import sys
+sys.modules["pymeshlab"] = None  # its import fails
+import neural_mesh, numpy
+mesh = neural_mesh.reconstruct(numpy.load(sys.argv[1]), target_vertices=60)
+assert len(mesh.vertices) == 60 and "pymeshlab" not in {name for name, module in sys.modules.items() if module}
+"""
+
+
+def test_pymeshlab_is_not_needed(site, tmp_path):
+    np.save(tmp_path / "points.npy", BALL)
+    done = subprocess.run([sys.executable, "-W", "ignore", "-c", WITHOUT_PYMESHLAB, str(tmp_path / "points.npy")],
+                          env=dict(os.environ, PYTHONPATH=str(site)), check=False, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 0, done.stderr
