@@ -103,9 +103,10 @@ Shell make_shell(const TargetSpace& target, const Settings& settings, Survey& su
     return Shell(target, options, random, progress, survey.of(target));
 }
 
-void remove_outliers(LearningTask& task, Survey& survey, int threads) {
+void remove_outliers(LearningTask& task, Survey& survey, int threads, Progress& progress) {
     const std::vector<std::uint8_t> out =
-        find_outliers(survey.of(task.target().positions()).points(), threads);
+        find_outliers(survey.of(task.target().positions()).points(), threads,
+                      [&progress] { progress(0, "Start mesh: looking for outliers"); });
     if (out.empty()) return;
     const auto count = static_cast<std::size_t>(std::count(out.begin(), out.end(), 1));
     const std::size_t all = out.size();
@@ -122,10 +123,12 @@ void remove_outliers(LearningTask& task, Survey& survey, int threads) {
     task.warnings.push_back(sentence);
 }
 
-LearningTask points_to_learn(const TargetSpace& given, const Settings& settings, Survey& survey) {
+LearningTask points_to_learn(const TargetSpace& given, const Settings& settings, Survey& survey,
+                             Progress& progress) {
     LearningTask task(given);
     remove_repeated_points(task);
-    if (settings.remove_outliers && !given.is_exact()) remove_outliers(task, survey, settings.threads);
+    if (settings.remove_outliers && !given.is_exact())
+        remove_outliers(task, survey, settings.threads, progress);
     return task;
 }
 
@@ -350,7 +353,8 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
 
 LearningTask points_to_learn(const TargetSpace& given, const Settings& settings) {
     Survey survey(settings.threads);
-    return points_to_learn(given, settings, survey);
+    NoProgress progress;
+    return points_to_learn(given, settings, survey, progress);
 }
 
 LearningTask prepare(const TargetSpace& given, const Settings& settings, const IndexedMesh<double>& start,
@@ -358,7 +362,7 @@ LearningTask prepare(const TargetSpace& given, const Settings& settings, const I
     progress(0, "Start mesh: looking for outliers");
     refuse_rounding(given, settings.target_vertices);
     Survey survey(settings.threads);
-    LearningTask task = points_to_learn(given, settings, survey);
+    LearningTask task = points_to_learn(given, settings, survey, progress);
     progress(0, "Start mesh: examining the points");
     Settings trusted = settings;
     trusted.use_normals = normals_serve(task, survey, settings);

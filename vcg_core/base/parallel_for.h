@@ -16,8 +16,8 @@ namespace neuralmesh {
 
 /// Calls \p body(chunk, begin, end) for every chunk of \p size indices of [0, count), on the threads of \p
 /// team. The chunks are the same for any number of threads. A call must write only what belongs to its chunk.
-/// A thread whose call throws takes no more chunks; when the others have finished, one of the exceptions is
-/// rethrown.
+/// Where a call or the team's beat throws, no thread takes another chunk; when all have finished theirs, one
+/// of the exceptions is rethrown.
 template <class Body>
 void for_chunks(std::size_t count, std::size_t size, ThreadTeam& team, const Body& body) {
     const std::size_t chunks = (count + size - 1) / size;
@@ -26,9 +26,12 @@ void for_chunks(std::size_t count, std::size_t size, ThreadTeam& team, const Bod
     std::atomic<std::size_t> next{0};
     team.parallel(members, [&](int member, int) {
         try {
-            for (std::size_t c = next++; c < chunks; c = next++)
+            for (std::size_t c = next++; c < chunks; c = next++) {
                 body(c, c * size, std::min(count, (c + 1) * size));
+                if (member == 0) team.beat();
+            }
         } catch (...) {
+            next = chunks;
             errors[static_cast<std::size_t>(member)] = std::current_exception();
         }
     });

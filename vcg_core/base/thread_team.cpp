@@ -40,6 +40,15 @@ ThreadTeam::~ThreadTeam() {
     for (std::thread& t : helpers_) t.join();
 }
 
+void ThreadTeam::beat() {
+    constexpr std::chrono::milliseconds kPause(100);
+    if (!beat_) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_beat_ < kPause) return;
+    last_beat_ = now;
+    beat_();
+}
+
 void ThreadTeam::start(Call call, const void* body, int chunks) {
     // Chunk 0 is not offered: claiming it would move the word's cache line to the caller and back.
     offer(call, body, (bit(chunks - 1) - 1) << 1);

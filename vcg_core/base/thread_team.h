@@ -10,10 +10,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace neuralmesh {
@@ -41,6 +44,13 @@ public:
     ThreadTeam& operator=(const ThreadTeam&) = delete;
 
     int members() const { return 1 + static_cast<int>(helpers_.size()); }
+
+    /// From now on \p beat is called between the chunks of the loops of parallel_for.h, on the caller's
+    /// thread and not before a tenth of a second has passed since its last call. It may throw, which ends the
+    /// loop.
+    void set_beat(std::function<void()> beat) { beat_ = std::move(beat); }
+    /// Calls it, if it is due.
+    void beat();
 
     /// Calls \p body(member, chunk) once for every chunk of [0, \p chunks), chunks <= kMost, and returns when
     /// all calls have returned. Calls of the same member never overlap; 0 <= member < members(). A body must
@@ -101,6 +111,8 @@ private:
     std::mutex mutex_;
     std::condition_variable wake_;
     std::vector<std::thread> helpers_;
+    std::function<void()> beat_;
+    std::chrono::steady_clock::time_point last_beat_{};
 };
 
 }  // namespace neuralmesh

@@ -274,10 +274,12 @@ double Suspects::threshold() const {
 
 }  // namespace
 
-std::vector<std::uint8_t> find_outliers(const CloudSurvey& survey, int threads) {
+std::vector<std::uint8_t> find_outliers(const CloudSurvey& survey, int threads,
+                                        const std::function<void()>& beat) {
     const NearestPoints& cloud = survey.cloud;
     if (cloud.size() < kFewestForOutliers) return {};
     ThreadTeam team(thread_count(threads));
+    team.set_beat(beat);
     std::vector<std::uint8_t> out(cloud.size());
     Suspects(survey, team).mark(out);
     mark_isolated_clumps(cloud, out);

@@ -28,6 +28,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "vcg_core/target/cloud_survey.h"
@@ -41,6 +42,8 @@ constexpr std::size_t kFewestForOutliers = 128;
 /// they were given; empty if there is none. The result does not depend on \p threads (0: all cores). Cost: as
 /// much as the survey for an even cloud, ten times that with one outlier in a hundred points. Memory: 12
 /// bytes per point beside \p points, 400 more per suspect.
-std::vector<std::uint8_t> find_outliers(const CloudSurvey& survey, int threads);
+/// \p beat is called about every tenth of a second; what it throws ends the search.
+std::vector<std::uint8_t> find_outliers(const CloudSurvey& survey, int threads,
+                                        const std::function<void()>& beat = {});
 
 }  // namespace neuralmesh

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <stdexcept>
 
 #include "vcg_core/base/median.h"
@@ -30,6 +31,22 @@ TEST(ParallelFor, RethrowsWhatACallThrows) {
                                   if (i == 60) throw std::runtime_error("60");
                               }),
                  std::runtime_error);
+}
+
+TEST(ParallelFor, CallsTheBeatOfTheTeamAndEndsWithWhatItThrows) {
+    for (const int threads : {1, 3}) {
+        ThreadTeam team(threads);
+        int beats = 0;
+        team.set_beat([&] { ++beats; });
+        parallel_for(100, 1, team, [](int) {});
+        EXPECT_GE(beats, 1);  // at once, and then not before a tenth of a second has passed
+        EXPECT_LT(beats, 100);
+        ThreadTeam stopped(threads);
+        stopped.set_beat([] { throw std::runtime_error("stop"); });
+        std::atomic<int> calls{0};
+        EXPECT_THROW(parallel_for(1000000, 1, stopped, [&](int) { ++calls; }), std::runtime_error);
+        EXPECT_LT(calls, 1000000);
+    }
 }
 
 TEST(ParallelCollect, KeepsTheOrderOfTheIndices) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <vector>
 
 #include "tests/unit/support/shapes.h"
@@ -196,6 +197,14 @@ TEST(OutlierRemoval, DoesNotDependOnThreadsNorOnScale) {
     EXPECT_EQ(outliers_of(cloud, 7), one);
     for (vcg::Point3f& p : cloud) p *= 1024;  // exact
     EXPECT_EQ(outliers_of(cloud, 1), one);
+}
+
+TEST(OutlierRemoval, EndsWithWhatItsBeatThrows) {
+    FloatCloud cloud;
+    for (const vcg::Point3d& p : shapes::sphere_cloud(20000)) cloud.push_back(vcg::Point3f::Construct(p));
+    const CloudSurvey survey(cloud, 2);
+    const auto stop = [] { throw std::runtime_error("stop"); };
+    EXPECT_THROW(find_outliers(survey, 2, stop), std::runtime_error);
 }
 
 TEST(OutlierRemoval, OneFarPointDoesNotHideTheOthers) {
