@@ -49,7 +49,9 @@ def test_wrong_calls_have_a_status_and_a_sentence(library):
     for call, words in ((lambda: c.neural_mesh_set(task, None, 1), b"name of the parameter is missing."),
                         (lambda: c.neural_mesh_set_points(task, _Array(None, 3, 1, 24, 8)), b"has rows, but no data."),
                         (lambda: c.neural_mesh_set_points(task, _Array(None, 0, 2, 24, 8)), b"is none of those allowed."),
-                        (lambda: c.neural_mesh_run(task, no_progress, None, None), b"no place for the result.")):
+                        (lambda: c.neural_mesh_run(task, no_progress, None, None), b"no place for the result."),
+                        (lambda: c.neural_mesh_distances(task, _Array(None, 0, 3, 24, 8), None), b"none of those allowed."),
+                        (lambda: c.neural_mesh_distances(task, None, None), b"no place for the distances.")):
         assert call() == wrong_call and c.neural_mesh_error(task).endswith(words)
     assert c.neural_mesh_set(task, b"surface", 1) == 0 and c.neural_mesh_error(task) == b""
     c.neural_mesh_free(task)
