@@ -6,6 +6,7 @@
 import os
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -189,3 +190,11 @@ def site(build, tmp_path_factory):
     sys.path.insert(0, str(folder))
     yield folder
     sys.path.remove(str(folder))
+
+
+@pytest.fixture(scope="module")
+def library(site, pymeshlab):
+    """The module neural_mesh beside pymeshlab, whose warnings are not shown."""
+    import neural_mesh
+    warnings.simplefilter("ignore", neural_mesh.NeuralMeshWarning)
+    return neural_mesh

@@ -2,39 +2,26 @@
 # Copyright the Neural Mesh authors
 
 """The core as a shared library: neural_mesh.reconstruct() and counters() give the bytes of the filter; arrays of all
-kinds, progress, errors, threads, memory; the files and objects of a mesh; the example in C."""
+kinds, progress, errors, threads, memory. test_library_files.py has the files of a mesh, test_library_in_c.py has C."""
 
-import ctypes
 import functools
 import os
 import re
 import subprocess
 import sys
 import threading
-import types
-import warnings
 
 import inputs
 import library_clouds
-import meshlabserver
 import numpy as np
 import psutil
 import pytest
 from conftest import FULL, PYTHON_NAME, few_of, parameters
-from python_site import LIBRARY
 
 BALL = library_clouds.directions(2000, 1)
 FEW = BALL[:500]
 FAST = {"target_vertices": 40, "settling_signals_per_vertex": 0}
 COUNTERS_NAME = inputs.COUNTERS
-
-
-@pytest.fixture(scope="module")
-def library(site, pymeshlab):
-    """The module neural_mesh beside pymeshlab, whose warnings are not shown."""
-    import neural_mesh
-    warnings.simplefilter("ignore", neural_mesh.NeuralMeshWarning)
-    return neural_mesh
 
 
 def equal(one, other):
@@ -297,106 +284,6 @@ def test_memory_does_not_grow(library):
     before = process.memory_info().rss
     learn(1000)
     assert process.memory_info().rss < 1.01 * before
-
-
-# --- the mesh as files and objects -----------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def painted(library):
-    return library.reconstruct(FEW, colors=library_clouds.paint(FEW), **FAST)
-
-
-def test_ply_is_what_pymeshlab_writes(painted, meshes, tmp_path):
-    painted.save(tmp_path / "mesh.ply")
-    meshes.add_mesh(painted.to_pymeshlab())
-    meshes.save_current_mesh(str(tmp_path / "theirs.ply"), save_vertex_quality=True)
-    theirs = (tmp_path / "theirs.ply").read_bytes().replace(b"comment VCGLIB generated\n", b"")
-    assert (tmp_path / "mesh.ply").read_bytes() == theirs
-
-
-@pytest.mark.parametrize("ending", ["ply", "obj"])
-def test_files_hold_the_mesh(painted, meshes, tmp_path, ending):
-    painted.save(tmp_path / f"mesh.{ending}")
-    meshes.load_new_mesh(str(tmp_path / f"mesh.{ending}"))
-    layer = meshes.current_mesh()
-    assert np.array_equal(layer.vertex_matrix(), painted.vertices) and np.array_equal(layer.face_matrix(), painted.faces)
-    assert np.array_equal(np.rint(layer.vertex_color_matrix()[:, :3] * 255), painted.colors)
-    assert ending == "obj" or np.array_equal(layer.vertex_scalar_array(), painted.quality)
-
-
-def test_other_endings_are_refused(painted, tmp_path):
-    with pytest.raises(ValueError, match="must end in .ply or .obj"):
-        painted.save(tmp_path / "mesh.stl")
-
-
-def test_trimesh_gets_the_mesh(painted):
-    pytest.importorskip("trimesh")  # not among the requirements of the tests; installs.py has it
-    mesh = painted.to_trimesh()
-    assert np.array_equal(mesh.vertices, painted.vertices) and np.array_equal(mesh.faces, painted.faces)
-    assert mesh.is_watertight and mesh.volume > 0
-    assert np.array_equal(mesh.visual.vertex_colors[:, :3], painted.colors)
-    assert np.array_equal(mesh.vertex_attributes["quality"], painted.quality)
-
-
-def test_meshes_of_other_modules_are_taken(library, painted):
-    expected = library.counters(painted, FEW).quality
-    for mesh in (types.SimpleNamespace(vertices=painted.vertices, faces=painted.faces.astype(np.int64)),  # as trimesh's
-                 types.SimpleNamespace(vertices=painted.vertices, triangles=painted.faces)):  # as Open3D's
-        assert np.array_equal(library.counters(mesh, FEW).quality, expected)
-
-
-# --- C, and what the library exports ---------------------------------------------------------------------------------
-
-
-def example_in_c(build, *words, points):
-    text = "".join(" ".join(map(repr, map(float, point))) + "\n" for point in points)
-    return subprocess.run([str(build / "tests/c_example"), *words], input=text, capture_output=True, text=True,
-                          check=False)
-
-
-def test_the_example_in_c_makes_a_mesh(build, tmp_path):
-    done = example_in_c(build, "150", points=BALL)
-    assert done.returncode == 0 and "vertices=150 faces=296 " in done.stderr, done.stderr
-    (tmp_path / "mesh.obj").write_text(done.stdout)
-    found = meshlabserver.check_mesh(build, tmp_path / "mesh.obj")
-    assert found["vertices"] == 150 and found["watertight"] and found["oriented"]
-
-
-def test_the_example_in_c_shows_the_sentence_of_an_error(build):
-    done = example_in_c(build, "150", points=BALL[:3])
-    assert done.returncode == 1 and done.stderr.splitlines()[-1].endswith("a surface needs at least 4.")
-    done = example_in_c(build, "1", points=BALL)
-    assert done.returncode == 1 and "is 1: choose a value from 4 to" in done.stderr
-
-
-def test_wrong_calls_have_a_status_and_a_sentence(library):
-    """Of C, which the Python package never makes."""
-    from neural_mesh.library import _Array, _CallBack
-    from neural_mesh.library import library as loaded
-    c, no_progress, wrong_call = loaded(), _CallBack(), 4
-    assert re.fullmatch(rb"\d+\.\d+\.\d+", c.neural_mesh_version()) and c.neural_mesh_error(None) == b"There is no task."
-    assert c.neural_mesh_new(7) is None and not c.neural_mesh_parameters(7, ctypes.c_size_t())
-    assert c.neural_mesh_set(None, b"surface", 1) == c.neural_mesh_run(None, no_progress, None, None) == wrong_call
-    c.neural_mesh_free(None)
-    c.neural_mesh_free_result(None)
-    task = c.neural_mesh_new(0)
-    for call, words in ((lambda: c.neural_mesh_set(task, None, 1), b"name of the parameter is missing."),
-                        (lambda: c.neural_mesh_set_points(task, _Array(None, 3, 1, 24, 8)), b"has rows, but no data."),
-                        (lambda: c.neural_mesh_set_points(task, _Array(None, 0, 2, 24, 8)), b"is none of those allowed."),
-                        (lambda: c.neural_mesh_run(task, no_progress, None, None), b"no place for the result.")):
-        assert call() == wrong_call and c.neural_mesh_error(task).endswith(words)
-    assert c.neural_mesh_set(task, b"surface", 1) == 0 and c.neural_mesh_error(task) == b""
-    c.neural_mesh_free(task)
-
-
-def test_only_functions_of_the_header_are_exported(build):
-    names = subprocess.run(["nm", "-D", "--defined-only", str(build / LIBRARY)], check=True, stdout=subprocess.PIPE,
-                           text=True).stdout
-    exported = set(re.findall(r" T (\w+)@@NEURAL_MESH_1$", names, re.MULTILINE))
-    header = (library_clouds.RECORD.parents[2] / "vcg_core/c_api/neural_mesh.h").read_text()
-    assert exported == set(re.findall(r"^NEURAL_MESH_API .*?\b(neural_mesh_\w+)\(", header, re.MULTILINE))
-    assert len(names.splitlines()) == len(exported) + 1  # and the version's name
 
 
 WITHOUT_PYMESHLAB = """

@@ -11,7 +11,6 @@ import subprocess
 import sys
 
 import numpy as np
-import psutil
 import pytest
 from conftest import FULL, write_points
 from stream_clouds import FILES, ORIGIN, POINTS, ascii_ply, bench, e57, las, ply
@@ -20,9 +19,10 @@ from stream_clouds import FILES, ORIGIN, POINTS, ascii_ply, bench, e57, las, ply
 @pytest.fixture(scope="module")
 def stream(site):
     """stream(word...) -> the finished process of the command."""
-    def run(*words, **options):
+    def run(*words, modules=(), **options):
+        path = os.pathsep.join(map(str, (site, *modules)))
         return subprocess.run([sys.executable, "-m", "neural_mesh", "stream", *map(str, words)], text=True, check=False,
-                              capture_output=True, env=dict(os.environ, PYTHONPATH=str(site)), **options)
+                              capture_output=True, env=dict(os.environ, PYTHONPATH=path), **options)
     return run
 
 
@@ -68,7 +68,7 @@ def test_memory_stays_within_the_option_and_distances_are_those_of_the_whole_clo
     assert found["diagonal"] == pytest.approx(meshes.current_mesh().bounding_box().diagonal(), rel=1e-5)
 
 
-def test_the_same_bytes_whatever_the_processes(stream, tmp_path):
+def test_the_same_bytes_whatever_the_threads(stream, tmp_path):
     cloud = write_points(tmp_path / "cloud.ply", bench.surface(100_000, 1))
     files, distances = set(), set()
     for number, words in enumerate((["threads=1"], ["threads=2"])):
@@ -102,6 +102,14 @@ def test_points_that_are_not_finite_are_counted(stream, tmp_path):
     assert results(done)["skipped"] == 502 and results(done)["points"] == 5000
     assert "502 of them are left out: they are not finite." in done.stdout
     assert "all 4,498 points" in done.stdout and not done.stderr
+
+
+def test_pymeshlab_is_not_needed(stream, tmp_path):
+    (tmp_path / "modules").mkdir()
+    (tmp_path / "modules/pymeshlab.py").write_text("raise ImportError('no pymeshlab')\n")
+    cloud = write_points(tmp_path / "cloud.ply", bench.surface(3000, 1))
+    found = results(stream(cloud, tmp_path / "mesh.ply", "target_vertices=100", modules=[tmp_path / "modules"]))
+    assert 0 < found["points_rms"] < found["points_maximum"] < found["diagonal"]
 
 
 # Bad input
@@ -182,23 +190,6 @@ def test_memory_that_is_named_as_needed_is_enough(stream, small, tmp_path):
     asked = error_of(stream(small, tmp_path / "mesh.ply", "--memory", "100MB", "target_vertices=400"), 2)
     enough = re.search(r"need ([\d.]+ GB)", asked)[1].replace(" ", "")
     assert results(stream(small, tmp_path / "mesh.ply", "--memory", enough, "target_vertices=400"))["vertices"] == 400
-
-
-@FULL
-def test_processes_that_measure_end_with_a_killed_command(site, tmp_path):
-    cloud = tmp_path / "cloud.ply"
-    bench.write_cloud(cloud, 2_000_000)
-    command = psutil.Popen([sys.executable, "-m", "neural_mesh", "stream", str(cloud), str(tmp_path / "mesh.ply"),
-                            "target_vertices=200"], stdout=subprocess.PIPE, text=True,
-                           env=dict(os.environ, PYTHONPATH=str(site)))
-    while "Learned" not in command.stdout.readline():
-        assert command.poll() is None
-    while len(command.children()) < 2:  # one is multiprocessing's own, which ends by itself
-        assert command.poll() is None
-    children = command.children()
-    command.kill()
-    command.communicate()
-    assert not psutil.wait_procs(children, timeout=10)[1]
 
 
 @FULL

@@ -38,11 +38,6 @@ std::array<double, 3> coordinates(const neural_mesh_array& array, std::size_t ro
             static_cast<double>(value_in<float>(array, row, 2))};
 }
 
-vcg::Point3d point(const neural_mesh_array& array, std::size_t row) {
-    const auto [x, y, z] = coordinates(array, row);
-    return {x, y, z};
-}
-
 Color color(const neural_mesh_array& array, std::size_t row) {
     return {value_in<unsigned char>(array, row, 0), value_in<unsigned char>(array, row, 1),
             value_in<unsigned char>(array, row, 2)};
@@ -114,6 +109,11 @@ neural_mesh_array checked(const neural_mesh_array* given, const char* name,
     if (given->data == nullptr && given->rows > 0)
         throw CallError(std::string("The array of ") + name + " has rows, but no data.");
     return *given;
+}
+
+vcg::Point3d point(const neural_mesh_array& array, std::size_t row) {
+    const auto [x, y, z] = coordinates(array, row);
+    return {x, y, z};
 }
 
 TargetSpace target_space_of(const Cloud& cloud, const Settings& settings) {

@@ -4,6 +4,9 @@
 // The caller's arrays as what the core learns.
 #pragma once
 
+#include <vcg/space/point3.h>
+
+#include <cstddef>
 #include <initializer_list>
 
 #include "vcg_core/base/error.h"
@@ -23,6 +26,9 @@ public:
 /// A copy of \p given, or an array without rows for null. \param name what the sentence calls it \throws
 /// CallError if its data are missing, or its type is none of \p types
 neural_mesh_array checked(const neural_mesh_array* given, const char* name, std::initializer_list<int> types);
+
+/// A row of an array of floats or doubles.
+vcg::Point3d point(const neural_mesh_array& array, std::size_t row);
 
 /// A cloud, or the faces between its points. Its arrays are checked(); those without rows were not given.
 struct Cloud {

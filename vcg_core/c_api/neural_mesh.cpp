@@ -13,7 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "vcg_core/base/thread_team.h"
 #include "vcg_core/c_api/arrays.h"
+#include "vcg_core/c_api/distance_search.h"
 #include "vcg_core/mesh_counters.h"
 #include "vcg_core/reconstruct.h"
 #include "vcg_core/run_figures.h"
@@ -29,6 +31,7 @@ struct neural_mesh_task {
     Settings settings;
     c_api::Cloud cloud;
     neural_mesh_array mesh_positions{}, mesh_faces{};
+    std::unique_ptr<c_api::DistanceSearch> search;  ///< of the given mesh, once distances were asked for
     std::string sentence;
     const char* error = "";  ///< sentence, or a constant if there is no memory for one
 };
@@ -328,6 +331,7 @@ int neural_mesh_set_mesh(neural_mesh_task* task, const neural_mesh_array* positi
         const neural_mesh_array corners = checked(faces, "faces", {NEURAL_MESH_INT32, NEURAL_MESH_INT64});
         task->mesh_positions = checked(positions, "positions", {NEURAL_MESH_FLOAT, NEURAL_MESH_DOUBLE});
         task->mesh_faces = corners;
+        task->search.reset();
     });
 }
 
@@ -340,6 +344,18 @@ int neural_mesh_run(neural_mesh_task* task, neural_mesh_progress progress, void*
         auto made = std::make_unique<StoredResult>();
         (task->kind == NEURAL_MESH_COUNTERS ? count_mesh : reconstruct_cloud)(*task, reports, *made);
         *result = made.release();
+    });
+}
+
+int neural_mesh_distances(neural_mesh_task* task, const neural_mesh_array* points, double* distances) {
+    return guarded(task, [&] {
+        const neural_mesh_array given = checked(points, "points", {NEURAL_MESH_FLOAT, NEURAL_MESH_DOUBLE});
+        if (distances == nullptr) throw CallError("There is no place for the distances.");
+        ThreadTeam team(thread_count(task->settings.threads));
+        if (task->search == nullptr)
+            task->search = std::make_unique<c_api::DistanceSearch>(
+                c_api::indexed_mesh_of(task->mesh_positions, task->mesh_faces), team);
+        task->search->measure(given, team, distances);
     });
 }
 

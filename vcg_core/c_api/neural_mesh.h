@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Copyright the Neural Mesh authors */
 
-/* The core as a shared library for C, and its manual: a triangle mesh learned from a point cloud, and the
-   counters of a given mesh. Plain C (C89), without C++ in the interface, so that any language can call it.
+/* The core as a shared library for C, and its manual: a triangle mesh learned from a point cloud, the
+   counters of a given mesh, and the distances of points from it. Plain C (C89), without C++ in the interface,
+   so that any language can call it.
 
    An example
    ----------
@@ -233,6 +234,18 @@ NEURAL_MESH_API int neural_mesh_run(neural_mesh_task* task, neural_mesh_progress
 
 /* NULL is allowed. */
 NEURAL_MESH_API void neural_mesh_free_result(const neural_mesh_result* result);
+
+/* Writes the distance of each of \p points, float or double, from the nearest face of the mesh that
+   neural_mesh_set_mesh() has given; NaN if its coordinates are not finite. Of the parameters "threads" alone
+   counts. The faces may be any triangles. \p distances has a value for each row, in the unit of the
+   coordinates. The points may have any distance, and the mesh any place: the nearest face is found in single
+   precision relative to the mesh, the distance from it is computed in double.
+
+   Cost: the first call for a mesh copies and sorts it, for a million vertices in a second and to 270 MB; its
+   arrays may be freed then. On one thread a million points take .3 s for 10,000 vertices, 2 s for a million,
+   and up to 30 MB meanwhile. */
+NEURAL_MESH_API int neural_mesh_distances(neural_mesh_task* task, const neural_mesh_array* points,
+                                          double* distances);
 
 #ifdef __cplusplus
 }

@@ -39,6 +39,10 @@ class _Array(ctypes.Structure):
                 ("value_step", c_ssize_t)]
 
 
+def _described(array: np.ndarray) -> _Array:
+    return _Array(array.ctypes.data, len(array), TYPES[array.dtype], *array.strides)
+
+
 class _Parameter(ctypes.Structure):
     _fields_ = [("name", c_char_p), ("label", c_char_p), ("help", c_char_p), ("kind", c_int), ("low", c_double),
                 ("high", c_double), ("value", c_double), ("choices", c_size_t), ("choice", POINTER(c_char_p))]
@@ -137,7 +141,8 @@ def library() -> ctypes.CDLL:
             ("set_colors", c_int, (c_void_p, POINTER(_Array))), ("set_normals", c_int, (c_void_p, POINTER(_Array))),
             ("set_faces", c_int, (c_void_p, POINTER(_Array))),
             ("set_mesh", c_int, (c_void_p, POINTER(_Array), POINTER(_Array))),
-            ("run", c_int, (c_void_p, _CallBack, c_void_p, POINTER(c_void_p))), ("free_result", None, (c_void_p,))):
+            ("run", c_int, (c_void_p, _CallBack, c_void_p, POINTER(c_void_p))), ("free_result", None, (c_void_p,)),
+            ("distances", c_int, (c_void_p, POINTER(_Array), c_void_p))):
         function = getattr(loaded, f"neural_mesh_{name}")
         function.restype, function.argtypes = result, arguments
     return loaded
@@ -206,7 +211,8 @@ class Task:
 
     def set_arrays(self, what: str, *arrays: np.ndarray) -> None:
         """Gives "points", "colors", "normals", "faces", or "mesh": positions and faces. Raises ValueError."""
-        self._call(f"set_{what}", *(ctypes.byref(self._described(array)) for array in arrays))
+        self._arrays += arrays
+        self._call(f"set_{what}", *(ctypes.byref(_described(array)) for array in arrays))
 
     def run(self, progress: Optional[Progress]) -> Result:
         """`progress` gets the part that is done and what is being done; if it returns False, the run ends early.
@@ -236,9 +242,11 @@ class Task:
             raise KeyboardInterrupt  # the handler of another signal has raised on the way into call_back()
         return result
 
-    def _described(self, array: np.ndarray) -> _Array:
-        self._arrays.append(array)
-        return _Array(array.ctypes.data, len(array), TYPES[array.dtype], *array.strides)
+    def distances(self, points: np.ndarray) -> np.ndarray:
+        """Of each point from the mesh that set_arrays() was given; NaN for those that are not finite. Raises ValueError."""
+        found = np.empty(len(points))
+        self._call("distances", ctypes.byref(_described(points)), found.ctypes.data)
+        return found
 
     def _call(self, name: str, *arguments: Any) -> None:
         status = getattr(library(), f"neural_mesh_{name}")(self._handle, *arguments)

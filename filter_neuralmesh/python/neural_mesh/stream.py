@@ -14,16 +14,16 @@ import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, Iterator, Optional
+from typing import Iterator, Optional
 
 import numpy as np
 
-from neural_mesh import __version__, filters, reconstruct
+from neural_mesh import Mesh, reconstruct
 from neural_mesh.aside_folder import aside_folder
 from neural_mesh.averages import POINT_BYTES as AVERAGED_BYTES
 from neural_mesh.averages import Averages
 from neural_mesh.clouds import FORMATS, Cloud, CloudError, open_cloud
-from neural_mesh.distances import POINT_BYTES, VERTEX_BYTES, Unmeasured, measure
+from neural_mesh.distances import measure
 from neural_mesh.even_sample import CHUNK_BYTES, HOLD_BYTES, EvenSample
 from neural_mesh.files import NotWhole, save
 from neural_mesh.mesh_writers import WRITERS
@@ -38,7 +38,9 @@ PROCESS = 120e6  # Python with numpy and pymeshlab
 LEARNED_POINT = 220
 LEARNED_VERTEX = 1500
 SAVED_VERTEX = 200  # of a file, with its two faces
-CHUNK, SMALL_CHUNK = 500_000, 50_000  # points; in smaller ones pymeshlab's grid takes longer than the distances
+MEASURED_VERTEX = 600  # the mesh and the tree of its faces: 330 with a million vertices
+CHUNK, SMALL_CHUNK = 500_000, 50_000  # points; smaller ones would save less than 10 MB
+CHUNKS_SHARE = 15  # one of so many parts of the memory is for a chunk, the others are for the sample
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -46,8 +48,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("mesh", type=Path, help=f"the file to write: {' '.join(WRITERS)}")
     parser.add_argument("settings", nargs="*", metavar="name=value", help="parameters of the filter, such as "
                         "target_vertices=100000")
-    parser.add_argument("--memory", type=memory_size, default="2GB", metavar="SIZE", help="what all processes together "
-                        "may take, such as 500MB or 16GB; default: %(default)s")
+    parser.add_argument("--memory", type=memory_size, default="2GB", metavar="SIZE", help="what the command may take, "
+                        "such as 500MB or 16GB; default: %(default)s")
 
 
 def run(given: argparse.Namespace) -> int:
@@ -61,13 +63,12 @@ def run(given: argparse.Namespace) -> int:
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C: removes what is written aside
     try:
         cloud = open_cloud(given.cloud)
-        processors = values["threads"] or len(os.sched_getaffinity(0))
-        plan = plan_for(given.memory, values["target_vertices"], cloud.count, processors)
+        plan = plan_for(given.memory, values["target_vertices"], cloud.count)
         with _folder_beside(given.mesh) as folder:
             check_space(given.mesh.parent, plan.file_bytes(), "The mesh")
             print(plan.sentence(), flush=True)
-            _Stream(cloud, plan, folder).run(settings, given.mesh)
-    except (CloudError, NotWhole, Unmeasured, ValueError) as error:
+            _Stream(cloud, plan, folder, values["threads"]).run(settings, given.mesh)
+    except (CloudError, NotWhole, ValueError) as error:
         sentence = str(error)
     except OSError as error:
         sentence = f"{error.filename or given.mesh} cannot be written: {error.strerror}."
@@ -81,13 +82,12 @@ def run(given: argparse.Namespace) -> int:
 
 @dataclass
 class Plan:
-    """What is held at a time, in points, and by how many processes."""
+    """What is held at a time, in points."""
 
     target: int
     sample: int
     held: int
     chunk: int
-    workers: int
     memory: float
 
     def reading_bytes(self) -> float:
@@ -100,8 +100,7 @@ class Plan:
         return PROCESS + LEARNED_POINT * self.sample + LEARNED_VERTEX * self.target
 
     def measuring_bytes(self) -> float:
-        worker = PROCESS + VERTEX_BYTES * self.target + POINT_BYTES * self.chunk
-        return PROCESS + CHUNK_BYTES * self.chunk + self.workers * worker
+        return PROCESS + MEASURED_VERTEX * self.target + CHUNK_BYTES * self.chunk
 
     def file_bytes(self) -> float:
         return SAVED_VERTEX * self.target
@@ -112,24 +111,21 @@ class Plan:
     def sentence(self) -> str:
         return (f"This will take up to {gigabytes(self.bytes())} of the {gigabytes(self.memory)} allowed: a sample of "
                 f"about {self.sample:,} points ({self.sample / self.target:.0f} per vertex), chunks of {self.chunk:,} "
-                f"points, {self.workers} process{'es' * (self.workers > 1)} for distances.")
+                "points.")
 
 
-def plan_for(memory: float, target: int, count: Optional[int], processors: int) -> Plan:
-    """The largest sample and the most processes that memory allows. `count`: of the cloud's points, None if not known.
-    Throws WrongUsage if memory is too small for the vertices."""
-    smallest = Plan(target, 0, 0, 0, 1, memory)
-    chunk = int(min(max((memory - smallest.measuring_bytes()) / 2000, SMALL_CHUNK), CHUNK))
+def plan_for(memory: float, target: int, count: Optional[int]) -> Plan:
+    """The largest sample that memory allows. `count`: of the cloud's points, None if not known. Throws WrongUsage if memory
+    is too small for the vertices."""
+    chunk = int(min(max((memory - PROCESS) / (CHUNKS_SHARE * CHUNK_BYTES), SMALL_CHUNK), CHUNK))
     known = float("inf") if count is None else count
     learnable = (memory - PROCESS - LEARNED_VERTEX * target) / LEARNED_POINT
     holdable = (memory - PROCESS - CHUNK_BYTES * chunk) / HOLD_BYTES
     sample = int(min(PER_VERTEX * target, known, learnable, holdable))
-    plan = Plan(target, sample, int(min(HELD * max(sample, 1), known, holdable)), chunk, processors, memory)
-    while plan.workers > 1 and plan.measuring_bytes() > memory:
-        plan.workers -= 1
+    plan = Plan(target, sample, int(min(HELD * max(sample, 1), known, holdable)), chunk, memory)
     fewest = int(min(FEWEST_PER_VERTEX * target, known))
     if sample < fewest or plan.measuring_bytes() > memory:
-        least = Plan(target, fewest, fewest, SMALL_CHUNK, 1, 0)
+        least = Plan(target, fewest, fewest, SMALL_CHUNK, 0)
         raise WrongUsage(f"{target:,} vertices need {gigabytes(least.bytes() * 1.01)} of memory, and "
                          f"{gigabytes(memory)} are allowed: give a larger --memory or a smaller target_vertices.")
     return plan
@@ -149,10 +145,10 @@ def _folder_beside(mesh: Path) -> Iterator[Path]:
 
 
 class _Stream:
-    """The two passes over a cloud, and learning between them."""
+    """The passes over a cloud, and learning between them."""
 
-    def __init__(self, cloud: Cloud, plan: Plan, folder: Path) -> None:
-        self._cloud, self._plan, self._folder = cloud, plan, folder
+    def __init__(self, cloud: Cloud, plan: Plan, folder: Path, threads: int) -> None:
+        self._cloud, self._plan, self._folder, self._threads = cloud, plan, folder, threads
         self._started = time.monotonic()
 
     def run(self, settings: Settings, out: Path) -> None:
@@ -160,14 +156,10 @@ class _Stream:
         sample = self._read()
         diagonal = float(np.linalg.norm(sample.high - sample.low))
         points = self._points_of(sample)
-        result = {**self._learn(points, settings, out), "sample": len(points)}
+        mesh = self._learn(points, settings, out)
+        result = {**mesh.report, "sample": len(points)}
         del points
-        if lack := filters.why_not(__version__):
-            print(f"The distances of the points are not measured. {lack}")
-            print(line_of({**result, "points": sample.seen, "skipped": sample.skipped, "diagonal": diagonal}))
-            return
-        found = measure(out, self._cloud.chunks(self._plan.chunk), diagonal * 2, self._plan.workers,
-                        lambda: self._show("Measuring"))
+        found = measure(mesh, self._cloud.chunks(self._plan.chunk), self._threads, lambda: self._show("Measuring"))
         percent = 100 / diagonal if diagonal else 0
         print(f"Measured the distances of all {found.points:,} points in {self._seconds():.1f} s: RMS {found.rms:.6g} "
               f"({found.rms * percent:.4f} % of the diagonal), mean {found.mean:.6g} ({found.mean * percent:.4f} %), "
@@ -200,14 +192,14 @@ class _Stream:
                   f"{self._seconds():.1f} s.", flush=True)
         return points
 
-    def _learn(self, points: np.ndarray, settings: Settings, out: Path) -> Dict[str, Any]:
-        """Learns from the sample, writes the mesh, returns the results of the run."""
+    def _learn(self, points: np.ndarray, settings: Settings, out: Path) -> Mesh:
+        """Learns from the sample and writes the mesh."""
         mesh = reconstruct(points, **settings)
         aside = self._folder / out.name
         save(mesh, aside)
         os.replace(aside, out)
         print(f"Learned {len(mesh.vertices):,} vertices in {self._seconds():.1f} s and wrote {out}.", flush=True)
-        return mesh.report
+        return mesh
 
     def _seconds(self) -> float:
         """Since the last call. Ends the line of the progress."""
