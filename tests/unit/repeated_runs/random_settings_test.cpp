@@ -87,7 +87,9 @@ void expect_valid_result(const TargetSpace& target, const Settings& settings) {
     EXPECT_LE(mesh.report.signals, most_signals(target, settings));
     EXPECT_LE(mesh.report.vertices, settings.target_vertices);
     if (mesh.report.stop_reason == StopReason::target_reached) {
-        EXPECT_EQ(mesh.report.vertices, settings.target_vertices);
+        if (settings.target_error == 0) {
+            EXPECT_EQ(mesh.report.vertices, settings.target_vertices);
+        }
     } else if (mesh.report.stop_reason == StopReason::converged) {
         EXPECT_GT(settings.stop_below_mean_counter, 0);
     } else {
@@ -136,6 +138,8 @@ Settings random_settings(Random& random) {
         info.store(settings, value);
     }
     settings.target_vertices = static_cast<int>(log_uniform(random, 4, 400));
+    // Random errors are mostly so large that a tetrahedron has them.
+    if (random.below(4) != 0) settings.target_error = 0;
     if (random.below(4) != 0)
         settings.settling_signals_per_vertex = std::min(settings.settling_signals_per_vertex, 100);
     // More would only make the run slow.
@@ -192,7 +196,7 @@ TEST(RandomSettings, GiveValidResultsOnRandomClouds) {
     const int runs = environment::number_of("NEURALMESH_RANDOM_RUNS", environment::full() ? 40 : 12, 1);
     const int first = environment::number_of("NEURALMESH_RANDOM_FIRST", 0, 0);
     if (HasFailure()) return;
-    int learned = 0;
+    int learned = 0, scattered = 0;
     for (int i = first; i < first + runs; ++i) {
         // Each has its own generator, so that a new parameter leaves the clouds as they are.
         Random random(static_cast<std::uint64_t>(i) + 1000),
@@ -204,8 +208,10 @@ TEST(RandomSettings, GiveValidResultsOnRandomClouds) {
             expect_valid_result(target, settings);
             ++learned;
         } catch (const InputError& error) {
-            // The points lie on a line, or too few are distinct.
-            EXPECT_EQ(std::string(error.what()).back(), '.') << error.what();
+            // The points lie on a line, too few are distinct, or they fill a ball.
+            const std::string sentence = error.what();
+            EXPECT_EQ(sentence.back(), '.') << sentence;
+            scattered += sentence.find("scattered in space") != std::string::npos ? 1 : 0;
         } catch (const SettingError& error) {
             // An open surface with its handles and boundaries needs some vertices to begin with.
             EXPECT_NE(std::string(error.what()).find("raise target_vertices"), std::string::npos)
@@ -214,7 +220,8 @@ TEST(RandomSettings, GiveValidResultsOnRandomClouds) {
         }
         if (HasFailure()) break;
     }
-    EXPECT_GE(learned, runs * 8 / 10);
+    EXPECT_GE(learned + scattered, runs * 8 / 10);  // a fifth of the clouds fill a ball
+    EXPECT_GE(learned, runs * 6 / 10);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "tests/unit/support/environment.h"
 #include "tests/unit/support/soundness.h"
 #include "tests/unit/support/targets.h"
 #include "vcg_core/learn_to_error.h"
@@ -47,7 +48,7 @@ double error_of_sphere(const NeuralMesh& mesh) {
 
 TEST(TargetError, IsReachedWithoutAndWithNoise) {
     for (const double noise : {0.0, 0.01})
-        for (const double error : {0.01, 0.004}) {
+        for (const double error : environment::in_tiers<double>({0.01}, {0.004})) {
             const NeuralMesh mesh =
                 learn(targets::target_of(shapes::sphere_cloud(20000, noise)), settings_for(error));
             EXPECT_LE(mesh.report.held_out_error, 1.03 * error) << noise;
@@ -61,7 +62,7 @@ TEST(TargetError, IsReachedWithoutAndWithNoise) {
 }
 
 TEST(TargetError, IsThatOfFacesToo) {
-    const NeuralMesh mesh = learn(targets::target_of(shapes::icosphere(4)), settings_for(0.01));
+    const NeuralMesh mesh = learn(targets::target_of(shapes::icosphere(4)), settings_for(0.01, 300));
     EXPECT_LE(mesh.report.held_out_error, 0.0103);
     EXPECT_TRUE(soundness::has_note(mesh, "as target_error asks for"));
 }
