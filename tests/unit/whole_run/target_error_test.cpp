@@ -47,7 +47,7 @@ double error_of_sphere(const NeuralMesh& mesh) {
 }
 
 TEST(TargetError, IsReachedWithoutAndWithNoise) {
-    for (const double noise : {0.0, 0.01})
+    for (const double noise : environment::in_tiers<double>({0.01}, {0}))
         for (const double error : environment::in_tiers<double>({0.01}, {0.004})) {
             const NeuralMesh mesh =
                 learn(targets::target_of(shapes::sphere_cloud(20000, noise)), settings_for(error));
