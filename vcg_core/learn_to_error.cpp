@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <locale>
+#include <map>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -16,8 +16,9 @@
 
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/median.h"
+#include "vcg_core/base/text.h"
 #include "vcg_core/error_search.h"
-#include "vcg_core/mesh/face_tree.h"
+#include "vcg_core/fit/rms_error.h"
 #include "vcg_core/target/surface_survey.h"
 
 namespace neuralmesh {
@@ -52,10 +53,8 @@ public:
         std::vector<Point3f> positions;
         for (const vcg::Point3d& p : mesh.positions) positions.push_back(given_.frame().inside(p));
         const Network network(positions, mesh.faces);
-        double sum = 0;
-        for (const Hit& hit : FaceTree(Surface(network), team_).nearest(held_out_, team_))
-            sum += static_cast<double>(hit.foot.squared_distance);
-        const double squared = sum / static_cast<double>(held_out_.size()) - squared_noise_;
+        const double distance = rms_distance(held_out_, {}, network, team_);
+        const double squared = distance * distance - squared_noise_;
         return std::sqrt(std::max(squared, kUnknownShare * squared_noise_)) * given_.frame().diagonal;
     }
 
@@ -104,9 +103,7 @@ private:
 };
 
 std::string number(double value) {
-    std::ostringstream text;
-    text.imbue(std::locale::classic());
-    text.precision(3);
+    std::ostringstream text = stream_with(3);
     text << value;
     return text.str();
 }
@@ -143,7 +140,7 @@ NeuralMesh learn_to_error(const TargetSpace& given, const Settings& settings, Pr
     if (examination.held_out() == 0) return learn(given, trial, progress);
     MonotoneProgress monotone(progress);
     ErrorSearch search(settings.target_error, kLeast, settings.target_vertices);
-    std::vector<std::pair<int, NeuralMesh>> meshes;
+    std::map<int, NeuralMesh> meshes;  // by vertices asked for
     double done = 0;
     while ((trial.target_vertices = search.next()) != 0) {
         PartOf part(monotone, done, done + kShare * (1 - done));
@@ -152,16 +149,13 @@ NeuralMesh learn_to_error(const TargetSpace& given, const Settings& settings, Pr
             NeuralMesh mesh = learn(examination.learned(), trial, part);
             if (monotone.stopped()) return mesh;
             search.add(trial.target_vertices, examination.error_of(mesh));
-            meshes.emplace_back(trial.target_vertices, std::move(mesh));
+            meshes.emplace(trial.target_vertices, std::move(mesh));
         } catch (const SettingError&) {  // too few for the components and handles
             if (trial.target_vertices == settings.target_vertices) throw;
             search.too_few(trial.target_vertices);
         }
     }
-    const int vertices = search.best().vertices;
-    NeuralMesh mesh = std::move(std::find_if(meshes.begin(), meshes.end(), [&](const auto& each) {
-                                    return each.first == vertices;
-                                })->second);
+    NeuralMesh mesh = std::move(meshes.at(search.best().vertices));
     report(search, settings, examination, mesh.report);
     return mesh;
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <locale>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -196,9 +195,7 @@ constexpr const char* kOneSheet = "They were learned as one sheet.";
 void warn_of_thin_walls(LearningTask& task, const LayerFigures& layers, const char* outcome) {
     if (!layers.two || layers.thickness > kToldSpacings * layers.spacing) return;
     const double diagonal = task.target().frame().diagonal;
-    std::ostringstream text;
-    text.imbue(std::locale::classic());
-    text.precision(2);
+    std::ostringstream text = stream_with(2);
     text
         << "The points lie on the two sides of walls about " << layers.thickness * diagonal
         << " thick, which cannot be told apart: the points of each side are about "

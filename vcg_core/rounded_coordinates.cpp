@@ -5,11 +5,11 @@
 
 #include <cmath>
 #include <cstddef>
-#include <locale>
 #include <sstream>
 
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/even_mesh.h"
+#include "vcg_core/base/text.h"
 #include "vcg_core/target/float_steps.h"
 
 namespace neuralmesh {
@@ -39,9 +39,7 @@ Rounding rounding_of(const TargetSpace& target) {
 }
 
 std::ostringstream sentence_on(const Rounding& rounding) {
-    std::ostringstream text;
-    text.imbue(std::locale::classic());
-    text.precision(6);
+    std::ostringstream text = stream_with(6);
     text << "Single precision has rounded the coordinates to steps of " << rounding.step << ", and ";
     text.precision(2);
     return text;

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <locale>
 #include <sstream>
 
 #include "vcg_core/base/error.h"
+#include "vcg_core/base/text.h"
 
 namespace neuralmesh {
 
@@ -304,9 +304,7 @@ void Settings::check(const std::vector<SettingInfo>& table) const {
     for (const SettingInfo& info : table) {
         const double value = info.value(*this);
         if (value >= info.low && value <= info.high) continue;
-        std::ostringstream text;
-        text.imbue(std::locale::classic());
-        text.precision(10);
+        std::ostringstream text = stream_with(10);
         text << "The parameter " << info.id << " (" << info.label << ") is " << value
              << ": choose a value from " << info.low << " to " << info.high << '.';
         throw SettingError(text.str());

@@ -7,9 +7,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <locale>
+#include <sstream>
 #include <string>
 
 namespace neuralmesh {
+
+/// An empty stream that writes numbers with \p digits significant digits.
+inline std::ostringstream stream_with(int digits) {
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text.precision(digits);
+    return text;
+}
 
 /// \p share as a percentage with one decimal: "3.4 %". \pre share >= 0
 inline std::string percent(double share) {

@@ -4,8 +4,6 @@
 #include "vcg_core/c_api/neural_mesh.h"
 
 #include <cmath>
-#include <iomanip>
-#include <locale>
 #include <memory>
 #include <new>
 #include <sstream>
@@ -13,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "vcg_core/base/text.h"
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/c_api/arrays.h"
 #include "vcg_core/c_api/distance_search.h"
@@ -109,9 +108,8 @@ bool has_kind(const SettingInfo& info, double value) {
 void set_parameter(neural_mesh_task& task, const std::string& name, double value) {
     const SettingInfo& info = row_of(name, task.kind);
     if (!has_kind(info, value)) {
-        std::ostringstream text;
-        text.imbue(std::locale::classic());
-        text << std::setprecision(12) << "The parameter " << name << " (" << info.label << ") is " << value
+        std::ostringstream text = stream_with(12);
+        text << "The parameter " << name << " (" << info.label << ") is " << value
              << ": give a whole number from " << info.low << " to " << info.high << '.';
         throw SettingError(text.str());
     }

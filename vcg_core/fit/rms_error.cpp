@@ -17,20 +17,27 @@ double rms_distance(const TargetSpace& target, const Network& network, int sampl
     const auto count = static_cast<std::size_t>(samples);
     const bool all = !target.is_exact() && positions.size() <= count;
     std::vector<Vector3> points;
+    std::vector<float> weights;
     points.reserve(all ? positions.size() : count);
     if (all) {
         for (const vcg::Point3f& p : positions) points.push_back(to_eigen(p));
+        for (std::size_t i = 0; i < positions.size(); ++i) weights.push_back(target.weight(i));
     } else {
         while (points.size() < count) points.push_back(to_eigen(target.sample(random)));
     }
+    return rms_distance(points, weights, network, team);
+}
+
+double rms_distance(const std::vector<Vector3>& points, const std::vector<float>& weights,
+                    const Network& network, ThreadTeam& team) {
     const std::vector<Hit> hits = FaceTree(Surface(network), team).nearest(points, team);
-    double sum = 0, weights = 0;
+    double sum = 0, all = 0;
     for (std::size_t i = 0; i < hits.size(); ++i) {
-        const double weight = all ? static_cast<double>(target.weight(i)) : 1;
+        const double weight = weights.empty() ? 1 : static_cast<double>(weights[i]);
         sum += weight * static_cast<double>(hits[i].foot.squared_distance);
-        weights += weight;
+        all += weight;
     }
-    return std::sqrt(sum / weights);
+    return std::sqrt(sum / all);
 }
 
 }  // namespace neuralmesh

@@ -4,9 +4,12 @@
 // The distance of the target from the learned surface.
 #pragma once
 
+#include <vector>
+
 #include "vcg_core/base/random.h"
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/mesh/network.h"
+#include "vcg_core/mesh/triangle.h"
 #include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
@@ -17,5 +20,10 @@ namespace neuralmesh {
 /// samples) log faces) expected. \pre \p network has a face; samples > 0
 double rms_distance(const TargetSpace& target, const Network& network, int samples, Random& random,
                     ThreadTeam& team);
+
+/// The same of \p points, in the frame of \p network, by \p weights; empty: all weigh as much. O((faces +
+/// points) log faces) expected. \pre \p network has a face; there are points
+double rms_distance(const std::vector<Vector3>& points, const std::vector<float>& weights,
+                    const Network& network, ThreadTeam& team);
 
 }  // namespace neuralmesh

@@ -4,7 +4,6 @@
 #include "vcg_core/shell/open_start.h"
 
 #include <algorithm>
-#include <locale>
 #include <numeric>
 #include <optional>
 #include <sstream>
@@ -304,9 +303,7 @@ void warn_of_cuts(const TargetSpace& target, const std::vector<Point3f>& contrad
                                               return (a - middle).SquaredNorm() < (b - middle).SquaredNorm();
                                           });
     const vcg::Point3d where = target.frame().outside(*nearest);
-    std::ostringstream text;
-    text.imbue(std::locale::classic());
-    text.precision(6);
+    std::ostringstream text = stream_with(6);
     text << "The surface has places where its two sides cannot be told apart, as on a Moebius strip: it was "
             "cut there, near ("
          << where[0] << ", " << where[1] << ", " << where[2] << ").";

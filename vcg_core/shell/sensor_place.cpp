@@ -66,7 +66,7 @@ std::vector<Sample> samples_of(const NearestPoints& cloud, const std::vector<Sur
     return samples;
 }
 
-double mean_deviation(std::vector<double>& values) {
+double mean_deviation(const std::vector<double>& values) {
     const double middle = median(values);
     double sum = 0;
     for (const double v : values) sum += std::abs(v - middle);
