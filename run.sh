@@ -160,7 +160,7 @@ package() {
 release() {
     need $compile_packages $demo_packages $test_packages $release_packages $venv_packages
     need_venv
-    compile all
+    compile all second_tier
     export NEURALMESH_BUILD="$here/$build"
     package
     need_checks

@@ -10,6 +10,7 @@
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/learning/learner.h"
 #include "vcg_core/mesh/simplify.h"
+#include "vcg_core/mesh/vertex_order.h"
 #include "vcg_core/plan.h"
 #include "vcg_core/thickening.h"
 
@@ -37,12 +38,17 @@ Plan plan_for(const LearningTask& task, const Settings& settings) {
     return plan_for(given);
 }
 
+/// Whether the noise of each place is known, and the fit inserts the vertices that the points do not carry.
+bool grows_by_place(const LearningTask& task, const Settings& settings) {
+    return task.noise_by_place && settings.redistributes_vertices() && task.encloses_space;
+}
+
 int share_of(int number, double share) { return std::max(1, static_cast<int>(std::lround(share * number))); }
 
 LearnerOptions learner_options(const LearningTask& task, const Settings& settings, const Plan& plan) {
     LearnerOptions options = learner_options_from(settings);
     options.grow_to = plan.grow_to;
-    if (task.noise_by_place && plan.fills_up) options.noise = &*task.noise_by_place;
+    if (grows_by_place(task, settings)) options.noise = &*task.noise_by_place;
     options.signals_per_split = share_of(options.signals_per_split, plan.growth_share);
     if (options.settling_signals_per_vertex > 0)
         options.settling_signals_per_vertex =
@@ -66,7 +72,7 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
     options.reduce_to = plan.carried;
     options.by_volume = options.precise = plan.by_volume;
     // Growth by the noise of each place may end early.
-    const bool refines = plan.carried < settings.target_vertices || (task.noise_by_place && plan.fills_up);
+    const bool refines = plan.carried < settings.target_vertices || grows_by_place(task, settings);
     options.refine_to = refines ? settings.target_vertices : 0;
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
     // error is largest at the rim, and vertices inserted there stick out.
@@ -88,9 +94,27 @@ LearnedNetwork learned_by(const Learner& learner, StopReason reason) {
     return result;
 }
 
+/// Learns only what the counters of the network are, which stays.
+LearnedNetwork observed(const LearningTask& task, const Settings& settings, Progress& progress) {
+    // In the order into which learning would bring it, so that ids stay the same.
+    Network network = task.network;
+    network.renumber(morton_order(network));
+    Learner learner(task.target(), learner_options_from(settings), network);
+    const bool finished = learner.settle(settings.settling_signals_per_vertex, progress);
+    PerVertex<vcg::Point3f> places;
+    for (const VertexId v : network.vertices()) places.push_back(network.position(v));
+    learner.move_to(places);
+    LearnedNetwork result =
+        learned_by(learner, finished ? StopReason::target_reached : StopReason::cancelled);
+    result.measures = measures_of(learner, learner.crease_measure(), result.network, {}, settings);
+    result.carried = static_cast<int>(task.given.positions().size());
+    return result;
+}
+
 }  // namespace
 
 LearnedNetwork learn_and_fit(const LearningTask& task, const Settings& settings, MonotoneProgress& progress) {
+    if (task.is_known) return observed(task, settings, progress);
     const Plan plan = plan_for(task, settings);
     PartOf learning(progress, kPrepared, settings.fit_to_points ? kLearned : 1);
     PartOf fitting(progress, kLearned, 1);

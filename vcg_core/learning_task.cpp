@@ -11,6 +11,7 @@
 
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/base/text.h"
+#include "vcg_core/few_points.h"
 #include "vcg_core/layer_normals.h"
 #include "vcg_core/open_or_closed.h"
 #include "vcg_core/plan.h"
@@ -213,9 +214,9 @@ int vertices_needed(const Start& start, const Settings& settings) {
 }
 
 /// The start mesh of one layer of a cloud that may be open, or whose shell encloses no space; nothing if its
-/// shell is the better start.
-std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& shell, const Settings& settings,
-                                        Survey& survey, Progress& progress) {
+/// shell is the better start. \p is_convex: the points lie on their convex hull.
+std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& shell, bool is_convex,
+                                        const Settings& settings, Survey& survey, Progress& progress) {
     const TargetSpace& target = task.target();
     const bool automatic = settings.surface == kAutomatic;
     try {
@@ -228,7 +229,7 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& she
         const bool fits = vertices_needed(start, settings) <= settings.target_vertices;
         if ((open && (fits || !shell.encloses_space)) || (fits && encloses_more(start, shell))) return start;
     } catch (const NoSurfaceError&) {
-        if (automatic && !shell.encloses_space) throw;
+        if (automatic && !shell.encloses_space && !is_convex) throw;
     } catch (const InputError&) {  // too few points
     }
     return {};
@@ -334,16 +335,29 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
     PartOf opening(progress, kShellMade, 1);
     const Shell shell = make_shell(task.target(), settings, survey, closing);
     const Enclosure& enclosure = shell.enclosure();
+    std::optional<ConvexSurface> convex;
+    if (!task.target().has_faces()) convex = convex_surface(task.target(), settings.target_vertices);
     const bool may_open =
         settings.surface == kAutomatic && may_be_open(enclosure, task.target(), settings, 0);
     if (may_open || !enclosure.encloses_space) {
-        std::optional<OpenStart> start = try_open_start(task, enclosure, settings, survey, opening);
+        std::optional<OpenStart> start =
+            try_open_start(task, enclosure, convex.has_value(), settings, survey, opening);
         if (start) {
             begin_open(task, std::move(*start), settings);
             return;
         }
     }
-    begin_closed(task, shell.mesh(closing), settings);
+    if (!convex) {
+        begin_closed(task, shell.mesh(closing), settings);
+        return;
+    }
+    task.cleaned = std::move(convex->target);
+    task.is_known = !convex->mesh.faces.empty();
+    if (task.is_known) {
+        task.network = Network(convex->mesh.positions, convex->mesh.faces);
+    } else {
+        begin_closed(task, make_shell(task.target(), settings, survey, closing).mesh(closing), settings);
+    }
 }
 
 }  // namespace
@@ -366,8 +380,8 @@ LearningTask prepare(const TargetSpace& given, const Settings& settings, const I
     begin(task, trusted, start, survey, progress);
     if (trusted.use_normals && settings.start_mesh == kShell && task.landing_signals > 0)
         report_normals(task.network, task.target(), task.parts_faced_by_normals, task.notes, task.warnings);
-    if (!given.has_faces()) measure_noise(task, survey, settings);
-    if (settings.even_sampling && settings.utility_counter != kSignalCount && !given.is_exact())
+    if (!task.target().has_faces()) measure_noise(task, survey, settings);
+    if (settings.even_sampling && settings.utility_counter != kSignalCount && !task.target().is_exact())
         weigh_points(task, survey);
     return task;
 }

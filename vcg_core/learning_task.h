@@ -35,6 +35,8 @@ struct LearningTask {
     int landing_signals = 0;  ///< per vertex, before growth, to bring a shell down to the points
     /// False for a sheet that is closed: its start mesh has two layers with nothing between them.
     bool encloses_space = true;
+    /// The network is the result already: the surface between points too few to learn it (few_points.h).
+    bool is_known = false;
     /// Noise of the points in mean edges of the mesh asked for (SurfaceSurvey::noise_in_edges()); 0 for
     /// layers with faces.
     double noise = 0;

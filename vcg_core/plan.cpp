@@ -10,12 +10,10 @@
 namespace neuralmesh {
 namespace {
 
-/// The fit inserts up to this many times the vertices that it finds. A number that is a slip of the pen, 20
-/// million from 500 points, would take all memory at once; learning takes its time and can be cancelled.
-constexpr std::size_t kMostPerCarried = 64;
-/// Between fewer points there is no telling how the surface bends: filled smoothly, a tetrahedron of four
-/// points would bulge by half of its size.
-constexpr std::size_t kFewestToFill = 256;
+/// Beyond a million vertices the fit inserts up to this many times those that it finds. A number that is a
+/// slip of the pen, 20 million from 500 points, would take all memory at once; learning takes its time and
+/// can be cancelled.
+constexpr std::size_t kMillion = 1000000, kMostPerCarried = 64;
 
 /// From 1 up to \p first down to 0 from \p last on.
 double falling(double x, double first, double last) {
@@ -24,12 +22,15 @@ double falling(double x, double first, double last) {
 
 double between(double low, double high, double share) { return low + share * (high - low); }
 
-/// Whether the fit inserts the vertices that the points do not carry: if it may redistribute vertices, only
-/// their number ends growth, the cloud is no sheet, and there are not too few points.
-bool fills_up(const Circumstances& given) {
-    const auto most = given.carried_by_points * kMostPerCarried;
-    return given.redistributes && given.encloses_space && !given.exact && given.points >= kFewestToFill &&
-           static_cast<std::size_t>(given.vertices) <= most && !skips("refine");
+/// All, unless the fit may redistribute vertices and only their number ends growth.
+int carried_vertices(const Circumstances& given) {
+    const auto wanted = static_cast<std::size_t>(given.vertices);
+    const bool fills_up = given.redistributes && !given.exact && !skips("refine");
+    const bool slip = wanted > kMillion && wanted / kMostPerCarried > given.carried_by_points;
+    if (!fills_up || slip) return given.vertices;
+    const std::size_t placed =
+        std::max(given.carried_by_points, static_cast<std::size_t>(given.start_vertices));
+    return static_cast<int>(std::min(placed, wanted));
 }
 
 /// How far shape may choose what goes, in [0, 1]: not on open surfaces, not of points drawn from faces, which
@@ -82,12 +83,7 @@ int usual_surplus(int vertices) {
 
 Plan plan_for(const Circumstances& given) {
     Plan plan;
-    plan.fills_up = fills_up(given);
-    const std::size_t placed =
-        std::max(given.carried_by_points, static_cast<std::size_t>(given.start_vertices));
-    plan.carried = plan.fills_up
-                       ? static_cast<int>(std::min(placed, static_cast<std::size_t>(given.vertices)))
-                       : given.vertices;
+    plan.carried = carried_vertices(given);
     plan.grow_to = std::max(plan.carried, given.start_vertices);
     if (!given.redistributes || !given.encloses_space) return plan;
     const double trust = trust_in_shape(given), calm = trust * calmness(given);
@@ -95,8 +91,8 @@ Plan plan_for(const Circumstances& given) {
     const double learned = plan.carried + surplus(given, plan.carried, trust, calm);
     const double supported = static_cast<double>(given.points) / points_per_learned(plan.carried, calm);
     // Growth removes the vertices that the landing leaves without signals, far off.
-    const int least = given.start_vertices > plan.carried ? given.start_vertices + given.start_vertices / 4
-                                                          : given.start_vertices;
+    const int least = given.start_vertices >= plan.carried ? given.start_vertices + given.start_vertices / 4
+                                                           : given.start_vertices;
     plan.grow_to = std::max(
         {plan.carried, least, static_cast<int>(given.exact ? learned : std::min(learned, supported))});
     const double kept = static_cast<double>(plan.carried) / plan.grow_to;

@@ -12,6 +12,16 @@
 #if defined(__GNUC__) && !defined(NEURALMESH_PORTABLE)
 #define NEURALMESH_GNU
 #endif
+// Around headers in which gcc takes variables for uninitialized.
+#if defined(__GNUC__) && !defined(__clang__)
+#define NEURALMESH_BEGIN_UNINITIALIZED \
+    _Pragma("GCC diagnostic push") _Pragma("GCC diagnostic ignored \"-Wmaybe-uninitialized\"")
+#define NEURALMESH_END_UNINITIALIZED _Pragma("GCC diagnostic pop")
+#else
+#define NEURALMESH_BEGIN_UNINITIALIZED
+#define NEURALMESH_END_UNINITIALIZED
+#endif
+
 #if defined(__SSE2__) && !defined(NEURALMESH_PORTABLE)
 #define NEURALMESH_SSE2
 #endif

@@ -13,6 +13,7 @@ namespace neuralmesh {
 enum class NewVertices {
     on_edges,  ///< adds no self-crossing
     curved,    ///< the surface curves by the normals at the ends of the edges
+    between,   ///< the same, but it curves only where the normals turn by little
 };
 
 /// Splits edges of \p network, the longest first, until it has \p vertices vertices or no edge can be

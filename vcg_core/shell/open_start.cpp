@@ -318,6 +318,13 @@ void check_enough_points(std::size_t points) {
                          std::to_string(OpenStartOptions::kLeastCloud) + ".");
 }
 
+void check_for_part(bool found) {
+    if (found) return;
+    throw InputError(
+        "No part of the cloud holds enough points for an open surface: choose surface 1 (closed), or add "
+        "points.");
+}
+
 /// Number of vertices that \p network can be reduced to, or \p wanted if that is more.
 int fewest_vertices(Network network, int wanted) {
     if (network.vertex_count() > wanted) simplify(network, wanted);
@@ -353,15 +360,13 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     const int wanted = wanted_vertices(points.size(), options);
     ConsolidatedPoints consolidated = consolidated_points(
         surveys.points().cloud, surface, std::max(wanted, kFewestConsolidated), random, team);
+    check_for_part(!consolidated.positions.empty());
     progress(0.6, "Start mesh: building an open mesh");
     Sheet sheet = sheet_of(std::move(consolidated), target.frame().inside({0, 0, 0}),
                            sensor_place(surveys.points().cloud, surface.places()), team);
     const Enough enough = enough_points(points.size(), options);
     std::vector<std::uint8_t> out = drop_small_parts(surveys, enough, team, sheet);
-    if (sheet.mesh.faces.empty())
-        throw InputError(
-            "No part of the cloud holds enough points for an open surface: choose surface 1 (closed), or add "
-            "points.");
+    check_for_part(!sheet.mesh.faces.empty());
     OpenStart result;
     result.misses_surface = misses_surface(surveys, out);
     fill_small_holes(sheet, options, result);

@@ -26,6 +26,7 @@
 #include "vcg_core/shell/outliers.h"
 #include "vcg_core/shell/region.h"
 #include "vcg_core/shell/start_points.h"
+#include "vcg_core/target/noise_by_place.h"
 #include "vcg_core/target/opposite_layers.h"
 
 namespace neuralmesh {
@@ -171,7 +172,10 @@ void set_mesh(ClosedMesh& closed, const Region& region, std::size_t points, cons
     result.components = network.component_count();
     result.genus = network.genus();
     result.fewest_vertices = kVerticesPerFeature * (result.components + result.genus);
-    const int budget = std::min(options.max_vertices, options.target_vertices / 4);
+    // Few points do not tell where more vertices are, and would not bring them down to the surface.
+    const auto carried = static_cast<int>(
+        std::min(points / kPointsPerCarried, static_cast<std::size_t>(options.max_vertices)));
+    const int budget = std::min(carried, options.target_vertices / 4);
     const int vertices = std::max(budget, result.fewest_vertices);
     const double told = static_cast<double>(points) / kPointsPerVertex;
     const double most = std::min(told, static_cast<double>(options.most_vertices));

@@ -49,6 +49,16 @@ inline void expect_exact(const NeuralMesh& mesh, const Settings& settings) {
 }
 
 /// True if one of \p sentences contains \p words.
+/// The volume that \p mesh encloses.
+inline double volume_of(const NeuralMesh& mesh) {
+    double sum = 0;
+    for (const auto& [a, b, c] : mesh.faces)
+        sum += mesh.positions[static_cast<std::size_t>(a)] *
+               (mesh.positions[static_cast<std::size_t>(b)] ^ mesh.positions[static_cast<std::size_t>(c)]) /
+               6;
+    return sum;
+}
+
 inline bool has_one(const std::vector<std::string>& sentences, const std::string& words) {
     return std::any_of(sentences.begin(), sentences.end(),
                        [&](const std::string& each) { return each.find(words) != std::string::npos; });

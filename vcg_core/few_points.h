@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The surface between points that are too few to tell it: their convex hull, if all of them lie on it.
+#pragma once
+
+#include <optional>
+
+#include "vcg_core/mesh/indexed_mesh.h"
+#include "vcg_core/target/target_space.h"
+
+namespace neuralmesh {
+
+/// A surface as what is learned and as the mesh of it.
+struct ConvexSurface {
+    TargetSpace target;  ///< has faces, and colours if the cloud has
+    /// In the frame of the target. Empty if a vertex of the hull has more neighbours than a network allows.
+    IndexedMesh<float> mesh;
+};
+
+/// The convex hull of the points of \p cloud with \p vertices vertices, evenly spread. Nothing if there are
+/// more points than vertices, or more than 128, or if one is farther inside of the hull than a tenth of the
+/// mean spacing. Where the hull turns little from point to point it is bent; sharp edges, as those of a box
+/// of 8 points, stay. By vcglib's quickhull (Barber et al. 1996): O(n log n) usually. \pre !cloud.has_faces()
+std::optional<ConvexSurface> convex_surface(const TargetSpace& cloud, int vertices);
+
+}  // namespace neuralmesh
