@@ -23,14 +23,14 @@ namespace neuralmesh {
 /// The names that NEURALMESH_SKIP may hold. Each is asked for at one place, where the stage begins.
 inline constexpr const char* kStages[] = {
     // the cloud
-    "lifted_points", "clumps", "lattice_outliers", "main_box", "even_sampling", "noise_by_place",
+    "lifted_points", "clumps", "lattice_outliers", "even_sampling", "noise_by_place",
     // the start mesh
     "walled", "thickening", "finer_start", "hollows", "wide_lattice", "single_layer", "fringe",
     "bridgeless_growth", "finer_lattice", "coarser_lattices", "topology_vote", "short_handles",
     // learning
     "brief_learning", "settling_surplus", "saturation", "boundary_faces", "learned_notches",
     // topology
-    "membrane_groups", "membrane_webs", "wide_membranes", "corridors",
+    "membrane_groups", "membrane_webs", "wide_membranes",
     // the fit
     "strays", "layers", "cut_faces", "volume_reduction", "dense_collapses", "hold", "crease_moves",
     "sure_creases", "boundary_targets", "notches", "webs", "held_out", "refine"};

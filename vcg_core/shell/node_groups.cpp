@@ -27,24 +27,4 @@ NodeSet solid_of(const Lattice& lattice, const PerNode<SquaredRadius>& clearance
     return result;
 }
 
-vcg::Box3f box_of_large_groups(const Lattice& lattice, const PerNode<std::uint32_t>& counts,
-                               double component_share, double total_share) {
-    double total = 0, held = 0;
-    for (const std::uint32_t c : counts) total += c;
-    const float half_step = lattice.step * 0.5F;
-    const vcg::Point3f half(half_step, half_step, half_step);
-    const auto occupied = [&](NodeId i) { return counts[i] != 0; };
-    vcg::Box3f box;
-    for_each_component(lattice, occupied, [&](const std::vector<NodeId>& component) {
-        const double points = static_cast<double>(points_in(component, counts));
-        if (points < component_share * total) return;
-        held += points;
-        for (const NodeId i : component) {
-            box.Add(lattice.position(i) - half);
-            box.Add(lattice.position(i) + half);
-        }
-    });
-    return held >= total_share * total ? box : vcg::Box3f();
-}
-
 }  // namespace neuralmesh

@@ -7,40 +7,17 @@
 #include <cmath>
 #include <cstddef>
 
-#include "vcg_core/base/ablation.h"
 #include "vcg_core/shell/node_groups.h"
 
 namespace neuralmesh {
 namespace {
 
-using vcg::Box3f;
 using vcg::Point3f;
-
-// For main_box(). The groups of a surface are connected only if its cells hold several points on average:
-// cells are enlarged until they do, within these bounds on their number along the longest side.
-constexpr double kMaxCells = 32, kMinCells = 4, kFewerCells = 0.75;
-constexpr double kPointsPerCell = 4;
-constexpr double kGroupShare = 0.01, kAllGroupsShare = 0.9;  // of the points
-// A smaller gain in length is not worth a round; 8 rounds reach 1/256 of the length.
-constexpr float kShrinkage = 0.5F;
-constexpr int kMaxRounds = 8;
 
 // For outliers_of(). Gaps of a surface let points sink in: deeper than this many times the radius of the
 // widest gap, a point is not of the surface.
 constexpr double kDepthOverGap = 2;
 constexpr double kMaxSquaredDepth = 1e6;  // so that it fits into an int
-
-/// The box of the large groups within \p box; null if they do not hold enough points.
-Box3f box_of_groups(const std::vector<Point3f>& points, const Box3f& box) {
-    double cells = kMaxCells;
-    for (;;) {
-        const Lattice lattice(box, longest_side(box) / static_cast<float>(cells), 1);
-        const PerNode<std::uint32_t> counts = count_points(lattice, points);
-        if (points_per_occupied_node(counts) >= kPointsPerCell || cells <= kMinCells)
-            return box_of_large_groups(lattice, counts, kGroupShare, kAllGroupsShare);
-        cells *= kFewerCells;
-    }
-}
 
 /// The squared depth in lattice steps up to which an isolated point still counts as one of the surface.
 int max_squared_depth(const Region& region, int level) {
@@ -69,18 +46,6 @@ void remove_surface_nodes(const Region& region, const NodeSet& solid, int level,
 }
 
 }  // namespace
-
-Box3f main_box(const std::vector<Point3f>& points) {
-    Box3f box;
-    for (const Point3f& p : points) box.Add(p);
-    for (int round = 0; round < kMaxRounds; ++round) {
-        const Box3f groups = box_of_groups(points, box);
-        if (groups.IsNull() || longest_side(groups) > kShrinkage * longest_side(box) || skips("main_box"))
-            break;
-        box = groups;
-    }
-    return box;
-}
 
 std::string warning_of_outliers(long long ignored, long long all, long long least, bool learned) {
     if (ignored == 0) return "";

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Points of a cloud that do not belong to its surface: far ones, found before a lattice is laid over the
-// cloud, and isolated ones, found once the solid is known.
+// Points of a cloud that do not belong to its surface: isolated ones, found once the solid is known.
 #pragma once
 
-#include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
 
 #include <cstdint>
@@ -16,11 +14,6 @@
 #include "vcg_core/shell/region.h"
 
 namespace neuralmesh {
-
-/// The bounding box of the cloud without far outliers. The box is replaced by that of the large groups of
-/// points as long as that is at most half as long: groups of at least 1 % of the points each that hold 90 %
-/// together. O(points).
-vcg::Box3f main_box(const std::vector<vcg::Point3f>& points);
 
 /// The sentence on \p ignored points of \p all that the start mesh leaves out, as they lie in groups of fewer
 /// than \p least points; empty if there are none. \p learned: learning does not leave them out.

@@ -259,7 +259,8 @@ Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& ran
     progress(0.0, "Start mesh: measuring the density of the cloud");
     auto examined = std::make_unique<Examined>(target, options, random);
     const std::vector<Point3f>& points = examined->start_points.all();
-    const Box3f box = main_box(points);
+    Box3f box;
+    for (const Point3f& p : points) box.Add(p);
 
     progress(0.2, "Start mesh: counting components and handles");
     ThreadTeam team(thread_count(options.threads));

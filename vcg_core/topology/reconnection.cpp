@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <utility>
@@ -16,7 +15,6 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/mesh/face_tree.h"
-#include "vcg_core/topology/corridors.h"
 #include "vcg_core/topology/membrane_groups.h"
 #include "vcg_core/topology/rim_parts.h"
 #include "vcg_core/topology/surroundings.h"
@@ -34,13 +32,6 @@ constexpr float kHopeless = -60;
 /// The way back would have to gain as much, so nothing oscillates while the vertices stay. Chosen by the bolt
 /// holes of turbine: joints there gain 10 signals and more, joints elsewhere lose 40 and more.
 constexpr float kLeastShare = 0.4F, kLeastGain = 8;
-
-/// A handle is formed if the widest empty places of its membranes have at least this radius in the mean, in
-/// spacings of the points. Two parts whose gap is narrower there may well be nearer to each other beside it,
-/// where the points show no gap: then the handle would go around a bridge. Homer's legs are 1.6 to 2.3
-/// spacings from the middle of the gap with 20,000 points, the holes of feline and turbine have radii of 2.5
-/// and more.
-constexpr float kLeastRadius = 2.4F;
 
 /// A membrane that more others face is left alone: points that fill space, as leaves do, make membranes all
 /// around, and any surface in their place is as wrong.
@@ -85,10 +76,6 @@ private:
     Reconnection best(const std::vector<Membrane>& membranes) const;
     /// Makes a membrane of \p faces. \return false if it cannot be completed.
     bool make(Membrane& membrane, std::vector<int> faces) const;
-    const Corridors& corridors() const;
-    /// Whether the points know a handle, or one component, where the rims of the same part are joined.
-    bool knows_handle(const std::vector<Membrane>& membranes, const std::vector<Rim>& rims,
-                      const RimParts& parts) const;
 
     const Network& network_;
     const Surface& surface_;
@@ -102,8 +89,6 @@ private:
     PerFace<int> membrane_of_;  ///< -1: none
     bool stopped_ = false;
     mutable std::atomic<std::int64_t> visits_{0};  ///< faces looked at
-    mutable std::mutex mutex_;  // std::call_once() needs a newer C library than hosts of 2022 bring
-    mutable std::unique_ptr<const Corridors> corridors_;  ///< made when they are first asked for
 };
 
 Search::Search(const Network& network, const Surface& surface, const FaceSignals& support,
@@ -138,27 +123,6 @@ std::vector<Found> Search::collect(int count, const Find& find) {
     return all;
 }
 
-const Corridors& Search::corridors() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!corridors_)
-        corridors_ = std::make_unique<const Corridors>(surface_, support_, points_, edge_, membrane_of_);
-    return *corridors_;
-}
-
-bool Search::knows_handle(const std::vector<Membrane>& membranes, const std::vector<Rim>& rims,
-                          const RimParts& parts) const {
-    if (skips("corridors")) return true;
-    const Corridors& corridors = this->corridors();
-    float width = 0;
-    for (const Membrane& membrane : membranes) width += corridors.widest(membrane.faces);
-    if (width < kLeastRadius * static_cast<float>(membranes.size())) return false;
-    for (const std::vector<std::size_t>& part : parts)
-        for (std::size_t i = 0; i < part.size(); ++i)
-            for (std::size_t k = i + 1; k < part.size(); ++k)
-                if (corridors.lead(rims[part[i]], rims[part[k]])) return false;
-    return true;
-}
-
 /// Of the membranes together; one that joins them, if they are several. Its gain is the lowest number if
 /// there is none.
 Reconnection Search::best(const std::vector<Membrane>& membranes) const {
@@ -184,14 +148,13 @@ Reconnection Search::best(const std::vector<Membrane>& membranes) const {
     const int euler = euler_characteristic(found.gone, rims);
     for (const RimParts& parts : partitions(rims.size())) {
         if (!connect_all(parts, membrane_of)) continue;
-        const bool handle = euler_characteristic(parts) < euler;
-        if (handle && points_.empty()) continue;
+        const bool is_handle = euler_characteristic(parts) < euler;
+        if (is_handle && points_.empty()) continue;
         std::vector<Triangle> added = patches_of(parts, rims, surface_.positions, edges);
         if (added.empty() || !network_.can_exchange_faces(found.gone, added)) continue;
         if (!around) visits_ += around.emplace(surface_, tree_, support_, faces, edge_).face_count();
         const float gain = around->gain(added);
         if (gain <= found.gain) continue;
-        if (handle && gain >= kLeastGain && !knows_handle(membranes, rims, parts)) continue;
         found.gain = gain;
         found.added = std::move(added);
     }

@@ -25,14 +25,13 @@ struct Reconnection {
 /// with the faces between them. Only those that gain enough (see reconnection.cpp), the largest gain first.
 /// Membranes may be widened by one or two rings: the surface dents around a hole that it plugs. A joint makes
 /// a handle, or one component of two; closed rims of a tube take a handle away; a membrane with one rim is
-/// closed by a smaller surface. A joint that makes a handle also needs a gap that is wide for \p points, and
-/// points wherever one can go around the handle: see corridors.h. If there are no \p points, none is made. If
-/// \p in_groups, three and more membranes may be joined, too, see membrane_groups.h: the openings of one
-/// hollow, where every joint of two leaves a tube that spans the others. Each of them alone leaves \p network
-/// a manifold. A membrane that many others face is left alone, as it is among points that fill space. The
-/// search ends when it has cost its budget, which is in proportion to the faces, those first that lack the
-/// most signals; or when \p progress asks to stop. The result does not depend on the number of threads.
-/// O(faces log faces + signals)
+/// closed by a smaller surface. If there are no \p points, no joint makes a handle. If \p in_groups, three
+/// and more membranes may be joined, too, see membrane_groups.h: the openings of one hollow, where every
+/// joint of two leaves a tube that spans the others. Each of them alone leaves \p network a manifold. A
+/// membrane that many others face is left alone, as it is among points that fill space. The search ends when
+/// it has cost its budget, which is in proportion to the faces, those first that lack the most signals; or
+/// when \p progress asks to stop. The result does not depend on the number of threads. O(faces log faces +
+/// signals)
 std::vector<Reconnection> find_reconnections(const Network& network, const Surface& surface,
                                              const FaceSignals& support,
                                              const std::vector<Membrane>& membranes,

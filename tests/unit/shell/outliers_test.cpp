@@ -15,7 +15,6 @@
 namespace neuralmesh {
 namespace {
 
-using vcg::Box3f;
 using vcg::Point3f;
 
 std::vector<Point3f> sphere(int count, float radius, const Point3f& centre, std::uint64_t seed) {
@@ -27,53 +26,6 @@ std::vector<Point3f> sphere(int count, float radius, const Point3f& centre, std:
 
 void append(std::vector<Point3f>& points, const std::vector<Point3f>& more) {
     points.insert(points.end(), more.begin(), more.end());
-}
-
-Box3f bounding_box(const std::vector<Point3f>& points) {
-    Box3f box;
-    for (const Point3f& p : points) box.Add(p);
-    return box;
-}
-
-bool is_in(const Box3f& inner, const Box3f& outer) {
-    for (int k = 0; k < 3; ++k)
-        if (inner.min[k] < outer.min[k] || inner.max[k] > outer.max[k]) return false;
-    return true;
-}
-
-TEST(MainBox, IsTheBoundingBoxOfACloudWithoutFarOutliers) {
-    std::vector<Point3f> points = sphere(5000, 0.5F, {0, 0, 0}, 1);
-    EXPECT_EQ(main_box(points), bounding_box(points));
-    points.emplace_back(0.0F, 0.0F, 1.4F);  // makes the box less than twice as long
-    EXPECT_EQ(main_box(points), bounding_box(points));
-}
-
-TEST(MainBox, LeavesOutFarOutliers) {
-    for (const float far : {5.0F, 100.0F, 10000.0F}) {
-        std::vector<Point3f> points = sphere(5000, 0.5F, {0, 0, 0}, 1);
-        const Box3f surface = bounding_box(points);
-        points.emplace_back(far, 0.0F, 0.0F);
-        points.emplace_back(0.0F, -far, far);
-        const Box3f box = main_box(points);
-        EXPECT_TRUE(is_in(surface, box)) << far;
-        EXPECT_LT(longest_side(box), 3) << far;
-    }
-}
-
-TEST(MainBox, KeepsDistantPartsOfTheSurface) {
-    std::vector<Point3f> points = sphere(5000, 0.5F, {0, 0, 0}, 1);
-    append(points, sphere(1000, 0.1F, {30, 0, 0}, 2));
-    EXPECT_EQ(main_box(points), bounding_box(points));
-}
-
-TEST(MainBox, KeepsEverythingIfTooMuchIsFar) {
-    // A group of less than 1 % is dropped, but not if such groups are more than 10 % together.
-    std::vector<Point3f> few = sphere(5000, 0.5F, {0, 0, 0}, 1), many = few;
-    append(few, sphere(30, 0.1F, {30, 0, 0}, 3));
-    EXPECT_LT(longest_side(main_box(few)), 3);
-    for (int i = 0; i < 20; ++i)
-        append(many, sphere(30, 0.1F, {30, 5.0F * static_cast<float>(i), 0}, static_cast<std::uint64_t>(i)));
-    EXPECT_EQ(main_box(many), bounding_box(many));
 }
 
 /// A sphere of radius 0.5 with 20,000 points, which is in one piece at level 4, and \p others.
@@ -103,7 +55,7 @@ struct Examined {
 private:
     static Region with(const std::vector<Point3f>& others, std::vector<Point3f>& points) {
         append(points, others);
-        const Box3f box(Point3f(-1, -1, -1), Point3f(1, 1, 1));
+        const vcg::Box3f box(Point3f(-1, -1, -1), Point3f(1, 1, 1));
         return examine(points, box, 0.04F, 0.01, 20);
     }
 };
