@@ -26,7 +26,6 @@ constexpr float kNoiseShare = 1.2F;   ///< ... besides this share of the varianc
 constexpr float kNoisiest = 0.15F;    ///< with more noise nothing moves: planes follow it off the points
 constexpr float kBetter = 0.3F;       ///< largest share of the squared error of a quadratic height field ...
 constexpr float kMuchBetter = 0.04F;  ///< ... and of what noise leaves unexplained of it
-constexpr float kSure = 0.25F;        ///< and of that of the faces, for sure moves
 constexpr int kFewestPoints = 10;     ///< of a plane
 /// About as many points of the two-ring are used: with more the error is no smaller, and a fit of few
 /// vertices longer (tests/experiments/accuracy/compare_accuracy.py).
@@ -48,8 +47,8 @@ public:
 
     /// Keeps references. \p all_sides: of all faces; those without area have no normal.
     PlanesOfPoints(const Network& network, const Surface& surface, const PerFace<Side>& all_sides,
-                   const PointsByFace& points, CreaseMoves which)
-        : network_(network), surface_(surface), all_sides_(all_sides), points_(points), which_(which) {}
+                   const PointsByFace& points)
+        : network_(network), surface_(surface), all_sides_(all_sides), points_(points) {}
 
     /// The way from \p v to the line of its two planes; 0 if there are none, or if the line is far.
     Vector3 way_to_crease(VertexId v, float noise_variance) {
@@ -62,7 +61,6 @@ public:
         for (int i = 0; i < kRefinements; ++i)
             if (!refine() || error_ > kHopeless * largest_error(edge, noise)) return Vector3::Zero();
         if (!are_better_than_smooth(edge, noise)) return Vector3::Zero();
-        if (which_ == CreaseMoves::sure && !are_better_than_faces(v)) return Vector3::Zero();
         const Vector3 way = way_to_line();
         return way.norm() < kFarthest * edge ? way : Vector3::Zero();
     }
@@ -72,7 +70,6 @@ private:
     struct Sample {
         Vector3 place;
         float weight;
-        int face;  ///< to which the point is assigned
     };
     struct Plane {
         Vector3 normal, point;
@@ -136,7 +133,7 @@ private:
             for (; next < of_face.size(); next += step) {
                 const Vector3 place = of_face[next].point - vertex;
                 const float x = 1 + place.squaredNorm() / (reach * reach);
-                samples_.push_back({place, of_face[next].influence / (x * x), f});
+                samples_.push_back({place, of_face[next].influence / (x * x)});
             }
             next -= of_face.size();
         }
@@ -206,14 +203,6 @@ private:
         return mean_square([&](const Sample& s) { return height(s, nearer_plane(s)); });
     }
 
-    bool are_better_than_faces(VertexId v) const {
-        const auto above_face = [&](const Sample& s) {
-            return all_sides_[s.face].normal.dot(surface_.positions[v] + s.place -
-                                                 surface_.corner(s.face, 0));
-        };
-        return squared_error() < kSure * mean_square(above_face);
-    }
-
     /// Whether the points lie on the planes, and not on a smooth surface. \p noise: the squared error that
     /// noise explains.
     bool are_better_than_smooth(float edge, float noise) const {
@@ -264,7 +253,6 @@ private:
     const Surface& surface_;
     const PerFace<Side>& all_sides_;
     const PointsByFace& points_;
-    const CreaseMoves which_;
     std::vector<int> faces_;
     std::vector<Side> sides_;  ///< of the two-ring
     std::vector<Sample> samples_;
@@ -284,7 +272,7 @@ bool is_near_boundary(const Network& network, VertexId v) {
 
 PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surface,
                                     const PointsByFace& points, const PerVertex<float>& variances,
-                                    ThreadTeam& team, CreaseMoves which) {
+                                    ThreadTeam& team) {
     PerVertex<Vector3> moves(network.slot_count(), Vector3::Zero());
     PerFace<PlanesOfPoints::Side> sides(surface.face_count());
     parallel_for(sides.size(), kCreaseChunk, team, [&](int f) {
@@ -294,7 +282,7 @@ PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surfa
     });
     const auto slots = static_cast<std::size_t>(network.slot_count());
     for_chunks(slots, kVerticesAtATime, team, [&](std::size_t, std::size_t begin, std::size_t end) {
-        PlanesOfPoints planes(network, surface, sides, points, which);
+        PlanesOfPoints planes(network, surface, sides, points);
         for (auto v = static_cast<VertexId>(begin); v < static_cast<VertexId>(end); ++v)
             if (network.alive(v) && !is_near_boundary(network, v))
                 moves[v] = planes.way_to_crease(v, variances[v]);

@@ -10,11 +10,6 @@
 
 namespace neuralmesh {
 
-/// Which vertices move to creases: all whose points lie on two planes, or of these only those whose planes
-/// leave at most a quarter of the squared distance that their points have from the faces. Where faces are
-/// large beside the bend of a crease, planes lie farther from the points than the faces do.
-enum class CreaseMoves { likely, sure };
-
 /// For every vertex the way to the line where two planes meet, if the points of the faces of its two-ring lie
 /// on two planes and the line is nearer than a third of its edges; else 0, as on boundaries and one edge from
 /// them. \p variances are those of the points around the vertices; where the root exceeds .15 edges, nothing
@@ -28,6 +23,6 @@ enum class CreaseMoves { likely, sure };
 /// threads.
 PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surface,
                                     const PointsByFace& points, const PerVertex<float>& variances,
-                                    ThreadTeam& team, CreaseMoves which = CreaseMoves::likely);
+                                    ThreadTeam& team);
 
 }  // namespace neuralmesh

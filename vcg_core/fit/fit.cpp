@@ -33,10 +33,8 @@ constexpr double kCrumpling = 3;
 /// The first round with a redistribution, and the number of rounds at the end without one.
 constexpr int kFirstRedistribution = 1;
 constexpr int kQuietRounds = 3;
-/// The first round after which vertices move to creases: before, they are too far from the points. Once a
-/// round has a larger error after such moves, only the sure ones are made: with all in every round, fandisk
-/// has 1.05 and 1.06 times the error with 500 and 1,000 vertices; with none, straight creases are twice as
-/// far from the mesh with 5,000.
+/// The first round after which vertices move to creases: before, they are too far from the points. Without
+/// such moves, straight creases are twice as far from the mesh with 5,000 vertices.
 constexpr int kFirstCreases = 1;
 /// The fit ends when two rounds lower the error by less than this share, but not in the first ones. The
 /// second of each pair is for fits after a reduction by volume, where rounds gain little: models with 1,000
@@ -150,8 +148,6 @@ private:
     bool solve(int round, Surface& surface, PointsByFace& points) {
         const bool hold = holds_ && round >= kFirstHold;
         const double error = fitter_.solve(points, surface, hold ? kHold : PointToPlaneSystem::kSliding);
-        if (round > kFirstCreases && error > last_error_ && !skips("sure_creases"))
-            crease_moves_ = CreaseMoves::sure;
         if (round == 0 || error < best_error_) {
             best_ = network_;
             best_error_ = error;
@@ -165,7 +161,7 @@ private:
         error_before_last_ = last_error_;
         last_error_ = error;
         if (options_.flip_edges && round + 1 < rounds_) {
-            if (round >= kFirstCreases) fitter_.move_to_creases(surface, points, crease_moves_);
+            if (round >= kFirstCreases) fitter_.move_to_creases(surface, points);
             report_.flips += fitter_.flip_edges(surface, points);
         }
         return false;
@@ -177,7 +173,6 @@ private:
     FitReport& report_;
     int rounds_;
     bool holds_ = false;  ///< in later rounds the points hold the surface
-    CreaseMoves crease_moves_ = CreaseMoves::likely;
     HeldOut at_start_;  ///< with the directions of the mesh before the rounds
     Network best_;
     double best_error_ = 0;

@@ -327,9 +327,9 @@ void Fitter::place_vertices(const Surface& surface) {
     for (VertexId v : network_.vertices()) network_.set_position(v, to_vcg(surface.positions[v]));
 }
 
-void Fitter::move_to_creases(Surface& surface, const PointsByFace& points, CreaseMoves which) {
+void Fitter::move_to_creases(Surface& surface, const PointsByFace& points) {
     if (skips("crease_moves")) return;
-    const PerVertex<Vector3> moves = moves_to_creases(network_, surface, points, variances_, team_, which);
+    const PerVertex<Vector3> moves = moves_to_creases(network_, surface, points, variances_, team_);
     if (std::all_of(moves.begin(), moves.end(), [](const Vector3& way) { return way.isZero(0); })) return;
     const Surface start = surface;
     const MoveLimits limits(network_, start, team_);

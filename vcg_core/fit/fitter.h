@@ -90,8 +90,7 @@ public:
     /// Moves the vertices beside creases onto them, so that flip_edges() gives the creases edges. Moves \p
     /// surface, that of the network, with them. \pre \p points were assigned to \p surface before it moved
     /// last
-    void move_to_creases(Surface& surface, const PointsByFace& points,
-                         CreaseMoves which = CreaseMoves::likely);
+    void move_to_creases(Surface& surface, const PointsByFace& points);
     /// Fills the notches of the boundary that hold points, and opens the faces there that hold none. \return
     /// the number of faces filled and opened
     int mend_boundary(const Surface& surface, const PointsByFace& points);

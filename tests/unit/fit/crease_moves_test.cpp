@@ -21,19 +21,6 @@ constexpr double kRidge = 0.2 * kEdge;  ///< x of the ridge, beside a column of 
 
 double roof(double x) { return -std::abs(x - kRidge); }
 
-/// A roof whose ridge is bent, and a mesh on it whose edges follow the ridge.
-FitScene bent_roof_scene() {
-    constexpr double kBend = 0.2;
-    const auto bent = [](vcg::Point3d p) {
-        return vcg::Point3d(p[0] + kBend * p[1] * p[1], p[1], -std::abs(p[0]));
-    };
-    shapes::Shape mesh = shapes::grid(kColumns, kColumns);
-    for (vcg::Point3d& p : mesh.positions) p = bent(p);
-    shapes::Cloud cloud = shapes::plane_cloud(20000);
-    for (vcg::Point3d& p : cloud) p = bent(p);
-    return {referee::network_of(mesh), cloud};
-}
-
 /// A mesh whose vertices lie on the roof, with points on it that \p noise moves up or down.
 FitScene roof_scene(double noise = 0) {
     shapes::Shape mesh = shapes::grid(kColumns, kColumns);
@@ -46,11 +33,10 @@ FitScene roof_scene(double noise = 0) {
     return {referee::network_of(mesh), cloud};
 }
 
-PerVertex<Vector3> moves_of(const FitScene& scene, double noise = 0, int threads = 1,
-                            CreaseMoves which = CreaseMoves::likely) {
+PerVertex<Vector3> moves_of(const FitScene& scene, double noise = 0, int threads = 1) {
     ThreadTeam team(threads);
     const PerVertex<float> variances(scene.network.slot_count(), static_cast<float>(noise * noise / 3));
-    return moves_to_creases(scene.network, scene.surface, scene.points, variances, team, which);
+    return moves_to_creases(scene.network, scene.surface, scene.points, variances, team);
 }
 
 int count_moved(const PerVertex<Vector3>& moves) {
@@ -88,17 +74,6 @@ TEST(CreaseMoves, NoiseBelowTheCreaseDoesNotMatter) {
     const double noise = 0.05 * kEdge;
     const FitScene scene = roof_scene(noise);
     expect_ridge_reached(scene, moves_of(scene, noise), 0.03 * kEdge);
-}
-
-TEST(CreaseMoves, MovesToAStraightRidgeAreSure) {
-    const FitScene scene = roof_scene();
-    expect_ridge_reached(scene, moves_of(scene, 0, 1, CreaseMoves::sure), 1e-4);
-}
-
-TEST(CreaseMoves, MovesOffABentRidgeAreNotSure) {
-    const FitScene scene = bent_roof_scene();
-    EXPECT_GT(count_moved(moves_of(scene)), kColumns / 2);
-    EXPECT_EQ(count_moved(moves_of(scene, 0, 1, CreaseMoves::sure)), 0);
 }
 
 TEST(CreaseMoves, NothingMovesOnASmoothSurface) {
