@@ -12,14 +12,15 @@
 #if defined(__GNUC__) && !defined(NEURALMESH_PORTABLE)
 #define NEURALMESH_GNU
 #endif
-// Around headers in which gcc takes variables for uninitialized.
+// Around headers in which gcc takes variables for uninitialized; each with a semicolon.
 #if defined(__GNUC__) && !defined(__clang__)
-#define NEURALMESH_BEGIN_UNINITIALIZED \
-    _Pragma("GCC diagnostic push") _Pragma("GCC diagnostic ignored \"-Wmaybe-uninitialized\"")
-#define NEURALMESH_END_UNINITIALIZED _Pragma("GCC diagnostic pop")
+#define NEURALMESH_BEGIN_UNINITIALIZED() \
+    _Pragma("GCC diagnostic push")       \
+        _Pragma("GCC diagnostic ignored \"-Wmaybe-uninitialized\"") static_assert(true, "")
+#define NEURALMESH_END_UNINITIALIZED() _Pragma("GCC diagnostic pop") static_assert(true, "")
 #else
-#define NEURALMESH_BEGIN_UNINITIALIZED
-#define NEURALMESH_END_UNINITIALIZED
+#define NEURALMESH_BEGIN_UNINITIALIZED() static_assert(true, "")
+#define NEURALMESH_END_UNINITIALIZED() static_assert(true, "")
 #endif
 
 #if defined(__SSE2__) && !defined(NEURALMESH_PORTABLE)
