@@ -58,17 +58,22 @@ double mean_distance(const std::vector<vcg::Point3f>& points) {
     return sum / static_cast<double>(points.size());
 }
 
-/// Whether \p hull is thick beside the distances of \p points, which a line or a sheet is not, and no point
-/// lies deep inside of it. O(points^2 + points x faces).
+double area_of(const HullMesh& hull) {
+    double area = 0;
+    for (const HullFace& f : hull.face) area += vcg::DoubleArea(f) / 2;
+    return area;
+}
+
+/// Whether \p hull is thick beside the distances of \p points, which a line or a sheet is not. O(points^2)
+bool is_thick(const HullMesh& hull, const std::vector<vcg::Point3f>& points) {
+    double volume = 0;
+    for (const HullFace& f : hull.face) volume += f.cP(0) * (f.cP(1) ^ f.cP(2)) / 6;
+    return 6 * volume > kThinnest * mean_distance(points) * area_of(hull);  // as a cube has it
+}
+
+/// Whether no point lies deep inside of \p hull. O(points x faces).
 bool holds_all(const HullMesh& hull, const std::vector<vcg::Point3f>& points) {
-    double area = 0, volume = 0;
-    for (const HullFace& f : hull.face) {
-        area += vcg::DoubleArea(f) / 2;
-        volume += f.cP(0) * (f.cP(1) ^ f.cP(2)) / 6;
-    }
-    const double thickness = 6 * volume / area;  // of a cube
-    if (!(thickness > kThinnest * mean_distance(points))) return false;
-    const double deepest = kDeepest * std::sqrt(area / static_cast<double>(points.size()));
+    const double deepest = kDeepest * std::sqrt(area_of(hull) / static_cast<double>(points.size()));
     return std::all_of(points.begin(), points.end(), [&](const vcg::Point3f& point) {
         const vcg::Point3d p = vcg::Point3d::Construct(point);
         double depth = std::numeric_limits<double>::infinity();
@@ -84,7 +89,7 @@ struct Hull {
 };
 
 /// Nothing if points lie inside of the hull.
-std::optional<Hull> hull_of(const std::vector<vcg::Point3f>& points) {
+std::optional<Hull> hull_of(const std::vector<vcg::Point3f>& points, bool thin_too) {
     constexpr const char* kIndex = "indexInput";  // by ComputeConvexHull()
     HullMesh cloud, hull;
     auto vertex = vcg::tri::Allocator<HullMesh>::AddVertices(cloud, points.size());
@@ -100,7 +105,7 @@ std::optional<Hull> hull_of(const std::vector<vcg::Point3f>& points) {
     }
     vcg::tri::Allocator<HullMesh>::DeletePerVertexAttribute(hull, kIndex);  // else it leaks
     const bool is_closed = hull.fn == 2 * hull.vn - 4;  // not where rounding misled quickhull
-    if (!found || !is_closed || !holds_all(hull, points)) return {};
+    if (!found || !is_closed || !(thin_too || is_thick(hull, points)) || !holds_all(hull, points)) return {};
     for (const HullFace& f : hull.face)
         result.mesh.faces.push_back({static_cast<int>(vcg::tri::Index(hull, f.cV(0))),
                                      static_cast<int>(vcg::tri::Index(hull, f.cV(1))),
@@ -148,10 +153,10 @@ TargetSpace target_of(const Hull& hull, const TargetSpace& cloud) {
 
 }  // namespace
 
-std::optional<ConvexSurface> convex_surface(const TargetSpace& cloud, int vertices) {
+std::optional<ConvexSurface> convex_surface(const TargetSpace& cloud, int vertices, bool thin_too) {
     const std::size_t points = cloud.positions().size();
     if (points > kMostPoints || points > static_cast<std::size_t>(vertices)) return {};
-    std::optional<Hull> hull = hull_of(cloud.positions());
+    std::optional<Hull> hull = hull_of(cloud.positions(), thin_too);
     if (!hull) return {};
     const bool fits = fits_a_network(hull->mesh);
     // Points within the faces of the hull say that these are flat.

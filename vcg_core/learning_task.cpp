@@ -336,7 +336,8 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
     const Shell shell = make_shell(task.target(), settings, survey, closing);
     const Enclosure& enclosure = shell.enclosure();
     std::optional<ConvexSurface> convex;
-    if (!task.target().has_faces()) convex = convex_surface(task.target(), settings.target_vertices);
+    if (!task.target().has_faces())
+        convex = convex_surface(task.target(), settings.target_vertices, settings.surface == kClosedSurface);
     const bool may_open =
         settings.surface == kAutomatic && may_be_open(enclosure, task.target(), settings, 0);
     if (may_open || !enclosure.encloses_space) {

@@ -22,14 +22,15 @@ double falling(double x, double first, double last) {
 
 double between(double low, double high, double share) { return low + share * (high - low); }
 
-/// All, unless the fit may redistribute vertices and only their number ends growth.
+/// All, unless the fit may redistribute vertices and only their number ends growth. Both layers of a sheet
+/// have all of its points.
 int carried_vertices(const Circumstances& given) {
     const auto wanted = static_cast<std::size_t>(given.vertices);
+    const std::size_t by_points = given.carried_by_points * (given.encloses_space ? 1 : 2);
     const bool fills_up = given.redistributes && !given.exact && !skips("refine");
-    const bool slip = wanted > kMillion && wanted / kMostPerCarried > given.carried_by_points;
+    const bool slip = wanted > kMillion && wanted / kMostPerCarried > by_points;
     if (!fills_up || slip) return given.vertices;
-    const std::size_t placed =
-        std::max(given.carried_by_points, static_cast<std::size_t>(given.start_vertices));
+    const std::size_t placed = std::max(by_points, static_cast<std::size_t>(given.start_vertices));
     return static_cast<int>(std::min(placed, wanted));
 }
 
