@@ -80,7 +80,7 @@ TEST(ThingsThatTouch, HaveNoFalseHandles) {
     }
 }
 
-TEST(RegularGrids, HaveStraightEdges) {
+TEST(RegularGrids, AreLearnedWithinATwentiethOfAStep) {
     constexpr int kSteps = 10;
     Cloud grid;
     for (int x = 0; x <= kSteps; ++x)
@@ -94,7 +94,7 @@ TEST(RegularGrids, HaveStraightEdges) {
             const NeuralMesh mesh = mesh_of(turned(grid, seed), vertices, seed);
             EXPECT_NEAR(soundness::volume_of(mesh), 1000, 10);
             EXPECT_EQ(mesh.report.genus, 0);
-            EXPECT_LT(mesh.report.rms_error, 100 * 0.05 / (kSteps * std::sqrt(3))) << "a twentieth of a step";
+            EXPECT_LT(mesh.report.rms_error, 100 * 0.05 / (kSteps * std::sqrt(3)));
         }
 }
 
