@@ -114,10 +114,9 @@ def test_the_messages_are_those_that_a_verbose_mesh_set_prints(site, sheet, tmp_
 
 IN_THREADS = BEGIN + """
 from threading import Thread, Barrier
-together, found = Barrier(2), {}
+together, found = Barrier(2, timeout=60), {}
 
-def learn(cloud, vertices):
-    meshes = meshes_with(cloud)
+def learn(meshes, vertices):
     for _ in range(3):
         together.wait()
         result = meshes.generate_surface_reconstruction_neural_mesh(target_vertices=vertices)
@@ -126,7 +125,8 @@ def learn(cloud, vertices):
         meshes.set_current_mesh(0)
 
 warnings.simplefilter("ignore", neural_mesh.NeuralMeshWarning)
-threads = [Thread(target=learn, args=given) for given in ((sys.argv[1], 100), (sys.argv[2], 110))]
+# MeshLab opens a file from the current folder, which it changes for the whole process: not in two threads at once.
+threads = [Thread(target=learn, args=(meshes_with(cloud), vertices)) for cloud, vertices in zip(sys.argv[1:], (100, 110))]
 for thread in threads:
     thread.start()
 for thread in threads:
