@@ -21,6 +21,7 @@ NEURALMESH_END_UNINITIALIZED();
 #include "vcg_core/fit/sources.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/shape_flips.h"
+#include "vcg_core/target/nearest_points.h"
 
 namespace neuralmesh {
 namespace {
@@ -46,14 +47,14 @@ class HullFace : public vcg::Face<HullTypes, vcg::face::VertexRef, vcg::face::FF
                                   vcg::face::BitFlags> {};
 class HullMesh : public vcg::tri::TriMesh<std::vector<HullVertex>, std::vector<HullFace>> {};
 
-/// The mean distance of each of \p points from the nearest other one. O(points^2)
+/// The mean distance of each of \p points from the nearest other one.
 double mean_distance(const std::vector<vcg::Point3f>& points) {
+    const NearestPoints cloud(points);
+    std::vector<NearestPoints::Neighbour> nearest;
     double sum = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        double nearest = std::numeric_limits<double>::infinity();
-        for (std::size_t j = 0; j < points.size(); ++j)
-            if (j != i) nearest = std::min(nearest, static_cast<double>((points[i] - points[j]).Norm()));
-        sum += nearest;
+    for (NearestPoints::Place place = 0; place < cloud.size(); ++place) {
+        cloud.nearest(place, 1, nearest);
+        sum += std::sqrt(static_cast<double>(nearest.front().squared_distance));
     }
     return sum / static_cast<double>(points.size());
 }
@@ -64,7 +65,7 @@ double area_of(const HullMesh& hull) {
     return area;
 }
 
-/// Whether \p hull is thick beside the distances of \p points, which a line or a sheet is not. O(points^2)
+/// Whether \p hull is thick beside the distances of \p points, which a line or a sheet is not
 bool is_thick(const HullMesh& hull, const std::vector<vcg::Point3f>& points) {
     double volume = 0;
     for (const HullFace& f : hull.face) volume += f.cP(0) * (f.cP(1) ^ f.cP(2)) / 6;

@@ -22,7 +22,7 @@ struct ConvexSurface {
 /// more points than vertices, or more than 128, if one is farther inside of the hull than a tenth of the mean
 /// spacing or, unless \p thin_too, if the hull is thin beside the distances of its points. If all points are
 /// corners of the hull, it is bent where it turns little from one to the next; sharp edges, as those of a box
-/// of 8 points, stay. By vcglib's quickhull (Barber et al. 1996). O(points^2 + vertices log vertices)
+/// of 8 points, stay. By vcglib's quickhull (Barber et al. 1996). O(points x faces + vertices log vertices)
 /// \pre !cloud.has_faces()
 std::optional<ConvexSurface> convex_surface(const TargetSpace& cloud, int vertices, bool thin_too = false);
 

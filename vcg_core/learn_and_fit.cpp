@@ -38,17 +38,12 @@ Plan plan_for(const LearningTask& task, const Settings& settings) {
     return plan_for(given);
 }
 
-/// Whether the noise of each place is known, and the fit inserts the vertices that the points do not carry.
-bool grows_by_place(const LearningTask& task, const Settings& settings) {
-    return task.noise_by_place && settings.redistributes_vertices() && task.encloses_space;
-}
-
 int share_of(int number, double share) { return std::max(1, static_cast<int>(std::lround(share * number))); }
 
 LearnerOptions learner_options(const LearningTask& task, const Settings& settings, const Plan& plan) {
     LearnerOptions options = learner_options_from(settings);
     options.grow_to = plan.grow_to;
-    if (grows_by_place(task, settings)) options.noise = &*task.noise_by_place;
+    if (task.noise_by_place && plan.fills_up) options.noise = &*task.noise_by_place;
     options.signals_per_split = share_of(options.signals_per_split, plan.growth_share);
     if (options.settling_signals_per_vertex > 0)
         options.settling_signals_per_vertex =
@@ -72,7 +67,7 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
     options.reduce_to = plan.carried;
     options.by_volume = options.precise = plan.by_volume;
     // Growth by the noise of each place may end early.
-    const bool refines = plan.carried < settings.target_vertices || grows_by_place(task, settings);
+    const bool refines = plan.carried < settings.target_vertices || (task.noise_by_place && plan.fills_up);
     options.refine_to = refines ? settings.target_vertices : 0;
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
     // error is largest at the rim, and vertices inserted there stick out.

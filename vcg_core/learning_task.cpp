@@ -310,6 +310,41 @@ void begin_given(LearningTask& task, const IndexedMesh<double>& mesh, const Sett
                                 ", because the start layer is. Choose start_mesh 0 for another one.");
 }
 
+/// The surface between few points, as the start mesh or as what its shell is of.
+void begin_convex(LearningTask& task, ConvexSurface convex, const Settings& settings, Survey& survey,
+                  Progress& progress) {
+    task.cleaned = std::move(convex.target);
+    task.is_known = !convex.mesh.faces.empty();
+    if (task.is_known) {
+        task.network = Network(convex.mesh.positions, convex.mesh.faces);
+    } else {
+        begin_closed(task, make_shell(task.target(), settings, survey, progress).mesh(progress), settings);
+    }
+}
+
+/// By the shell of the points, or one layer through them.
+void begin_by_points(LearningTask& task, const Settings& settings, Survey& survey, Progress& progress) {
+    PartOf closing(progress, 0, kShellMade);
+    PartOf opening(progress, kShellMade, 1);
+    const Shell shell = make_shell(task.target(), settings, survey, closing);
+    const Enclosure& enclosure = shell.enclosure();
+    std::optional<ConvexSurface> convex;
+    if (!task.target().has_faces())
+        convex = convex_surface(task.target(), settings.target_vertices, settings.surface == kClosedSurface);
+    const bool may_open =
+        settings.surface == kAutomatic && may_be_open(enclosure, task.target(), settings, 0);
+    std::optional<OpenStart> start;
+    if (may_open || !enclosure.encloses_space)
+        start = try_open_start(task, enclosure, convex.has_value(), settings, survey, opening);
+    if (start) {
+        begin_open(task, std::move(*start), settings);
+    } else if (convex) {
+        begin_convex(task, std::move(*convex), settings, survey, closing);
+    } else {
+        begin_closed(task, shell.mesh(closing), settings);
+    }
+}
+
 /// Makes the start mesh.
 void begin(LearningTask& task, const Settings& settings, const IndexedMesh<double>& given, Survey& survey,
            Progress& progress) {
@@ -331,34 +366,7 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
         begin_open(task, std::move(start), settings);
         return;
     }
-    PartOf closing(progress, 0, kShellMade);
-    PartOf opening(progress, kShellMade, 1);
-    const Shell shell = make_shell(task.target(), settings, survey, closing);
-    const Enclosure& enclosure = shell.enclosure();
-    std::optional<ConvexSurface> convex;
-    if (!task.target().has_faces())
-        convex = convex_surface(task.target(), settings.target_vertices, settings.surface == kClosedSurface);
-    const bool may_open =
-        settings.surface == kAutomatic && may_be_open(enclosure, task.target(), settings, 0);
-    if (may_open || !enclosure.encloses_space) {
-        std::optional<OpenStart> start =
-            try_open_start(task, enclosure, convex.has_value(), settings, survey, opening);
-        if (start) {
-            begin_open(task, std::move(*start), settings);
-            return;
-        }
-    }
-    if (!convex) {
-        begin_closed(task, shell.mesh(closing), settings);
-        return;
-    }
-    task.cleaned = std::move(convex->target);
-    task.is_known = !convex->mesh.faces.empty();
-    if (task.is_known) {
-        task.network = Network(convex->mesh.positions, convex->mesh.faces);
-    } else {
-        begin_closed(task, make_shell(task.target(), settings, survey, closing).mesh(closing), settings);
-    }
+    begin_by_points(task, settings, survey, progress);
 }
 
 }  // namespace

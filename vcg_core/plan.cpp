@@ -22,16 +22,17 @@ double falling(double x, double first, double last) {
 
 double between(double low, double high, double share) { return low + share * (high - low); }
 
-/// All, unless the fit may redistribute vertices and only their number ends growth. Both layers of a sheet
-/// have all of its points.
-int carried_vertices(const Circumstances& given) {
+/// Both layers of a sheet have all of its points.
+std::size_t carried_by_points(const Circumstances& given) {
+    return given.carried_by_points * (given.encloses_space ? 1 : 2);
+}
+
+/// Whether the fit inserts the vertices that the points do not carry: if it may redistribute vertices, and
+/// only their number ends growth.
+bool fills_up(const Circumstances& given) {
     const auto wanted = static_cast<std::size_t>(given.vertices);
-    const std::size_t by_points = given.carried_by_points * (given.encloses_space ? 1 : 2);
-    const bool fills_up = given.redistributes && !given.exact && !skips("refine");
-    const bool slip = wanted > kMillion && wanted / kMostPerCarried > by_points;
-    if (!fills_up || slip) return given.vertices;
-    const std::size_t placed = std::max(by_points, static_cast<std::size_t>(given.start_vertices));
-    return static_cast<int>(std::min(placed, wanted));
+    const bool slip = wanted > kMillion && wanted / kMostPerCarried > carried_by_points(given);
+    return given.redistributes && !given.exact && !slip && !skips("refine");
 }
 
 /// How far shape may choose what goes, in [0, 1]: not on open surfaces, not of points drawn from faces, which
@@ -84,7 +85,12 @@ int usual_surplus(int vertices) {
 
 Plan plan_for(const Circumstances& given) {
     Plan plan;
-    plan.carried = carried_vertices(given);
+    plan.fills_up = fills_up(given);
+    const std::size_t placed =
+        std::max(carried_by_points(given), static_cast<std::size_t>(given.start_vertices));
+    plan.carried = plan.fills_up
+                       ? static_cast<int>(std::min(placed, static_cast<std::size_t>(given.vertices)))
+                       : given.vertices;
     plan.grow_to = std::max(plan.carried, given.start_vertices);
     if (!given.redistributes || !given.encloses_space) return plan;
     const double trust = trust_in_shape(given), calm = trust * calmness(given);

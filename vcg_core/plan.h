@@ -24,8 +24,9 @@ struct Circumstances {
 };
 
 struct Plan {
-    int carried = 0;  ///< vertices that learning and fit place by the points; the fit inserts the others
-    int grow_to = 0;  ///< vertices to learn, at least; the fit removes those beyond \p carried
+    bool fills_up = false;  ///< the fit inserts the vertices that the points do not carry
+    int carried = 0;        ///< vertices that learning and fit place by the points
+    int grow_to = 0;        ///< vertices to learn, at least; the fit removes those beyond \p carried
     /// Shares of Settings::signals_per_split and settling_signals_per_vertex: the fit places the vertices
     /// that stay, so the more are removed, the fewer signals do. And a network that learns for long follows
     /// the noise.

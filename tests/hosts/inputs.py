@@ -182,7 +182,7 @@ def _clouds(random):
         # In single precision these coordinates are whole numbers: rounding moves points off a plane by 2.8 %, and the
         # diagonal of a cell of that lattice is 16.7 %. The mesh is 1.3 to 1.7 % from the ball; one that follows the rounding,
         # 1.5 to 1.7 % from the points, is 2.3 to 2.6 % from the ball.
-        "offset 1e+7, small": Input(ball(2000, 3) + [1e7, -1e7, 1e7], volume=27 * BALL, within=.15, rms=4, far=16.7),
+        "offset 1e+7, small": Input(ball(2000, 3) + [1e7, -1e7, 1e7], volume=27 * BALL, within=.1, rms=4, far=16.7),
         # Beside the distances of its points a needle is a line.
         "aspect 1 : 1e-3": Input(ball() * [1, 1e-3, 1e-3], volume=None, parameters={**EACH_POINT_ALIKE, "surface": 1}),
         "aspect 1 : 1 : 1e-5": Input(ball() * [1, 1, 1e-5], volume=None, loops=1, rms=.7),

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "vcg_core/mesh/triangle.h"
+#include "vcg_core/mesh/valence_flips.h"
 
 namespace neuralmesh {
 
@@ -40,12 +41,8 @@ int flip_edges_for_shape(Network& network, float most) {
     for (int pass = 0, before = -1; pass < kMostPasses && flips > before; ++pass) {
         before = flips;
         for (const VertexId v : network.vertices())
-            for (int i = 0; i < network.ring(v).valence; ++i) {
-                const VertexId w = network.ring(v)[i];
-                if (w < v || !network.can_flip(v, w) || !should_flip(network, v, w, most)) continue;
-                network.flip(v, w);
-                ++flips;
-            }
+            flips += flip_edges_if(network, v, v,
+                                   [&](VertexId a, VertexId b) { return should_flip(network, a, b, most); });
     }
     return flips;
 }

@@ -31,16 +31,9 @@ bool should_flip(const Network& network, VertexId a, VertexId b, const FlipRule&
                          {area_vector(pa, pd, pc), area_vector(pb, pc, pd)}});
 }
 
-/// Flips edges of \p v to neighbours from \p least on.
 int flip_edges(Network& network, VertexId v, VertexId least, const FlipRule& rule) {
-    int flips = 0;
-    for (int i = 0; i < network.ring(v).valence; ++i) {
-        const VertexId w = network.ring(v)[i];
-        if (w < least || !network.can_flip(v, w) || !should_flip(network, v, w, rule)) continue;
-        network.flip(v, w);
-        ++flips;
-    }
-    return flips;
+    return flip_edges_if(network, v, least,
+                         [&](VertexId a, VertexId b) { return should_flip(network, a, b, rule); });
 }
 
 }  // namespace

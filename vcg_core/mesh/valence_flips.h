@@ -37,6 +37,20 @@ inline int valence_irregularity(const Ring& ring) {
     return excess * excess;
 }
 
+/// Flips the edges of \p v to neighbours from \p least on that can be flipped and for which \p should(v,
+/// neighbour) holds. O(valence). \return the number of flips
+template <class Should>
+int flip_edges_if(Network& network, VertexId v, VertexId least, const Should& should) {
+    int flips = 0;
+    for (int i = 0; i < network.ring(v).valence; ++i) {
+        const VertexId w = network.ring(v)[i];
+        if (w < least || !network.can_flip(v, w) || !should(v, w)) continue;
+        network.flip(v, w);
+        ++flips;
+    }
+    return flips;
+}
+
 /// Flips every inner edge at \p v whose flip lowers the sum of the squared differences from the regular
 /// valences over the four vertices around it and is allowed by \p rule; positions stay. O(valence^2).
 /// \return the number of flips

@@ -27,17 +27,9 @@ constexpr std::size_t kMostPerVertex = 40;
 /// opening there may be small ones.
 constexpr float kComparable = 0.2F;
 
-/// The points by which handles are judged: all of the cloud, or the signals of \p support if they have
-/// weights. None if no handle may form.
-std::vector<vcg::Point3f> points_for_handles(const TargetSpace& target, const TopologyRules& rules,
-                                             const FaceSignals& support, std::size_t vertices) {
-    if (target.is_exact()) return {};
-    if (!rules.from_tetrahedron && target.positions().size() > kMostPerVertex * vertices) return {};
-    if (!target.is_weighted()) return target.positions();
-    std::vector<vcg::Point3f> points;
-    points.reserve(support.signals.size());
-    for (const FaceSignals::Assigned& signal : support.signals) points.push_back(to_vcg(signal.point));
-    return points;
+bool may_form_handles(const TargetSpace& target, const TopologyRules& rules, std::size_t vertices) {
+    return !target.is_exact() &&
+           (rules.from_tetrahedron || target.positions().size() <= kMostPerVertex * vertices);
 }
 
 float width_of(const Rim& rim, const Surface& surface) {
@@ -71,11 +63,10 @@ std::optional<TopologyEvidence> topology_evidence(const Network& network, const 
 std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target,
                                            const TopologyEvidence& now, const TopologyRules& rules,
                                            ThreadTeam& team, Progress& progress) {
-    const std::vector<vcg::Point3f> points =
-        points_for_handles(target, rules, now.support, static_cast<std::size_t>(network.vertex_count()));
+    const bool handles = may_form_handles(target, rules, static_cast<std::size_t>(network.vertex_count()));
     std::vector<Reconnection> chosen;
     std::set<int> used;
-    for (Reconnection& change : find_reconnections(network, now.surface, now.support, now.membranes, points,
+    for (Reconnection& change : find_reconnections(network, now.surface, now.support, now.membranes, handles,
                                                    rules.from_tetrahedron, team, progress)) {
         const auto taken = [&](int membrane) { return used.count(membrane) != 0; };
         if (std::any_of(change.membranes.begin(), change.membranes.end(), taken)) continue;

@@ -51,8 +51,7 @@ using Group = std::vector<int>;
 class Search {
 public:
     Search(const Network& network, const Surface& surface, const FaceSignals& support,
-           const std::vector<Membrane>& membranes, const std::vector<vcg::Point3f>& points, ThreadTeam& team,
-           Progress& progress);
+           const std::vector<Membrane>& membranes, bool handles, ThreadTeam& team, Progress& progress);
 
     /// Every certain membrane, and every two that face each other and are no clutter.
     std::vector<Group> candidates();
@@ -81,7 +80,7 @@ private:
     const Surface& surface_;
     FaceTree tree_;
     const FaceSignals& support_;
-    const std::vector<vcg::Point3f>& points_;
+    bool handles_;  ///< joints may make some
     ThreadTeam& team_;
     Progress& progress_;
     float edge_;
@@ -92,13 +91,12 @@ private:
 };
 
 Search::Search(const Network& network, const Surface& surface, const FaceSignals& support,
-               const std::vector<Membrane>& membranes, const std::vector<vcg::Point3f>& points,
-               ThreadTeam& team, Progress& progress)
+               const std::vector<Membrane>& membranes, bool handles, ThreadTeam& team, Progress& progress)
     : network_(network),
       surface_(surface),
       tree_(surface, team),
       support_(support),
-      points_(points),
+      handles_(handles),
       team_(team),
       progress_(progress),
       edge_(mean_edge_length(surface)),
@@ -148,8 +146,7 @@ Reconnection Search::best(const std::vector<Membrane>& membranes) const {
     const int euler = euler_characteristic(found.gone, rims);
     for (const RimParts& parts : partitions(rims.size())) {
         if (!connect_all(parts, membrane_of)) continue;
-        const bool is_handle = euler_characteristic(parts) < euler;
-        if (is_handle && points_.empty()) continue;
+        if (!handles_ && euler_characteristic(parts) < euler) continue;
         std::vector<Triangle> added = patches_of(parts, rims, surface_.positions, edges);
         if (added.empty() || !network_.can_exchange_faces(found.gone, added)) continue;
         if (!around) visits_ += around.emplace(surface_, tree_, support_, faces, edge_).face_count();
@@ -294,11 +291,10 @@ std::vector<Group> with_smaller(const std::vector<Group>& groups) {
 
 std::vector<Reconnection> find_reconnections(const Network& network, const Surface& surface,
                                              const FaceSignals& support,
-                                             const std::vector<Membrane>& membranes,
-                                             const std::vector<vcg::Point3f>& points, bool in_groups,
-                                             ThreadTeam& team, Progress& progress) {
+                                             const std::vector<Membrane>& membranes, bool handles,
+                                             bool in_groups, ThreadTeam& team, Progress& progress) {
     if (membranes.empty()) return {};
-    Search search(network, surface, support, membranes, points, team, progress);
+    Search search(network, surface, support, membranes, handles, team, progress);
     std::vector<Group> groups = search.candidates();
     if (in_groups && !skips("membrane_groups"))
         for (Group& group : with_smaller(membrane_groups(surface, membranes, search.edge(), kMostOfGroup)))

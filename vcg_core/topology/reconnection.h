@@ -25,7 +25,7 @@ struct Reconnection {
 /// with the faces between them. Only those that gain enough (see reconnection.cpp), the largest gain first.
 /// Membranes may be widened by one or two rings: the surface dents around a hole that it plugs. A joint makes
 /// a handle, or one component of two; closed rims of a tube take a handle away; a membrane with one rim is
-/// closed by a smaller surface. If there are no \p points, no joint makes a handle. If \p in_groups, three
+/// closed by a smaller surface. Joints make handles only if \p handles. If \p in_groups, three
 /// and more membranes may be joined, too, see membrane_groups.h: the openings of one hollow, where every
 /// joint of two leaves a tube that spans the others. Each of them alone leaves \p network a manifold. A
 /// membrane that many others face is left alone, as it is among points that fill space. The search ends when
@@ -34,8 +34,7 @@ struct Reconnection {
 /// signals)
 std::vector<Reconnection> find_reconnections(const Network& network, const Surface& surface,
                                              const FaceSignals& support,
-                                             const std::vector<Membrane>& membranes,
-                                             const std::vector<vcg::Point3f>& points, bool in_groups,
-                                             ThreadTeam& team, Progress& progress);
+                                             const std::vector<Membrane>& membranes, bool handles,
+                                             bool in_groups, ThreadTeam& team, Progress& progress);
 
 }  // namespace neuralmesh
