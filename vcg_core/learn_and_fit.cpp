@@ -63,6 +63,7 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
               Progress& progress) {
     FitOptions options;
     options.expect_strays = task.outliers > 0;
+    options.expect_layers = plan.expects_layers;
     options.noise = task.noise_by_place ? &*task.noise_by_place : nullptr;
     options.reduce_to = plan.carried;
     options.by_volume = options.precise = plan.by_volume;

@@ -206,6 +206,7 @@ void refine_and_fit(Network& network, const TargetSpace& target, const FitOption
     Fitter fitter(network, std::move(points), team);
     if (options.noise != nullptr) fitter.know_noise(*options.noise);
     if (options.expect_strays) fitter.expect_strays();
+    if (!options.expect_layers) fitter.exclude_layers();
     PartOf untangling(progress, 0.1, 0.2);
     PartOf fitting(progress, 0.2, 1);
     if (!fitter.untangle_surface(untangling)) return;
@@ -234,6 +235,7 @@ FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitO
     Fitter fitter(network, std::move(points), team);
     if (options.noise != nullptr) fitter.know_noise(*options.noise);
     if (options.expect_strays) fitter.expect_strays();
+    if (!options.expect_layers) fitter.exclude_layers();
     // By time: the reduction takes about as long as the rounds.
     PartOf untangling(progress, 0, 0.1);
     PartOf reducing(progress, 0.1, 0.5);

@@ -46,6 +46,8 @@ public:
     void know_noise(const NoiseByPlace& noise) { noise_ = &noise; }
     /// From now on leaves out points that StrayPoints tells, anew with each assignment.
     void expect_strays() { expects_strays_ = true; }
+    /// From now on does not look for layers of points.
+    void exclude_layers() { excludes_layers_ = true; }
 
     /// Removes self-crossings, see make_sound(), and from then on lets no step add any. \return false if
     /// \p progress asks to stop; then the network is unchanged.
@@ -152,7 +154,7 @@ private:
     PerVertex<float> variances_;         ///< of the noise around each vertex, from the last assignment
     PerVertex<float> widest_variances_;  ///< of the points across the surface, so far
     bool layered_places_ = true;         ///< until a search shows none
-    bool excludes_layers_ = false;       ///< a surface of many more vertices has shown none
+    bool excludes_layers_ = false;       ///< the points, or a surface of many more vertices, show none
     bool layered_ = false;               ///< somewhere; from the last exact search, as the next
     float layering_ = 0;                 ///< over most of the surface, see layering()
     double bending_error_ = 0;           ///< of layers: weight of the mean squared gap in squared errors

@@ -18,6 +18,10 @@ namespace {
 
 constexpr int kSplitChunk = 128;
 constexpr float kMaxOffset = 0.3F;  ///< in edge lengths
+/// A new vertex needs this many points, each counted by its squared hat function. The points beside an edge
+/// of the shape draw a vertex that has fewer out of it, where none says how far: of a box of 9,602 points on
+/// a grid, with 1,000 vertices, 78 vertices stick out by a tenth of a step and more without this, 7 with it.
+constexpr float kLeastPoints = 1;
 
 /// Sums over points for the least squares of one offset.
 struct HatSums {
@@ -42,8 +46,8 @@ FaceHatSums hat_sums(const Surface& surface, const PointsByFace& points, int fac
     return sums;
 }
 
-/// The split of the edge a-b by its faces; its gain is negative if no point is near, or if it is less than \p
-/// least_gain for points of weight 1.
+/// The split of the edge a-b by its faces; its gain is negative if too few points are near, or if it is less
+/// than \p least_gain for points of weight 1.
 EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const PerFace<FaceHatSums>& sums,
                    float least_gain, VertexId a, VertexId b) {
     HatSums both;
@@ -65,7 +69,7 @@ EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const Per
     if (found == 1) faces[1] = faces[0];  // a boundary edge
     const Vector3& at_a = surface.positions[a];
     const Vector3& at_b = surface.positions[b];
-    if (!(both.phi_phi > 0)) return {-1, a, b, 0.5F * (at_a + at_b)};
+    if (!(both.phi_phi >= kLeastPoints)) return {-1, a, b, 0.5F * (at_a + at_b)};
     const float bound = kMaxOffset * (at_a - at_b).norm();
     const float offset = std::min(std::max(both.phi_residual / both.phi_phi, -bound), bound);
     const float gain = both.phi_residual * both.phi_residual / both.phi_phi;

@@ -35,10 +35,10 @@ void add(const Cloud& part, double factor, const vcg::Point3d& offset, Cloud& cl
     for (const vcg::Point3d& p : part) cloud.push_back(p * factor + offset);
 }
 
-/// Turned, so that nothing follows an axis.
-Cloud turned(Cloud cloud, std::uint64_t seed) {
+/// Turned, so that nothing follows an axis; with the opposite angle turned back.
+Cloud turned(Cloud cloud, double turns) {
     vcg::Matrix44d turn;
-    turn.SetRotateRad(0.7 * static_cast<double>(seed), vcg::Point3d(1, 2, 3));
+    turn.SetRotateRad(0.7 * turns, vcg::Point3d(1, 2, 3));
     for (vcg::Point3d& p : cloud) p = turn * p;
     return cloud;
 }
@@ -80,21 +80,40 @@ TEST(ThingsThatTouch, HaveNoFalseHandles) {
     }
 }
 
+/// The points of a lattice on the surface of a cube with edges of so many steps.
+Cloud grid(int steps) {
+    Cloud cloud;
+    for (int x = 0; x <= steps; ++x)
+        for (int y = 0; y <= steps; ++y)
+            for (int z = 0; z <= steps; ++z)
+                if (x % steps == 0 || y % steps == 0 || z % steps == 0) cloud.emplace_back(x, y, z);
+    return cloud;
+}
+
 TEST(RegularGrids, AreLearnedWithinATwentiethOfAStep) {
     constexpr int kSteps = 10;
-    Cloud grid;
-    for (int x = 0; x <= kSteps; ++x)
-        for (int y = 0; y <= kSteps; ++y)
-            for (int z = 0; z <= kSteps; ++z)
-                if (x % kSteps == 0 || y % kSteps == 0 || z % kSteps == 0) grid.emplace_back(x, y, z);
-    ASSERT_EQ(grid.size(), 602U);
-    for (const std::uint64_t seed : in_tiers<std::uint64_t>({1}, {0, 2, 3}))
-        for (const int vertices : in_tiers<int>({200}, {300, 500, 1000})) {
+    ASSERT_EQ(grid(kSteps).size(), 602U);
+    for (const int seed : in_tiers<int>({1}, {0, 2, 3}))
+        for (const int vertices : in_tiers<int>({100, 200}, {80, 300, 500, 1000})) {
             SCOPED_TRACE(std::to_string(seed) + ' ' + std::to_string(vertices));
-            const NeuralMesh mesh = mesh_of(turned(grid, seed), vertices, seed);
+            const NeuralMesh mesh = mesh_of(turned(grid(kSteps), seed), vertices, seed);
             EXPECT_NEAR(soundness::volume_of(mesh), 1000, 10);
             EXPECT_EQ(mesh.report.genus, 0);
             EXPECT_LT(mesh.report.rms_error, 100 * 0.05 / (kSteps * std::sqrt(3)));
+        }
+}
+
+TEST(RegularGrids, HaveStraightEdges) {
+    for (const int steps : in_tiers<int>({40}, {20, 60}))
+        for (const int seed : in_tiers<int>({1}, {0, 2, 3})) {
+            SCOPED_TRACE(std::to_string(steps) + ' ' + std::to_string(seed));
+            // Ten points for each vertex, which an edge of the shape needs.
+            const int vertices = steps * steps * 6 / 10;
+            const NeuralMesh mesh = mesh_of(turned(grid(steps), seed), vertices, seed);
+            int beside = 0;
+            for (const vcg::Point3d& p : turned(mesh.positions, -seed))
+                for (int k = 0; k < 3; ++k) beside += p[k] < -0.1 || p[k] > steps + 0.1 ? 1 : 0;
+            EXPECT_LE(beside, vertices / 50) << "vertices stick out of the cube by a tenth of a step";
         }
 }
 
