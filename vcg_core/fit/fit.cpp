@@ -97,7 +97,8 @@ public:
         const double error = fitter_.error_at(at_start_, fitted);
         const double edge = static_cast<double>(mean_edge_length(fitted));
         const double variance = static_cast<double>(fitter_.noise_variance());
-        const double optimism = variance * (learned_share + kCrumpling * variance / (edge * edge));
+        const double optimism =
+            variance * (learned_share + kCrumpling * variance / (edge * edge)) + fitter_.rounding_variance();
         report_.improved =
             error * error < report_.rms_unfitted * report_.rms_unfitted + optimism || skips("held_out");
         if (report_.improved) report_.rms_fitted = error;

@@ -245,7 +245,16 @@ void Fitter::measure_noise(const Surface& surface, const PointsByFace& points) {
         if (!network_.alive(v)) return;
         variances_[v] = noise_->variance_at(network_.position(v));
         if (about_faces[v] > 0) variances_[v] = std::min(variances_[v], kMostOfLocal * about_faces[v]);
+        variances_[v] = std::max(variances_[v], noise_->least_variance_at(network_.position(v)));
     });
+}
+
+double Fitter::rounding_variance() const {
+    if (noise_ == nullptr) return 0;
+    double sum = 0;
+    for (const Vector3& p : held_out_.points())
+        sum += static_cast<double>(noise_->least_variance_at(to_vcg(p)));
+    return sum / static_cast<double>(held_out_.points().size());
 }
 
 /// By Bayes' rule: what gaps of likely length weigh, in points per vertex. At places with layers more.
@@ -253,9 +262,13 @@ VertexNoise Fitter::noise_around(const Surface& surface, const PointsByFace& poi
     VertexNoise noise;
     if (noise_ != nullptr) {
         const float gap = kLikelyGapByPlace * mean_edge_length(surface);
-        const float per_variance = 1 / (gap * gap * points.per_vertex(network_.vertex_count()));
+        const float points_per_vertex = points.per_vertex(network_.vertex_count());
         noise = {variances_, variances_};
-        for (float& stiffness : noise.stiffness) stiffness *= per_variance;
+        // The points on one step are off by the same: together they say as much as one.
+        for (const VertexId v : network_.vertices())
+            noise.stiffness[v] =
+                (variances_[v] / points_per_vertex + noise_->least_variance_at(network_.position(v))) /
+                (gap * gap);
     }
     if (!layered_) return noise;
     const PerVertex<float> of_layers = stiffness_by(examine_variances(surface, points), surface, points);

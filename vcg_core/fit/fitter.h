@@ -105,6 +105,9 @@ public:
     /// it.
     const PerVertex<VertexId>& origins() const { return origins_; }
     float noise_variance() const { return noise_variance_; }
+    /// The part of the noise that the held-out points share with their neighbours, which are on the same
+    /// steps of the coordinates. O(held-out points x log places).
+    double rounding_variance() const;
 
 private:
     PointsByFace assign(const Surface& surface, const std::vector<Hit>& hits);

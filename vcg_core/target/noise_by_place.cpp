@@ -25,7 +25,9 @@ std::vector<vcg::Point3f> positions_of(const SurfaceSurvey& survey) {
 
 NoiseByPlace::NoiseByPlace(const SurfaceSurvey& survey) : index_(positions_of(survey)) {
     for (const SurveyedPlace& place : survey.places())
-        if (!place.clutter) noise_.push_back({place.spacing, place.deviation * place.deviation});
+        if (!place.clutter)
+            noise_.push_back(
+                {place.spacing, place.deviation * place.deviation, place.rounding * place.rounding});
 }
 
 float NoiseByPlace::least_squared_edge_at(const vcg::Point3f& p) const {

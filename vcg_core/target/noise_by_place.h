@@ -27,6 +27,8 @@ public:
 
     /// Variance of the points across the surface around \p p. O(log places).
     float variance_at(const vcg::Point3f& p) const { return at(p).variance; }
+    /// The least that it can be: the points lie on the steps of their coordinates. O(log places).
+    float least_variance_at(const vcg::Point3f& p) const { return at(p).least_variance; }
     /// The square of the shortest edge around \p p that is not bent by the noise alone. O(log places).
     float least_squared_edge_at(const vcg::Point3f& p) const;
     /// How many vertices \p points points carry: each with the area of such edges, and two points. O(places).
@@ -34,7 +36,7 @@ public:
 
 private:
     struct Noise {
-        float spacing, variance;
+        float spacing, variance, least_variance;
     };
     const Noise& at(const vcg::Point3f& p) const { return noise_[index_.index(index_.nearest_to(p))]; }
 

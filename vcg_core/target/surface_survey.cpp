@@ -9,6 +9,7 @@
 #include "vcg_core/base/even_mesh.h"
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
+#include "vcg_core/target/depth_steps.h"
 #include "vcg_core/target/local_quadric.h"
 
 namespace neuralmesh {
@@ -43,7 +44,8 @@ float spacing_at(const NearestPoints& cloud, Place place, std::vector<NearestPoi
 }
 
 /// The least radius on which the points around a place show a surface.
-void find_radius(const NearestPoints& cloud, std::vector<Point3f>& near, SurveyedPlace& place) {
+void find_radius(const NearestPoints& cloud, const DepthSteps& steps, std::vector<Point3f>& near,
+                 SurveyedPlace& place) {
     place.radius = kLeastSpacings * place.spacing;
     place.deviation = place.radius;
     place.clutter = true;
@@ -51,7 +53,8 @@ void find_radius(const NearestPoints& cloud, std::vector<Point3f>& near, Surveye
         if (step > 0) place.radius *= kGrowth;
         cloud.within(place.position, kSupport * place.radius, kMostForQuadric, near);
         const LocalQuadric quadric = local_quadric(near, place.position, kSupport * place.radius);
-        place.deviation = quadric.holds() ? quadric.deviation : place.radius;
+        place.rounding = quadric.holds() ? steps.deviation(place.position, quadric.normal, place.spacing) : 0;
+        place.deviation = quadric.holds() ? std::max(quadric.deviation, place.rounding) : place.radius;
         place.normal = quadric.normal;
         place.kurtosis = quadric.kurtosis;
         place.spread = quadric.spread;
@@ -142,12 +145,14 @@ SurfaceSurvey::SurfaceSurvey(const CloudSurvey& survey, ThreadTeam& team)
     sparse_radius_ = radius_of_sparse_part(places_);
     const std::vector<std::vector<Place>> around = places_around(index_, places_, team);
     smooth(around, places_, &SurveyedPlace::spacing);
+    const DepthSteps steps(cloud);
     parallel_for(count, kAtATime, team, [&](int i) {
         std::vector<Point3f> near;
-        find_radius(cloud, near, place(i));
+        find_radius(cloud, steps, near, place(i));
     });
     smooth(around, places_, &SurveyedPlace::radius);
     smooth(around, places_, &SurveyedPlace::deviation);
+    smooth(around, places_, &SurveyedPlace::rounding);
 }
 
 double SurfaceSurvey::share(bool SurveyedPlace::*what) const {

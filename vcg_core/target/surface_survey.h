@@ -34,6 +34,7 @@ struct SurveyedPlace {
     /// Standard deviation of the points about the local surface, a quadric: noise, without the bends of the
     /// surface on scales beyond \p radius. A fifth too low where it is some spacings.
     float deviation = 0;
+    float rounding = 0;  ///< the least that it can be: the part of the steps of coordinates, see DepthSteps
     float radius = 0;       ///< the least on which the points show a surface
     bool clutter = false;   ///< no radius shows one: leaves, grass, points between two depths
     bool on_curve = false;  ///< clutter whose points lie on a line or narrow curve

@@ -65,6 +65,28 @@ inline double angle_to_scene(const Point3d& p, const Point3d& n) {
     return std::acos(std::min(1.0, std::abs(truth * n))) * 180 / shapes::kPi;
 }
 
+/// What a camera of structured light measures instead of the depth \p z: an eighth of a pixel of disparity
+/// (base 75 mm, focus 585 pixels). Its steps are 26 mm long at 3 m.
+inline double stepped_depth(double z) {
+    constexpr double kSteps = 8 * 0.075 * 585;
+    return kSteps / std::round(kSteps / z);
+}
+
+/// A frame of \p width x 3/4 \p width pixels of the wall z = 3 + x / 10 + y / 5. The noise is a fifth of a
+/// step, so that the points lie on terraces.
+inline Cloud frame_of_steps(int width, unsigned seed = 1) {
+    Random random(seed);
+    Cloud cloud;
+    for (int v = 0; v < width * 3 / 4; ++v)
+        for (int u = 0; u < width; ++u) {
+            const double x = 1.1 * (u - width / 2.0) / width, y = 1.1 * (v - width * 3 / 8.0) / width;
+            const double depth = kWall / (1 - x / 10 - y / 5), noise = 0.005 * normal(random);
+            cloud.push_back(Point3d(x, y, 1) * stepped_depth(depth + noise));
+        }
+    return cloud;
+}
+inline const Point3d kNormalOfSteps = Point3d(-0.1, -0.2, 1) / std::sqrt(1.05);
+
 constexpr double kTree = 3;  ///< height over the ground at which the crowns of the trees have their middle
 
 /// Hills of 40 x 40 with \p trees round crowns, whose returns fill them, and ground below.

@@ -86,6 +86,23 @@ TEST(RawScans, AFrameFacesItsCameraInTheCoordinatesOfARoom) {
     }
 }
 
+TEST(RawScans, TheStepsOfDepthsAreNoSurface) {
+    for (const int vertices : {1500, 6000}) {
+        const NeuralMesh mesh = learn(sensors::frame_of_steps(240), vertices);
+        EXPECT_EQ(mesh.report.genus, 0) << vertices;
+        EXPECT_EQ(mesh.report.boundary_loops, 1) << vertices;
+        double steep = 0, all = 0;
+        for (const auto& f : mesh.faces) {
+            const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(f[k])]; };
+            const Point3d across = (at(1) - at(0)) ^ (at(2) - at(0));
+            all += across.Norm();
+            // 18 degrees.
+            steep += std::abs(across * sensors::kNormalOfSteps) < 0.95 * across.Norm() ? across.Norm() : 0;
+        }
+        EXPECT_LT(steep / all, 0.02) << vertices;
+    }
+}
+
 TEST(RawScans, TreesAreLeftOutAndTheGroundIsOneSheet) {
     const Cloud cloud = sensors::aerial_scan(40000, 30);
     const NeuralMesh mesh = learn(cloud, 3000);
