@@ -41,6 +41,23 @@ bool has_steps(const NearestPoints& cloud, int axis) {
     return shared_values(cloud, axis, std::max<Place>(1, cloud.size() / kSample)).size() >= kFewestValues;
 }
 
+/// Whether those of the points \p near \p p that share its coordinate \p axis cover an area.
+bool share_an_area(const std::vector<vcg::Point3f>& near, const vcg::Point3f& p, int axis) {
+    constexpr float kNarrow =
+        0.3F;  // ratio of the deviations across and along; on lines there are none across
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    float uu = 0, uv = 0, vv = 0;
+    for (const vcg::Point3f& q : near) {
+        if (q[axis] != p[axis]) continue;
+        const float du = q[u] - p[u], dv = q[v] - p[v];
+        uu += du * du;
+        uv += du * dv;
+        vv += dv * dv;
+    }
+    const float mean = (uu + vv) / 2, apart = std::sqrt((uu - vv) * (uu - vv) / 4 + uv * uv);
+    return mean > 0 && mean - apart >= kNarrow * kNarrow * (mean + apart);
+}
+
 }  // namespace
 
 DepthSteps::DepthSteps(const NearestPoints& cloud) {
@@ -49,8 +66,9 @@ DepthSteps::DepthSteps(const NearestPoints& cloud) {
     }
 }
 
-float DepthSteps::deviation(const vcg::Point3f& p, const vcg::Point3f& normal, float spacing) const {
-    int with_steps = 0;
+float DepthSteps::deviation(const vcg::Point3f& p, const vcg::Point3f& normal, float spacing,
+                            const std::vector<vcg::Point3f>& near) const {
+    int with_steps = 0, rounded = 0;
     float deviation = 0;
     for (int axis = 0; axis < 3; ++axis) {
         const std::vector<float>& values = values_[static_cast<std::size_t>(axis)];
@@ -60,9 +78,11 @@ float DepthSteps::deviation(const vcg::Point3f& p, const vcg::Point3f& normal, f
         const float step = std::min(*next - p[axis], p[axis] - *(next - 2));
         if (step <= kLongSteps * spacing) continue;
         ++with_steps;
+        rounded = axis;
         deviation = std::sqrt(kDithered) * step * std::abs(normal[axis]);
     }
-    return with_steps == 1 ? deviation : 0;  // else a grid, whose points are where it says
+    // With several, a grid, whose points are where it says.
+    return with_steps == 1 && share_an_area(near, p, rounded) ? deviation : 0;
 }
 
 }  // namespace neuralmesh

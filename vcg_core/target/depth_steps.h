@@ -21,8 +21,11 @@ public:
     explicit DepthSteps(const NearestPoints& cloud);
 
     /// Standard deviation along the unit vector \p normal of points like \p p, one coordinate of which is
-    /// rounded to steps longer than .75 times \p spacing; else 0. O(log values).
-    float deviation(const vcg::Point3f& p, const vcg::Point3f& normal, float spacing) const;
+    /// rounded to steps longer than .75 times \p spacing; else 0. So it is where those of the points \p near
+    /// it that share its value lie on a line: the surface was cut there, as by contours or by the rings of a
+    /// lathe. O(log values + near).
+    float deviation(const vcg::Point3f& p, const vcg::Point3f& normal, float spacing,
+                    const std::vector<vcg::Point3f>& near) const;
 
 private:
     std::array<std::vector<float>, 3> values_;  ///< that several points have, of each axis, ascending

@@ -53,7 +53,8 @@ void find_radius(const NearestPoints& cloud, const DepthSteps& steps, std::vecto
         if (step > 0) place.radius *= kGrowth;
         cloud.within(place.position, kSupport * place.radius, kMostForQuadric, near);
         const LocalQuadric quadric = local_quadric(near, place.position, kSupport * place.radius);
-        place.rounding = quadric.holds() ? steps.deviation(place.position, quadric.normal, place.spacing) : 0;
+        place.rounding =
+            quadric.holds() ? steps.deviation(place.position, quadric.normal, place.spacing, near) : 0;
         place.deviation = quadric.holds() ? std::max(quadric.deviation, place.rounding) : place.radius;
         place.normal = quadric.normal;
         place.kurtosis = quadric.kurtosis;

@@ -73,10 +73,11 @@ TEST(ThingsThatTouch, HaveNoFalseHandles) {
         for (const vcg::Point3d& p : shapes::torus_cloud(6000, 0, seed))
             standing.emplace_back(p[0], p[2], p[1] + 1.6);
         add(slab, 1, {0, 0, 0}, standing);
-        EXPECT_EQ(mesh_of(turned(standing, seed), 800, seed).report.genus, 1) << "a ring on its edge";
+        EXPECT_EQ(mesh_of(turned(standing, static_cast<double>(seed)), 800, seed).report.genus, 1)
+            << "a ring on its edge";
         Cloud ball = slab;
         add(shapes::sphere_cloud(4000, 0, seed), 1, {0, 0, 1.2}, ball);
-        EXPECT_EQ(mesh_of(turned(ball, seed), 800, seed).report.genus, 0) << "a ball";
+        EXPECT_EQ(mesh_of(turned(ball, static_cast<double>(seed)), 800, seed).report.genus, 0) << "a ball";
     }
 }
 
@@ -138,7 +139,8 @@ TEST(Blades, AreAsThickAsTheirPointsHoweverManyVertices) {
     constexpr double kThickness = 0.02;
     for (const int spacings : in_tiers<int>({3}, {6})) {
         for (const std::uint64_t seed : in_tiers<std::uint64_t>({1}, {2, 3})) {
-            const Cloud cloud = turned(blade(kThickness, kThickness / spacings, seed), seed);
+            const Cloud cloud =
+                turned(blade(kThickness, kThickness / spacings, seed), static_cast<double>(seed));
             double before = 1;
             for (const int vertices : in_tiers<int>({500}, {1000, 2000, 4000})) {
                 SCOPED_TRACE(std::to_string(spacings) + ' ' + std::to_string(seed) + ' ' +
