@@ -189,6 +189,13 @@ PointChoice points_for(int vertices, const TargetSpace& target, const FitOptions
     return choose_points(target, wanted, random);
 }
 
+/// What is known of the points before the fit.
+void tell_of_points(Fitter& fitter, const FitOptions& options) {
+    if (options.noise != nullptr) fitter.know_noise(*options.noise);
+    if (options.expect_strays) fitter.expect_strays();
+    if (!options.expect_layers) fitter.exclude_layers();
+}
+
 double learned_share_of(const Network& network, const TargetSpace& target) {
     if (target.has_faces()) return 0;
     return kLearnedShare * network.vertex_count() / static_cast<double>(target.positions().size());
@@ -205,9 +212,7 @@ void refine_and_fit(Network& network, const TargetSpace& target, const FitOption
     PointChoice points = points_for(network.vertex_count(), target, options, seed);
     if (inserted == 0 || points.fitted.points.size() < kMinPoints) return;
     Fitter fitter(network, std::move(points), team);
-    if (options.noise != nullptr) fitter.know_noise(*options.noise);
-    if (options.expect_strays) fitter.expect_strays();
-    if (!options.expect_layers) fitter.exclude_layers();
+    tell_of_points(fitter, options);
     PartOf untangling(progress, 0.1, 0.2);
     PartOf fitting(progress, 0.2, 1);
     if (!fitter.untangle_surface(untangling)) return;
@@ -234,9 +239,7 @@ FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitO
     if (points.fitted.points.size() < kMinPoints || network.face_count() == 0) return report;
     const double learned_share = learned_share_of(network, target);
     Fitter fitter(network, std::move(points), team);
-    if (options.noise != nullptr) fitter.know_noise(*options.noise);
-    if (options.expect_strays) fitter.expect_strays();
-    if (!options.expect_layers) fitter.exclude_layers();
+    tell_of_points(fitter, options);
     // By time: the reduction takes about as long as the rounds.
     PartOf untangling(progress, 0, 0.1);
     PartOf reducing(progress, 0.1, 0.5);

@@ -240,12 +240,15 @@ void Fitter::measure_noise(const Surface& surface, const PointsByFace& points) {
     noise_variance_ = neuralmesh::noise_variance(surface, points, team_);
     variances_.assign(network_.slot_count(), noise_variance_);
     if (noise_ == nullptr) return;
+    rounding_variances_.assign(network_.slot_count(), 0);
     const PerVertex<float> about_faces = local_variances(network_, surface, points);
     parallel_for(network_.slot_count(), kFitChunk, team_, [&](VertexId v) {
         if (!network_.alive(v)) return;
-        variances_[v] = noise_->variance_at(network_.position(v));
+        const NoiseByPlace::Noise& surveyed = noise_->at(network_.position(v));
+        variances_[v] = surveyed.variance;
+        rounding_variances_[v] = surveyed.rounding_variance;
         if (about_faces[v] > 0) variances_[v] = std::min(variances_[v], kMostOfLocal * about_faces[v]);
-        variances_[v] = std::max(variances_[v], noise_->least_variance_at(network_.position(v)));
+        variances_[v] = std::max(variances_[v], rounding_variances_[v]);
     });
 }
 
@@ -253,7 +256,7 @@ double Fitter::rounding_variance() const {
     if (noise_ == nullptr) return 0;
     double sum = 0;
     for (const Vector3& p : held_out_.points())
-        sum += static_cast<double>(noise_->least_variance_at(to_vcg(p)));
+        sum += static_cast<double>(noise_->at(to_vcg(p)).rounding_variance);
     return sum / static_cast<double>(held_out_.points().size());
 }
 
@@ -266,9 +269,7 @@ VertexNoise Fitter::noise_around(const Surface& surface, const PointsByFace& poi
         noise = {variances_, variances_};
         // The points on one step are off by the same: together they say as much as one.
         for (const VertexId v : network_.vertices())
-            noise.stiffness[v] =
-                (variances_[v] / points_per_vertex + noise_->least_variance_at(network_.position(v))) /
-                (gap * gap);
+            noise.stiffness[v] = (variances_[v] / points_per_vertex + rounding_variances_[v]) / (gap * gap);
     }
     if (!layered_) return noise;
     const PerVertex<float> of_layers = stiffness_by(examine_variances(surface, points), surface, points);

@@ -155,6 +155,7 @@ private:
     const NoiseByPlace* noise_ = nullptr;
     float noise_variance_ = 0;           ///< from the last assignment
     PerVertex<float> variances_;         ///< of the noise around each vertex, from the last assignment
+    PerVertex<float> rounding_variances_;  ///< the part that the points of one step share
     PerVertex<float> widest_variances_;  ///< of the points across the surface, so far
     bool layered_places_ = true;         ///< until a search shows none
     bool excludes_layers_ = false;       ///< the points, or a surface of many more vertices, show none

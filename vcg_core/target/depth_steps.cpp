@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "vcg_core/target/local_quadric.h"
+
 namespace neuralmesh {
 namespace {
 
@@ -43,8 +45,6 @@ bool has_steps(const NearestPoints& cloud, int axis) {
 
 /// Whether those of the points \p near \p p that share its coordinate \p axis cover an area.
 bool share_an_area(const std::vector<vcg::Point3f>& near, const vcg::Point3f& p, int axis) {
-    constexpr float kNarrow =
-        0.3F;  // ratio of the deviations across and along; on lines there are none across
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     float uu = 0, uv = 0, vv = 0;
     for (const vcg::Point3f& q : near) {

@@ -26,6 +26,8 @@ struct LocalQuadric {
     bool holds() const { return points >= kLeastPoints; }
 };
 
+/// With less width than this the points lie on a line, as on one scan line, and more of them are needed.
+constexpr float kNarrow = 0.3F;
 /// More points tell no more of six coefficients.
 constexpr std::size_t kMostForQuadric = 120;
 

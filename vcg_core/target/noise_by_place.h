@@ -25,21 +25,21 @@ public:
     /// \pre some place of \p survey shows a surface
     explicit NoiseByPlace(const SurfaceSurvey& survey);
 
-    /// Variance of the points across the surface around \p p. O(log places).
+    struct Noise {
+        float spacing;
+        float variance;           ///< of the points across the surface
+        float rounding_variance;  ///< the least that it can be: the points lie on the steps of their
+                                  ///< coordinates
+    };
+    /// Around \p p. O(log places).
+    const Noise& at(const vcg::Point3f& p) const { return noise_[index_.index(index_.nearest_to(p))]; }
     float variance_at(const vcg::Point3f& p) const { return at(p).variance; }
-    /// The least that it can be: the points lie on the steps of their coordinates. O(log places).
-    float least_variance_at(const vcg::Point3f& p) const { return at(p).least_variance; }
     /// The square of the shortest edge around \p p that is not bent by the noise alone. O(log places).
     float least_squared_edge_at(const vcg::Point3f& p) const;
     /// How many vertices \p points points carry: each with the area of such edges, and two points. O(places).
     std::size_t carried_by(std::size_t points) const;
 
 private:
-    struct Noise {
-        float spacing, variance, least_variance;
-    };
-    const Noise& at(const vcg::Point3f& p) const { return noise_[index_.index(index_.nearest_to(p))]; }
-
     std::vector<Noise> noise_;
     NearestPoints index_;  ///< of their places
 };

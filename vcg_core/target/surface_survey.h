@@ -17,8 +17,6 @@ namespace neuralmesh {
 
 /// Neighbourhoods that are as thick as this beside their width show no surface.
 constexpr float kThick = 0.55F;
-/// Less wide than this the points lie on a line, as on one scan line, and more of them are needed.
-constexpr float kNarrow = 0.3F;
 /// The least radius in spacings, and in deviations: within five of them the points have all heights, and no
 /// direction along the surface.
 constexpr float kLeastSpacings = 2, kLeastDeviations = 5;
@@ -34,7 +32,8 @@ struct SurveyedPlace {
     /// Standard deviation of the points about the local surface, a quadric: noise, without the bends of the
     /// surface on scales beyond \p radius. A fifth too low where it is some spacings.
     float deviation = 0;
-    float rounding = 0;  ///< the least that it can be: the part of the steps of coordinates, see DepthSteps
+    /// The least that it can be: the part of the steps of coordinates, see DepthSteps.
+    float rounding = 0;
     float radius = 0;       ///< the least on which the points show a surface
     bool clutter = false;   ///< no radius shows one: leaves, grass, points between two depths
     bool on_curve = false;  ///< clutter whose points lie on a line or narrow curve

@@ -50,7 +50,10 @@ TEST(DepthSteps, GrowWithTheDepth) {
         const float found = steps.deviation(points[i], {0, 0, 1}, kSpacing);
         ++all;
         // The first and the last value, the row in the middle, whose y are all 0, and ends of terraces.
-        if (found == 0 && ++none > 0) continue;
+        if (found == 0) {
+            ++none;
+            continue;
+        }
         // Of points that are dithered between two steps.
         EXPECT_NEAR(static_cast<double>(found) * std::sqrt(6), step, 0.02 * step) << z;
         EXPECT_NEAR(steps.deviation(points[i], {0.8F, 0, 0.6F}, kSpacing) / found, 0.6F, 1e-3F);
