@@ -11,16 +11,18 @@
 namespace neuralmesh {
 namespace {
 
-/// A mesh of so many vertices comes at once, and has the shape of most things.
+/// Of a sketch.
 constexpr int kFirst = 1000;
-/// Errors from .9 to 1.03 of what is asked for are as asked: they vary by as much with the seed.
-constexpr double kLeastShare = 0.9, kMostShare = 1.03, kAim = 0.97;
+/// Errors from .9 to 1.05 of what is asked for are as asked: they vary by as much with the seed.
+constexpr double kLeastShare = 0.9, kMostShare = 1.05, kAim = 0.97;
 /// Nor do numbers of vertices that differ by less say anything.
 constexpr double kSameNumber = 1.1, kSameError = 1.05;
 /// The power law holds over a factor of so many vertices.
 constexpr double kStep = 4;
 /// The exponents that surfaces have; below the second the error levels off.
-constexpr double kSmooth = 1, kLevel = 0.1, kSteepest = 1.5, kFlattest = 0.35;
+constexpr double kUsual = 0.8, kLevel = 0.1, kSteepest = 1.5, kFlattest = 0.35;
+/// The exponent falls with the vertices, as what is left is creases and noise.
+constexpr double kFalls = 0.85;
 constexpr std::size_t kMostTrials = 8;
 
 /// \p ratio to the power \p exponent, at least 1 / kStep and at most kStep. By bisection, because the last
@@ -77,26 +79,30 @@ int ErrorSearch::extrapolated(const Trial& from, double exponent, int low, int h
     return std::clamp(static_cast<int>(std::lround(vertices)), low, high);
 }
 
+int ErrorSearch::first() const { return std::min(std::max(kFirst, least_), most_); }
+
 int ErrorSearch::next() const {
     if (least_ > most_ || trials_.size() == kMostTrials) return 0;
-    if (trials_.empty()) return std::clamp(kFirst, least_, most_);
+    if (trials_.empty()) return extrapolated(guess_, kUsual, least_, most_);
     const std::size_t fine = enough(), count = trials_.size();
     const auto usual = [](double p) { return std::clamp(p, kFlattest, kSteepest); };
     if (fine == count) {
         const Trial& last = trials_.back();
         if (last.vertices == most_ || levels_off()) return 0;
-        const double p = count < 2 ? kSmooth : usual(exponent(trials_[count - 2], last));
-        return extrapolated(last, p, last.vertices + 1, most_);
+        const double p = count < 2 ? kUsual : kFalls * exponent(trials_[count - 2], last);
+        return extrapolated(last, usual(p), last.vertices + 1, most_);
     }
     const Trial& found = trials_[fine];
     if (found.error >= kLeastShare * wanted_) return 0;
     const double least = fine == 0 ? least_ : kSameNumber * trials_[fine - 1].vertices;
     if (found.vertices <= kSameNumber * least) return 0;
     const double p = fine > 0    ? exponent(trials_[fine - 1], found)
-                     : count < 2 ? kSmooth
-                                 : exponent(found, trials_[1]);
-    return extrapolated(found, usual(p), static_cast<int>(std::ceil(least)),
-                        static_cast<int>(found.vertices / kSameNumber));
+                     : count < 2 ? kUsual
+                                 : (exponent(found, trials_[1]) + kUsual) / 2;
+    const int low = static_cast<int>(std::ceil(least)), high = static_cast<int>(found.vertices / kSameNumber);
+    const int next = extrapolated(found, usual(p), low, high);
+    // The error jumps there.
+    return fine > 0 && next == low ? static_cast<int>(std::sqrt(least * high)) : next;
 }
 
 }  // namespace neuralmesh

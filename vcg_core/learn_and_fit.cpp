@@ -8,11 +8,8 @@
 
 #include "vcg_core/base/random.h"
 #include "vcg_core/fit/fit.h"
-#include "vcg_core/learning/learner.h"
 #include "vcg_core/mesh/simplify.h"
 #include "vcg_core/mesh/vertex_order.h"
-#include "vcg_core/plan.h"
-#include "vcg_core/thickening.h"
 
 namespace neuralmesh {
 
@@ -21,21 +18,6 @@ namespace {
 std::size_t carried_by_points(const LearningTask& task) {
     const std::size_t points = task.target().positions().size();
     return task.noise_by_place ? task.noise_by_place->carried_by(points) : points / kPointsPerCarried;
-}
-
-Plan plan_for(const LearningTask& task, const Settings& settings) {
-    Circumstances given;
-    given.vertices = settings.target_vertices;
-    given.start_vertices = task.network.vertex_count();
-    given.points = task.target().positions().size();
-    given.exact = task.target().is_exact();
-    given.noise = task.noise;
-    given.outliers = static_cast<double>(task.outliers) / static_cast<double>(given.points);
-    given.carried_by_points = carried_by_points(task);
-    given.closed = task.network.boundary_loop_count() == 0;
-    given.encloses_space = task.encloses_space;
-    given.redistributes = settings.redistributes_vertices();
-    return plan_for(given);
 }
 
 int share_of(int number, double share) { return std::max(1, static_cast<int>(std::lround(share * number))); }
@@ -59,8 +41,7 @@ LearnerOptions learner_options(const LearningTask& task, const Settings& setting
     return options;
 }
 
-FitReport fit(Network& network, const LearningTask& task, const Settings& settings, const Plan& plan,
-              Progress& progress) {
+FitOptions fit_options(const LearningTask& task, const Settings& settings, const Plan& plan) {
     FitOptions options;
     options.expect_strays = task.outliers > 0;
     options.expect_layers = plan.expects_layers;
@@ -73,20 +54,39 @@ FitReport fit(Network& network, const LearningTask& task, const Settings& settin
     // The signal counter asks for the density of the cloud, which redistribution would undo. On a sheet the
     // error is largest at the rim, and vertices inserted there stick out.
     options.redistribute = settings.utility_counter == kNormalVariation && task.encloses_space;
+    return options;
+}
+
+FitReport fit(Network& network, const LearningTask& task, const FitOptions& options, const Settings& settings,
+              Progress& progress) {
     return fit_to_points(network, task.target(), options, settings.threads,
                          stream_seed(settings.random_seed, Stream::fit), progress);
 }
 
-/// Before the fit.
-LearnedNetwork learned_by(const Learner& learner, StopReason reason) {
+/// Before the fit. \p before: the figures of earlier learners.
+LearnedNetwork learned_by(const Learner& learner, StopReason reason, const LearnedNetwork& before) {
     LearnedNetwork result;
     result.stop_reason = reason;
     result.network = learner.network();
     result.forced = learner.forced();
-    result.topology_changes = learner.topology_changes();
-    result.signals = learner.signals();
-    result.splits = learner.splits();
-    result.collapses = learner.collapses();
+    result.topology_changes = before.topology_changes + learner.topology_changes();
+    result.signals = before.signals + learner.signals();
+    result.splits = before.splits + learner.splits();
+    result.collapses = before.collapses + learner.collapses();
+    return result;
+}
+
+/// The fit stops where the topology leaves only collapses that spoil the shape.
+void finish(Network& network, int vertices) {
+    if (network.vertex_count() > vertices) simplify(network, vertices);
+    network.orient_outward();
+}
+
+PerVertex<float> taken_over(const PerVertex<float>& values, const PerVertex<VertexId>& sources) {
+    if (values.empty()) return values;
+    PerVertex<float> result(sources.size(), 0);
+    for (VertexId v = 0; v < sources.size(); ++v)
+        if (sources[v] >= 0) result[v] = values[sources[v]];
     return result;
 }
 
@@ -101,7 +101,7 @@ LearnedNetwork observed(const LearningTask& task, const Settings& settings, Prog
     for (const VertexId v : network.vertices()) places.push_back(network.position(v));
     learner.move_to(places);
     LearnedNetwork result =
-        learned_by(learner, finished ? StopReason::target_reached : StopReason::cancelled);
+        learned_by(learner, finished ? StopReason::target_reached : StopReason::cancelled, {});
     result.measures = measures_of(learner, learner.crease_measure(), result.network, {}, settings);
     result.carried = static_cast<int>(task.given.positions().size());
     return result;
@@ -109,31 +109,82 @@ LearnedNetwork observed(const LearningTask& task, const Settings& settings, Prog
 
 }  // namespace
 
-LearnedNetwork learn_and_fit(const LearningTask& task, const Settings& settings, MonotoneProgress& progress) {
-    if (task.is_known) return observed(task, settings, progress);
-    const Plan plan = plan_for(task, settings);
+Learning::Learning(const LearningTask& task, const Settings& settings)
+    : task_(task),
+      settings_(settings),
+      team_(thread_count(settings.threads)),
+      thickening_(task),
+      thicker_(thickening_.thicker(task, team_)) {}
+
+Settings Learning::settings_for(int vertices) const {
+    Settings settings = settings_;
+    settings.target_vertices = vertices;
+    return settings;
+}
+
+Plan Learning::plan_for(const Settings& settings) const {
+    Circumstances given;
+    given.vertices = settings.target_vertices;
+    given.start_vertices = task_.network.vertex_count();
+    given.points = task_.target().positions().size();
+    given.exact = task_.target().is_exact();
+    // Edges are as long as the square root of the area of a vertex.
+    given.noise =
+        task_.noise * std::sqrt(static_cast<double>(settings.target_vertices) / settings_.target_vertices);
+    given.outliers = static_cast<double>(task_.outliers) / static_cast<double>(given.points);
+    given.carried_by_points = carried_by_points(task_);
+    given.closed = task_.network.boundary_loop_count() == 0;
+    given.encloses_space = task_.encloses_space;
+    given.redistributes = settings.redistributes_vertices();
+    return neuralmesh::plan_for(given);
+}
+
+StopReason Learning::learn(const Settings& settings, const Plan& plan, Progress& progress) {
+    // Without the fit nothing takes vertices away again.
+    const bool goes_on = learner_ && settings.redistributes_vertices();
+    if (goes_on && learner_->network().vertex_count() >= plan.grow_to) return StopReason::target_reached;
+    if (goes_on) before_ = learned_by(*learner_, StopReason::target_reached, before_);
+    const Network start = goes_on ? before_.network : task_.network;
+    learner_.emplace(thicker_ ? *thicker_ : task_.target(), learner_options(task_, settings, plan), start);
+    return learner_->run(goes_on ? 0 : task_.landing_signals, progress);
+}
+
+LearnedNetwork Learning::with(int vertices, MonotoneProgress& progress, int rounds) {
+    const Settings settings = settings_for(vertices);
+    if (task_.is_known) return observed(task_, settings, progress);
+    const Plan plan = plan_for(settings);
     PartOf learning(progress, kPrepared, settings.fit_to_points ? kLearned : 1);
     PartOf fitting(progress, kLearned, 1);
-    const Thickening thickening(task);
-    ThreadTeam team(thread_count(settings.threads));
-    const std::optional<TargetSpace> thicker = thickening.thicker(task, team);
-    Learner learner(thicker ? *thicker : task.target(), learner_options(task, settings, plan), task.network);
-    const StopReason reason = learner.run(task.landing_signals, learning);
-    LearnedNetwork result = learned_by(learner, reason);
-    thickening.take_back(result.network, team);
+    const StopReason reason = learn(settings, plan, learning);
+    LearnedNetwork result = learned_by(*learner_, reason, before_);
+    thickening_.take_back(result.network, team_);
     FitReport report;
+    FitOptions options = fit_options(task_, settings, plan);
+    options.rounds = rounds;
     if (settings.fit_to_points && !progress.stopped())
-        report = fit(result.network, task, settings, plan, fitting);
+        report = fit(result.network, task_, options, settings, fitting);
     if (progress.stopped()) result.stop_reason = StopReason::cancelled;
-    // The fit stops where the topology leaves only collapses that spoil the shape.
-    if (result.network.vertex_count() > settings.target_vertices)
-        simplify(result.network, settings.target_vertices);
-    result.network.orient_outward();
+    finish(result.network, vertices);
     const bool moved = report.improved || report.inserted > 0;
     // If the rounds of the fit were discarded, no vertex has moved to the place of another.
-    result.measures = measures_of(learner, learner.crease_measure(), result.network,
+    result.measures = measures_of(*learner_, learner_->crease_measure(), result.network,
                                   moved ? report.sources : PerVertex<VertexId>(), settings);
-    if (plan.carried < settings.target_vertices) result.carried = static_cast<int>(carried_by_points(task));
+    if (plan.carried < vertices) result.carried = static_cast<int>(carried_by_points(task_));
+    return result;
+}
+
+LearnedNetwork Learning::reduced(const LearnedNetwork& finer, int vertices,
+                                 MonotoneProgress& progress) const {
+    LearnedNetwork result = finer;
+    if (task_.is_known) return result;
+    const Settings settings = settings_for(vertices);
+    FitOptions options = fit_options(task_, settings, plan_for(settings));
+    options.fitted_before = true;
+    const FitReport report = fit(result.network, task_, options, settings, progress);
+    if (progress.stopped()) result.stop_reason = StopReason::cancelled;
+    finish(result.network, vertices);
+    result.measures.normal_counters = taken_over(finer.measures.normal_counters, report.sources);
+    result.measures.creases = taken_over(finer.measures.creases, report.sources);
     return result;
 }
 

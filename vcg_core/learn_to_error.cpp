@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -48,14 +49,15 @@ public:
     std::size_t held_out() const { return held_out_.size(); }
     /// In the units of the input.
     double noise() const { return std::sqrt(squared_noise_) * given_.frame().diagonal; }
-    /// Root mean square of the distances from \p mesh, without the noise, in the units of the input.
-    double error_of(const NeuralMesh& mesh) {
-        std::vector<Point3f> positions;
-        for (const vcg::Point3d& p : mesh.positions) positions.push_back(given_.frame().inside(p));
-        const Network network(positions, mesh.faces);
-        const double distance = rms_distance(held_out_, {}, network, team_);
-        const double squared = distance * distance - squared_noise_;
-        return std::sqrt(std::max(squared, kUnknownShare * squared_noise_)) * given_.frame().diagonal;
+    /// Root mean square of the distances from \p network, which lies in \p frame, without the noise, in the
+    /// units of the input.
+    double error_of(const Network& network, const Frame& frame) {
+        std::vector<Vector3> points;
+        for (const Vector3& p : held_out_)
+            points.push_back(to_eigen(frame.inside(given_.frame().outside(to_vcg(p)))));
+        const double distance = rms_distance(points, {}, network, team_) * frame.diagonal;
+        const double squared_noise = noise() * noise();
+        return std::sqrt(std::max(distance * distance - squared_noise, kUnknownShare * squared_noise));
     }
 
 private:
@@ -129,33 +131,114 @@ void report(const ErrorSearch& search, const Settings& settings, const Examinati
     }
 }
 
+/// A start mesh serves up to so many times the vertices that it was made for.
+constexpr int kServes = 10;
+
+/// Meshes of several numbers of vertices.
+class Trials {
+public:
+    /// Keeps references.
+    Trials(const Settings& settings, const OuterStages& stages, Examination& examination)
+        : settings_(settings), stages_(stages), examination_(examination) {}
+
+    /// Learns \p vertices, or reduces a mesh of more. \return the error \throws what OuterStages::prepare
+    /// throws; SettingError if the components and handles of the cloud need more, and there may be more
+    double learn(int vertices, Progress& progress) {
+        MonotoneProgress monotone(progress);
+        const auto finer = meshes_.lower_bound(vertices);
+        if (finer == meshes_.end() || !settings_.redistributes_vertices())
+            return learn(vertices, 0, monotone);
+        const std::shared_ptr<Run> run = finer->second.run;
+        check(*run, vertices);
+        return add(vertices, {run, run->learning.reduced(finer->second.learned, vertices, monotone)});
+    }
+    /// The same with a brief fit. \return the error that a longer one is likely to leave
+    double sketch(int vertices, Progress& progress) {
+        constexpr int kRounds = 1;
+        constexpr double kLeft = 0.9;  // closed surfaces; open ones may come to half the error
+        MonotoneProgress monotone(progress);
+        return kLeft * learn(vertices, kRounds, monotone);
+    }
+    NeuralMesh finish(int vertices) const {
+        const Mesh& mesh = meshes_.at(vertices);
+        return stages_.finish(mesh.run->task, mesh.learned);
+    }
+
+private:
+    struct Run {
+        Run(LearningTask the_task, const Settings& settings)
+            : task(std::move(the_task)), learning(task, settings), made_for(settings.target_vertices) {}
+        LearningTask task;
+        Learning learning;
+        int made_for;  ///< vertices
+    };
+    struct Mesh {
+        std::shared_ptr<Run> run;
+        LearnedNetwork learned;
+    };
+
+    double learn(int vertices, int rounds, MonotoneProgress& progress) {
+        if (!run_ || vertices > kServes * run_->made_for) prepare(vertices, progress);
+        check(*run_, vertices);
+        return add(vertices, {run_, run_->learning.with(vertices, progress, rounds)});
+    }
+    void check(const Run& run, int vertices) const {
+        if (vertices < std::min(run.task.vertices_needed, settings_.target_vertices))
+            throw SettingError("The components and handles of the cloud need more vertices.");
+    }
+    double add(int vertices, Mesh mesh) {
+        const double error = examination_.error_of(mesh.learned.network, mesh.run->task.target().frame());
+        meshes_.insert_or_assign(vertices, std::move(mesh));
+        return error;
+    }
+
+    void prepare(int vertices, Progress& progress) {
+        Settings settings = settings_;
+        settings.target_vertices = vertices;
+        PartOf preparing(progress, 0, kPrepared);
+        run_ = std::make_shared<Run>(stages_.prepare(examination_.learned(), settings, preparing), settings);
+    }
+
+    const Settings& settings_;
+    const OuterStages& stages_;
+    Examination& examination_;
+    std::shared_ptr<Run> run_;
+    std::map<int, Mesh> meshes_;  ///< by vertices
+};
+
 }  // namespace
 
 NeuralMesh learn_to_error(const TargetSpace& given, const Settings& settings, Progress& progress,
-                          const Learn& learn) {
+                          const OuterStages& stages) {
     constexpr int kLeast = 4;
     constexpr double kShare = 0.4;  // of the progress that is left, for a trial
     Examination examination(given, settings);
-    Settings trial = settings;
-    if (examination.held_out() == 0) return learn(given, trial, progress);
     MonotoneProgress monotone(progress);
+    Trials trials(settings, stages, examination);
+    if (examination.held_out() == 0) {
+        trials.learn(settings.target_vertices, monotone);
+        return trials.finish(settings.target_vertices);
+    }
     ErrorSearch search(settings.target_error, kLeast, settings.target_vertices);
-    std::map<int, NeuralMesh> meshes;  // by vertices asked for
     double done = 0;
-    while ((trial.target_vertices = search.next()) != 0) {
+    bool sketched = false;
+    while (const int vertices = sketched ? search.next() : search.first()) {
         PartOf part(monotone, done, done + kShare * (1 - done));
         done += kShare * (1 - done);
         try {
-            NeuralMesh mesh = learn(examination.learned(), trial, part);
-            if (monotone.stopped()) return mesh;
-            search.add(trial.target_vertices, examination.error_of(mesh));
-            meshes.emplace(trial.target_vertices, std::move(mesh));
+            const double error = sketched ? trials.learn(vertices, part) : trials.sketch(vertices, part);
+            if (monotone.stopped()) return trials.finish(vertices);
+            if (sketched)
+                search.add(vertices, error);
+            else
+                search.guess(vertices, error);
+            sketched = true;
         } catch (const SettingError&) {  // too few for the components and handles
-            if (trial.target_vertices == settings.target_vertices) throw;
-            search.too_few(trial.target_vertices);
+            if (vertices == settings.target_vertices) throw;
+            search.too_few(vertices);
         }
     }
-    NeuralMesh mesh = std::move(meshes.at(search.best().vertices));
+    NeuralMesh mesh = trials.finish(search.best().vertices);
     report(search, settings, examination, mesh.report);
     return mesh;
 }

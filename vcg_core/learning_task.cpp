@@ -277,7 +277,7 @@ void begin_closed(LearningTask& task, StartMesh shell, const Settings& settings)
     remove_groups_without_component(task, shell.outliers, {&shell.positions, &shell.walls.positions});
     for (float& length : shell.walls.thickenings)
         length *= static_cast<float>(diagonal / task.target().frame().diagonal);
-    const int needed = vertices_needed(shell, settings);
+    const int needed = task.vertices_needed = vertices_needed(shell, settings);
     if (needed > settings.target_vertices) {
         task.warnings.push_back(too_large(shell, needed, settings.target_vertices));
         begin_tetrahedron(task, settings);

@@ -32,6 +32,7 @@ struct LearningTask {
     int outliers = 0;  ///< number of points removed as such
     Network network;
     WallSides walls;          ///< as in StartMesh
+    int vertices_needed = 0;  ///< for the components and handles of a shell
     int landing_signals = 0;  ///< per vertex, before growth, to bring a shell down to the points
     /// False for a sheet that is closed: its start mesh has two layers with nothing between them.
     bool encloses_space = true;

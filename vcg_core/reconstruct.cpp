@@ -146,24 +146,18 @@ void warn_if_not_opened(const Settings& settings, Report& report) {
         "nothing faces. Choose start_mesh 0 for an open one.");
 }
 
-NeuralMesh learn(const TargetSpace& given, const Settings& settings, Progress& progress,
-                 const IndexedMesh<double>& start) {
-    MonotoneProgress monotone(progress);
-    PartOf preparing(monotone, 0, kPrepared);
-    LearningTask task = prepare_or_stop(given, settings, start, preparing);
-    const LearnedNetwork learned = learn_and_fit(task, settings, monotone);
-
+NeuralMesh mesh_of(const LearningTask& task, const LearnedNetwork& learned, const Settings& settings,
+                   Progress& progress) {
     NeuralMesh mesh;
-    mesh.report.warnings = std::move(task.warnings);
-    mesh.report.notes = std::move(task.notes);
+    mesh.report.warnings = task.warnings;
+    mesh.report.notes = task.notes;
     mesh.report.topology_confidence = task.topology_confidence;
     mesh.report.outliers = task.outliers;
     write_geometry(learned.network, task.target().frame(), mesh);
     write_features(learned, settings, mesh);
     if (settings.crease_lines) write_creases(learned, task.target().frame(), mesh);
-    write_colors(task.target(), learned.network, settings, monotone, mesh);
+    write_colors(task.target(), learned.network, settings, progress, mesh);
     write_figures(learned, mesh.report);
-    if (monotone.stopped()) mesh.report.stop_reason = StopReason::cancelled;
     warn_of_growth(learned, mesh.report);
     note_topology(task, learned, mesh.report);
     warn_if_not_opened(settings, mesh.report);
@@ -174,17 +168,30 @@ NeuralMesh learn(const TargetSpace& given, const Settings& settings, Progress& p
     return mesh;
 }
 
+NeuralMesh learn(const TargetSpace& given, const Settings& settings, MonotoneProgress& progress,
+                 const OuterStages& stages) {
+    PartOf preparing(progress, 0, kPrepared);
+    const LearningTask task = stages.prepare(given, settings, preparing);
+    return stages.finish(task, Learning(task, settings).with(settings.target_vertices, progress));
+}
+
 }  // namespace
 
 NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progress& progress,
                        const IndexedMesh<double>& start) {
     const auto begin = std::chrono::steady_clock::now();
     settings.check();
-    const Learn once = [&start](const TargetSpace& target, const Settings& of_run, Progress& reports) {
-        return learn(target, of_run, reports, start);
+    MonotoneProgress monotone(progress);
+    OuterStages stages;
+    stages.prepare = [&start](const TargetSpace& target, const Settings& of_task, Progress& preparing) {
+        return prepare_or_stop(target, of_task, start, preparing);
     };
-    NeuralMesh mesh = settings.target_error > 0 ? learn_to_error(given, settings, progress, once)
-                                                : once(given, settings, progress);
+    stages.finish = [&](const LearningTask& task, const LearnedNetwork& learned) {
+        return mesh_of(task, learned, settings, monotone);
+    };
+    NeuralMesh mesh = settings.target_error > 0 ? learn_to_error(given, settings, monotone, stages)
+                                                : learn(given, settings, monotone, stages);
+    if (monotone.stopped()) mesh.report.stop_reason = StopReason::cancelled;
     mesh.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return mesh;
 }

@@ -79,7 +79,7 @@ struct Settings {
     double learning_rate = 0.06;           ///< alpha_w, eq 1
     double smoothing_rate = 0.05;          ///< alpha_L
     int smoothing_steps = 5;               ///< C_L
-    int signals_per_split = 100;           ///< C_vs; learn_and_fit() may halve it
+    int signals_per_split = 100;           ///< C_vs; the plan may halve it
     int signals_per_collapse = 10;         ///< C_ec
     double counter_decay = 0.95;           ///< alpha_nc, after eq 4
     double feature_decay = 0.95;           ///< alpha_fd, eq 6

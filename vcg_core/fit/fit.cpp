@@ -194,6 +194,7 @@ void tell_of_points(Fitter& fitter, const FitOptions& options) {
     if (options.noise != nullptr) fitter.know_noise(*options.noise);
     if (options.expect_strays) fitter.expect_strays();
     if (!options.expect_layers) fitter.exclude_layers();
+    if (options.fitted_before) fitter.expect_fitted();
 }
 
 double learned_share_of(const Network& network, const TargetSpace& target) {

@@ -25,6 +25,8 @@ struct FitOptions {
     /// Reduce the network to this number of vertices first, removing those whose removal costs least. 0, or
     /// at least the present number: keep it.
     int reduce_to = 0;
+    /// The network is the result of another fit.
+    bool fitted_before = false;
     /// Whether the noise is small beside the edges, or the shape tells what goes. Then the reduction makes do
     /// with fewer points, and its rounds remove all vertices whose costs do not depend on each other.
     bool precise = false;

@@ -117,6 +117,13 @@ std::vector<float> BendingSearch::next_weights(float least) {
     return weights;
 }
 
+void BendingSearch::begin_late() {
+    constexpr int kRounds = 3;
+    constexpr float kChosen = 0.01F;
+    rounds_ = kRounds;
+    chosen_ = kChosen;
+}
+
 Fitter::Fitter(Network& network, PointChoice points, ThreadTeam& team)
     : network_(network),
       team_(team),

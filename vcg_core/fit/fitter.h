@@ -30,6 +30,8 @@ public:
     std::vector<float> next_weights(float least);
     /// \p weight was the best of them.
     void choose(float weight) { chosen_ = weight; }
+    /// The points are assigned to the right faces already.
+    void begin_late();
 
 private:
     int rounds_ = 0;
@@ -48,6 +50,8 @@ public:
     void expect_strays() { expects_strays_ = true; }
     /// From now on does not look for layers of points.
     void exclude_layers() { excludes_layers_ = true; }
+    /// The network is the result of another fit.
+    void expect_fitted() { bending_.begin_late(); }
 
     /// Removes self-crossings, see make_sound(), and from then on lets no step add any. \return false if
     /// \p progress asks to stop; then the network is unchanged.

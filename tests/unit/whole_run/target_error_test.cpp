@@ -90,41 +90,65 @@ TEST(TargetError, WarnsIfTheNoiseDoesNotAllowIt) {
     EXPECT_TRUE(soundness::has_warning(mesh, "noise or the number of the points"));
 }
 
-/// A sphere of as many vertices as asked for, but none below \p least.
-Learn spheres_from(int least, int& calls) {
-    return [least, &calls](const TargetSpace& /*target*/, const Settings& settings, Progress& progress) {
-        ++calls;
+/// Those of a run, but no start mesh has fewer than \p least vertices. Counts the start meshes in \p made.
+OuterStages stages_from(int least, int& made) {
+    OuterStages stages;
+    stages.prepare = [least, &made](const TargetSpace& target, const Settings& settings, Progress& progress) {
+        ++made;
         if (settings.target_vertices < least) throw SettingError("Too few.");
+        return prepare(target, settings, {}, progress);
+    };
+    stages.finish = [](const LearningTask& /*task*/, const LearnedNetwork& learned) {
         NeuralMesh mesh;
-        const shapes::Shape sphere = shapes::icosphere(settings.target_vertices < 900 ? 2 : 3);
-        mesh.positions = sphere.positions;
-        mesh.faces = sphere.faces;
-        progress(1, "done");
+        mesh.report.vertices = learned.network.vertex_count();
         return mesh;
     };
+    return stages;
 }
 
 TEST(TargetError, TriesMoreVerticesWhereTooFewMakeNoMesh) {
     const TargetSpace target = targets::target_of(shapes::sphere_cloud(20000));
     NoProgress progress;
-    int calls = 0;
-    EXPECT_EQ(learn_to_error(target, settings_for(0.1), progress, spheres_from(600, calls)).faces.size(),
-              320U);
-    EXPECT_LT(calls, 12);
-    EXPECT_EQ(learn_to_error(target, settings_for(0.1), progress, spheres_from(5000, calls)).faces.size(),
-              1280U);
-    EXPECT_THROW(learn_to_error(target, settings_for(0.1, 500), progress, spheres_from(600, calls)),
+    int made = 0;
+    const NeuralMesh mesh = learn_to_error(target, settings_for(0.001), progress, stages_from(1600, made));
+    EXPECT_GE(mesh.report.vertices, 1600);
+    EXPECT_LE(made, 3);
+    EXPECT_THROW(learn_to_error(target, settings_for(0.1, 500), progress, stages_from(600, made)),
                  SettingError);
+}
+
+TEST(TargetError, MakesTheStartMeshOnce) {
+    const TargetSpace target = targets::target_of(shapes::sphere_cloud(20000));
+    NoProgress progress;
+    for (const double error : {0.03, 0.002}) {
+        int made = 0;
+        learn_to_error(target, settings_for(error), progress, stages_from(4, made));
+        EXPECT_EQ(made, 1) << error;
+    }
+}
+
+TEST(TargetError, LeavesNoComponentOut) {
+    Cloud cloud;
+    for (int i = 0; i < 30; ++i)
+        for (const auto& p : shapes::sphere_cloud(700))
+            cloud.push_back(
+                p + vcg::Point3f(3.0F * static_cast<float>(i % 6), 3.0F * static_cast<float>(i / 6), 0));
+    const NeuralMesh mesh = learn(targets::target_of(cloud), settings_for(0.5));
+    EXPECT_EQ(mesh.report.components, 30);
+    EXPECT_EQ(mesh.report.genus, 0);
 }
 
 TEST(TargetError, IsLeftWhereItIsIfAskedToStop) {
     class StopAtOnce : public Progress {
         bool operator()(double, const char*) override { return false; }
     } stop;
-    int calls = 0;
     const TargetSpace target = targets::target_of(shapes::sphere_cloud(20000));
-    EXPECT_FALSE(learn_to_error(target, settings_for(0.001), stop, spheres_from(4, calls)).faces.empty());
-    EXPECT_EQ(calls, 1);
+    int made = 0;
+    learn_to_error(target, settings_for(0.001), stop, stages_from(4, made));
+    EXPECT_EQ(made, 1);
+    const NeuralMesh mesh = reconstruct(target, settings_for(0.001), stop);
+    EXPECT_EQ(mesh.report.stop_reason, StopReason::cancelled);
+    EXPECT_FALSE(mesh.faces.empty());
 }
 
 TEST(TargetError, OfFewPointsStillHasAMesh) {
