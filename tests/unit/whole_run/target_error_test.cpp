@@ -107,10 +107,10 @@ OuterStages stages_from(int least, int& made) {
 }
 
 TEST(TargetError, TriesMoreVerticesWhereTooFewMakeNoMesh) {
-    const TargetSpace target = targets::target_of(shapes::sphere_cloud(20000));
+    const TargetSpace target = targets::target_of(shapes::sphere_cloud(6000));
     NoProgress progress;
     int made = 0;
-    const NeuralMesh mesh = learn_to_error(target, settings_for(0.001), progress, stages_from(1600, made));
+    const NeuralMesh mesh = learn_to_error(target, settings_for(0.002), progress, stages_from(1600, made));
     EXPECT_GE(mesh.report.vertices, 1600);
     EXPECT_LE(made, 3);
     EXPECT_THROW(learn_to_error(target, settings_for(0.1, 500), progress, stages_from(600, made)),
@@ -118,9 +118,9 @@ TEST(TargetError, TriesMoreVerticesWhereTooFewMakeNoMesh) {
 }
 
 TEST(TargetError, MakesTheStartMeshOnce) {
-    const TargetSpace target = targets::target_of(shapes::sphere_cloud(20000));
+    const TargetSpace target = targets::target_of(shapes::sphere_cloud(6000));
     NoProgress progress;
-    for (const double error : {0.03, 0.002}) {
+    for (const double error : {0.03, 0.003}) {
         int made = 0;
         learn_to_error(target, settings_for(error), progress, stages_from(4, made));
         EXPECT_EQ(made, 1) << error;
@@ -142,7 +142,7 @@ TEST(TargetError, IsLeftWhereItIsIfAskedToStop) {
     class StopAtOnce : public Progress {
         bool operator()(double, const char*) override { return false; }
     } stop;
-    const TargetSpace target = targets::target_of(shapes::sphere_cloud(20000));
+    const TargetSpace target = targets::target_of(shapes::sphere_cloud(6000));
     int made = 0;
     learn_to_error(target, settings_for(0.001), stop, stages_from(4, made));
     EXPECT_EQ(made, 1);
