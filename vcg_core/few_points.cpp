@@ -26,8 +26,8 @@ NEURALMESH_END_UNINITIALIZED();
 namespace neuralmesh {
 namespace {
 
-/// More points tell the surface, and learning gives better shaped faces than those of the hull.
-constexpr std::size_t kMostPoints = 128;
+/// A hull of more takes long, and their shell encloses the space if they do.
+constexpr std::size_t kMostPoints = 1000;
 /// How far inside of the hull a point may lie, in mean spacings.
 constexpr double kDeepest = 0.1;
 /// A hull thinner than this, beside the distances of its points, is that of a line or a sheet; a tetrahedron
@@ -156,10 +156,10 @@ TargetSpace target_of(const Hull& hull, const TargetSpace& cloud) {
 
 std::optional<ConvexSurface> convex_surface(const TargetSpace& cloud, int vertices, bool thin_too) {
     const std::size_t points = cloud.positions().size();
-    if (points > kMostPoints || points > static_cast<std::size_t>(vertices)) return {};
+    if (points > kMostPoints) return {};
     std::optional<Hull> hull = hull_of(cloud.positions(), thin_too);
     if (!hull) return {};
-    const bool fits = fits_a_network(hull->mesh);
+    const bool fits = fits_a_network(hull->mesh) && points <= static_cast<std::size_t>(vertices);
     // Points within the faces of the hull say that these are flat.
     const bool bends = hull->points.size() == points;
     if (fits) hull = finer(*hull, vertices, bends ? NewVertices::between : NewVertices::on_edges);

@@ -14,12 +14,13 @@ namespace neuralmesh {
 /// A surface as what is learned and as the mesh of it.
 struct ConvexSurface {
     TargetSpace target;  ///< has faces, and colours if the cloud has
-    /// In the frame of the target. Empty if a vertex of the hull has more neighbours than a network allows.
+    /// In the frame of the target. Empty if there are more points than vertices, or a vertex of the hull has
+    /// more neighbours than a network allows.
     IndexedMesh<float> mesh;
 };
 
 /// The convex hull of the points of \p cloud with \p vertices vertices, evenly spread. Nothing if there are
-/// more points than vertices, or more than 128, if one is farther inside of the hull than a tenth of the mean
+/// more than 1,000 points, if one is farther inside of the hull than a tenth of the mean
 /// spacing or, unless \p thin_too, if the hull is thin beside the distances of its points. If all points are
 /// corners of the hull, it is bent where it turns little from one to the next; sharp edges, as those of a box
 /// of 8 points, stay. By vcglib's quickhull (Barber et al. 1996). O(points x faces + vertices log vertices)

@@ -39,6 +39,8 @@ constexpr int kMostPerFinal = 8, kMostStartVertices = 50000;
 /// stood out of its points by 2 % of the diagonal.
 constexpr double kStartShare = 0.5;
 constexpr double kShellMade = 0.6;  // of the progress
+/// More points tell the surface, and learning gives better shaped faces than those of their hull.
+constexpr std::size_t kFewPoints = 128;
 /// The sides of walls thicker than this, in spacings of the points, are told apart (opposite_layers.h).
 constexpr double kToldSpacings = 4;
 
@@ -329,7 +331,9 @@ void begin_by_points(LearningTask& task, const Settings& settings, Survey& surve
     const Shell shell = make_shell(task.target(), settings, survey, closing);
     const Enclosure& enclosure = shell.enclosure();
     std::optional<ConvexSurface> convex;
-    if (!task.target().has_faces())
+    const std::size_t points = task.target().positions().size();
+    const bool few = points <= std::min(kFewPoints, static_cast<std::size_t>(settings.target_vertices));
+    if (!task.target().has_faces() && (few || !enclosure.encloses_space))
         convex = convex_surface(task.target(), settings.target_vertices, settings.surface == kClosedSurface);
     const bool may_open =
         settings.surface == kAutomatic && may_be_open(enclosure, task.target(), settings, 0);

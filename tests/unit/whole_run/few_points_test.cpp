@@ -87,6 +87,21 @@ TEST(FewPoints, OfABoxMakeWellShapedFaces) {
             expect_well_shaped(turned_by(turn * 0.7, shapes::box_cloud(count, {1, 2, 3})), 1000);
 }
 
+TEST(FewPoints, AreMoreThanTheVertices) {
+    for (const int count : in_tiers<int>({100}, {80, 200, 255}))
+        for (const std::uint64_t seed : in_tiers<std::uint64_t>({1}, {2, 3})) {
+            SCOPED_TRACE(std::to_string(count) + " points, seed " + std::to_string(seed));
+            Settings settings;
+            settings.target_vertices = 50;
+            NoProgress progress;
+            const NeuralMesh mesh = reconstruct(
+                soundness::target_of(shapes::box_cloud(count, {1, 2, 3}, 0, seed)), settings, progress);
+            soundness::expect_exact(mesh, settings);
+            EXPECT_EQ(mesh.report.boundary_loops, 0);
+            EXPECT_NEAR(soundness::volume_of(mesh), 6, 0.9);
+        }
+}
+
 TEST(FewPoints, OfABoxGiveTheBox) {
     for (const int between : {0, 1, 4})
         EXPECT_NEAR(soundness::volume_of(expect_well_shaped(turned_by(0.7, frame_of_box(between)), 300)), 6,
