@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The same as learning/basic_step.h, for eight signals at once in SIMD lanes.
+// The Basic Step of the paper's section 2, for eight signals at once in SIMD lanes. The definition that it is
+// tested against takes them one by one (tests/unit/reference/basic_step.h).
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -31,7 +32,8 @@ public:
     /// Moves each winner towards its signal; \p signals has kLanes elements.
     void move_winners(const vcg::Point3f* signals, float learning_rate);
     /// Tangential Laplacian smoothing of the winners' rings, and smoothing of the boundary beside winners
-    /// that lie on it: see basic_step().
+    /// that lie on it: by rate_along_boundary(alpha_L) (L(v) - L(w)), where L(v) leads from a vertex to the
+    /// middle between its two neighbours on the boundary.
     void smooth(int smoothing_steps, float smoothing_rate);
     /// The present unit normal of each winner: the sum of the unit normals of its faces, normalised; 0 if
     /// they cancel.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Eight Basic Steps at a time against learning/basic_step.h, which takes them one by one.
+// Eight Basic Steps at a time against the reference, which takes them one by one.
 #include "vcg_core/engine/eight_steps.h"
 
 #include <gtest/gtest.h>
@@ -10,13 +10,17 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/unit/reference/basic_step.h"
 #include "tests/unit/reference/reference_learner.h"
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
-#include "vcg_core/learning/basic_step.h"
 
 namespace neuralmesh {
 namespace {
+
+using reference::basic_step;
+using reference::BasicStep;
+using reference::Positions;
 
 /// Float rounding in a frame of diagonal 1, over some ten smoothing steps.
 constexpr double kTolerance = 1e-6;

@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // The Basic Step by hand, on stars simple enough for that.
-#include "vcg_core/learning/basic_step.h"
+#include "tests/unit/reference/basic_step.h"
 
 #include <gtest/gtest.h>
 
@@ -14,6 +14,11 @@
 
 namespace neuralmesh {
 namespace {
+
+using reference::basic_step;
+using reference::BasicStep;
+using reference::find_winner;
+using reference::Positions;
 
 TEST(BasicStep, MovesTheWinnerByEquation1AndSmoothsItsRing) {
     // The middle of a flat grid of unit squares.

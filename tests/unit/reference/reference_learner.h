@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The learning algorithm without anything that makes it fast: Basic Steps by learning/basic_step.h, one by
+// The learning algorithm without anything that makes it fast: Basic Steps by basic_step.h, one by
 // one and in double, and counters that are decayed one by one. The oracle for Learner.
 #pragma once
 
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "vcg_core/learning/basic_step.h"
+#include "tests/unit/reference/basic_step.h"
 #include "vcg_core/learning/learner_options.h"
 #include "vcg_core/mesh/network.h"
 

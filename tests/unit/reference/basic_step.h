@@ -1,16 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/learning/basic_step.h"
+// The Basic Step of the paper's section 2, one signal at a time. This is the definition: the core runs
+// engine/eight_steps, which computes the same for eight signals at once and is tested against this.
+#pragma once
 
+#include <vcg/space/point3.h>
+
+#include <array>
 #include <vector>
 
-namespace neuralmesh {
+#include "vcg_core/engine/step_rates.h"
+#include "vcg_core/mesh/network.h"
 
-namespace {
+namespace neuralmesh::reference {
+
+using Positions = PerVertex<vcg::Point3d>;
+
+/// What a Basic Step changes: the positions of the winner and of its 1-ring. All other vertices stay.
+struct BasicStep {
+    VertexId winner;
+    vcg::Point3d winner_position;
+    std::array<vcg::Point3d, Ring::kMaxValence> ring_positions;  ///< in the order of the ring
+    double delta;  ///< variation of the winner's normal, in [0, 2]
+};
 
 /// Sum of the unit normals of the faces around the winner, normalised; 0 if they cancel.
-vcg::Point3d winner_normal(const Ring& ring, const BasicStep& step) {
+inline vcg::Point3d winner_normal(const Ring& ring, const BasicStep& step) {
     vcg::Point3d sum(0, 0, 0);
     for (std::size_t i = 0; static_cast<int>(i) < ring.face_count(); ++i) {
         const vcg::Point3d& a = step.ring_positions[i];
@@ -26,8 +42,8 @@ vcg::Point3d winner_normal(const Ring& ring, const BasicStep& step) {
 ///
 /// The winner and v's two neighbours along the winner's ring are taken where they are in \p step. Further
 /// neighbours of v are taken from \p positions: they do not move, unless they are in the winner's ring, too.
-vcg::Point3d smoothed(const Network& network, const Positions& positions, const BasicStep& step, int i,
-                      double alpha_l) {
+inline vcg::Point3d smoothed(const Network& network, const Positions& positions, const BasicStep& step, int i,
+                             double alpha_l) {
     const Ring& winners = network.ring(step.winner);
     const Ring& ring = network.ring(winners[i]);
     const int k = winners.valence;
@@ -54,8 +70,8 @@ vcg::Point3d smoothed(const Network& network, const Positions& positions, const 
 }
 
 /// Smooths the two neighbours of the winner along the boundary, both from \p step.
-void smooth_along_boundary(const Network& network, const Positions& positions, float smoothing_rate,
-                           BasicStep& step) {
+inline void smooth_along_boundary(const Network& network, const Positions& positions, float smoothing_rate,
+                                  BasicStep& step) {
     const Ring& ring = network.ring(step.winner);
     const auto rate = static_cast<double>(rate_along_boundary(smoothing_rate));
     const std::size_t ends[] = {0, ring.valence - std::size_t{1}};
@@ -70,9 +86,8 @@ void smooth_along_boundary(const Network& network, const Positions& positions, f
     }
 }
 
-}  // namespace
-
-VertexId find_winner(const Network& network, const Positions& positions, const vcg::Point3d& s) {
+/// The vertex nearest to \p s, the smallest id among equally near ones; -1 if there is none. O(vertices).
+inline VertexId find_winner(const Network& network, const Positions& positions, const vcg::Point3d& s) {
     VertexId winner = -1;
     for (const VertexId v : network.vertices())
         if (winner < 0 || (positions[v] - s).SquaredNorm() < (positions[winner] - s).SquaredNorm())
@@ -80,8 +95,14 @@ VertexId find_winner(const Network& network, const Positions& positions, const v
     return winner;
 }
 
-BasicStep basic_step(const Network& network, const Positions& positions, VertexId w, const vcg::Point3d& s,
-                     const StepRates& rates) {
+/// Moves the winner \p w towards the signal \p s, then smooths its 1-ring C_L times, all ring vertices at
+/// once (Jacobi). Boundary vertices of the ring stand still meanwhile.
+///
+/// A winner on a boundary then smooths its two neighbours there by rate_along_boundary(alpha_L) (L(v) -
+/// L(w)), where L(v) leads from a vertex to the middle between its two neighbours on the boundary. L(v) alone
+/// would shrink the boundary; on a circle, L(v) and L(w) are about the same. O(sum of the ring's valences).
+inline BasicStep basic_step(const Network& network, const Positions& positions, VertexId w,
+                            const vcg::Point3d& s, const StepRates& rates) {
     const Ring& ring = network.ring(w);
     BasicStep step{w, positions[w], {}, 0};
     for (std::size_t i = 0; i < ring.valence; ++i) step.ring_positions[i] = positions[ring.neighbours[i]];
@@ -104,4 +125,4 @@ BasicStep basic_step(const Network& network, const Positions& positions, VertexI
     return step;
 }
 
-}  // namespace neuralmesh
+}  // namespace neuralmesh::reference
