@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <tuple>
 #include <utility>
 
-#include "vcg_core/mesh/half_edge_queue.h"
+#include "vcg_core/base/cheapest_first.h"
 #include "vcg_core/mesh/triangle.h"
 #include "vcg_core/mesh/valence_flips.h"
 
@@ -92,14 +93,31 @@ float mean_squared_length(const Scaled& scaled) {
     return static_cast<float>(sum / count);
 }
 
+struct HalfEdge {
+    float squared_length;
+    VertexId gone, kept;  ///< by its collapse
+
+    bool operator<(const HalfEdge& other) const {
+        return std::tie(squared_length, gone, kept) < std::tie(other.squared_length, other.gone, other.kept);
+    }
+};
+
 /// Collapses edges in the order of their lengths. \p careful: none that would fold the surface.
 void collapse_to(const Scaled& scaled, int vertices, bool careful) {
     Network& net = scaled.net;
-    HalfEdgeQueue queue(net, [&](VertexId a, VertexId b) { return scaled.squared_length(a, b); });
-    while (net.vertex_count() > vertices && !queue.empty()) {
-        const auto [length, gone, kept] = queue.take();
-        if (net.alive(gone) && net.adjacent(gone, kept) && may_collapse(net, gone, kept, careful))
-            queue.collapse(gone, kept);
+    CheapestFirst<HalfEdge> queue;
+    const auto push = [&](VertexId a, VertexId b) { queue.push({scaled.squared_length(a, b), a, b}); };
+    for (const VertexId v : net.vertices())
+        for (const VertexId w : net.ring(v)) push(v, w);
+    const auto exists = [&](const HalfEdge& e) { return net.alive(e.gone) && net.adjacent(e.gone, e.kept); };
+    HalfEdge next{};
+    while (net.vertex_count() > vertices && queue.pop(next, exists)) {
+        if (!may_collapse(net, next.gone, next.kept, careful)) continue;
+        net.collapse(next.gone, next.kept);
+        for (const VertexId w : net.ring(next.kept)) {  // what spoke against their collapse may have gone
+            push(next.kept, w);
+            push(w, next.kept);
+        }
     }
 }
 
