@@ -61,9 +61,8 @@ public:
     };
     /// For each of the bending weights \p lambdas (1: a gap weighs as much as the points of one vertex at
     /// that distance) the displacement of every slot, by conjugate gradients preconditioned with the 3x3
-    /// diagonal blocks. O(vertices) per iteration. Up to four weights share one pass over the matrix, so that
-    /// three take 1.6 times as long as one. The bits are those of each weight alone, on any number of
-    /// threads.
+    /// diagonal blocks. O(vertices) per iteration. The result does not depend on the
+    /// number of threads.
     std::vector<PerVertex<Vector3>> solve(const std::vector<float>& lambdas, ThreadTeam& team,
                                           const Accuracy& accuracy) const;
     std::vector<PerVertex<Vector3>> solve(const std::vector<float>& lambdas, ThreadTeam& team) const {

@@ -1,29 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Conjugate gradients on the normal equations, for up to four bending weights at once and on all threads. The
-// bits depend on neither: a thread computes whole rows, and the sum of each row keeps its order.
+// Conjugate gradients on the normal equations, on all threads. The bits do not depend on their number: a
+// thread computes whole rows, and the sum of each row keeps its order.
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/least_squares.h"
-#include "vcg_core/fit/solution_lanes.h"
 
 namespace neuralmesh {
+
+namespace {
+
+/// In double precision.
+double dot(const PerVertex<Vector3>& a, const PerVertex<Vector3>& b) {
+    double sum = 0;
+    for (VertexId v = 0; v < a.size(); ++v) sum += static_cast<double>(a[v].dot(b[v]));
+    return sum;
+}
+
+}  // namespace
 
 class PointToPlaneSystem::Solver {
 public:
     Solver(const PointToPlaneSystem& system, ThreadTeam& team) : system_(system), team_(team) { divide(); }
 
     /// (A + lambda B) u, into \p result.
-    template <class Weight, class Vector>
-    void multiply(const Weight& lambda, const PerVertex<Vector>& u, PerVertex<Vector>& result) const {
+    void multiply(float lambda, const PerVertex<Vector3>& u, PerVertex<Vector3>& result) const {
         for_parts([&](const Part& part) { multiply_rows(part, lambda, u, result); });
     }
-    template <class Lanes>
-    PerVertex<typename Lanes::Vector> solution(const typename Lanes::Number& lambda,
-                                               const Accuracy& accuracy) const;
+    PerVertex<Vector3> solution(float lambda, const Accuracy& accuracy) const;
 
 private:
     /// Rows that one thread computes, and the bending terms that have a corner among them.
@@ -35,18 +43,8 @@ private:
     };
 
     /// The rows of \p part of a product, see multiply().
-    template <class Weight, class Vector>
-    NEURALMESH_ALWAYS_INLINE void multiply_rows_inline(const Part& part, const Weight& lambda,
-                                                       const PerVertex<Vector>& u,
-                                                       PerVertex<Vector>& result) const;
     void multiply_rows(const Part& part, float lambda, const PerVertex<Vector3>& u,
-                       PerVertex<Vector3>& result) const {
-        multiply_rows_inline(part, lambda, u, result);
-    }
-    NEURALMESH_MULTIVERSIONED
-    void multiply_rows(const Part& part, const Four& lambda, const PerVertex<FourVectors>& u,
-                       PerVertex<FourVectors>& result) const;
-
+                       PerVertex<Vector3>& result) const;
     void divide();
     template <class Body>
     void for_parts(const Body& body) const {
@@ -83,12 +81,11 @@ void PointToPlaneSystem::Solver::divide() {
     });
 }
 
-template <class Weight, class Vector>
-NEURALMESH_ALWAYS_INLINE void PointToPlaneSystem::Solver::multiply_rows_inline(
-    const Part& part, const Weight& lambda, const PerVertex<Vector>& u, PerVertex<Vector>& result) const {
+void PointToPlaneSystem::Solver::multiply_rows(const Part& part, float lambda, const PerVertex<Vector3>& u,
+                                               PerVertex<Vector3>& result) const {
     for (VertexId v = part.begin; v < part.end; ++v) {
         const Ring& ring = system_.network_.ring(v);
-        Vector sum = system_.diagonal_[v] * u[v];
+        Vector3 sum = system_.diagonal_[v] * u[v];
         const Symmetric3* block = system_.row(v);
         if (system_.coupled_[v] != 0)
             for (int i = 0; i < ring.valence; ++i) sum += block[i] * u[ring[i]];
@@ -97,54 +94,48 @@ NEURALMESH_ALWAYS_INLINE void PointToPlaneSystem::Solver::multiply_rows_inline(
     for (const int t : part.terms) {
         const BendingTerm& term = system_.bending_terms_[static_cast<std::size_t>(t)];
         const auto& c = term.coefficient;
-        const Vector gap = c[0] * u[term.corner[0]] + c[1] * u[term.corner[1]] + c[2] * u[term.corner[2]] +
-                           c[3] * u[term.corner[3]];
-        const Vector force = ((lambda + term.stiffness) * term.weight) * gap;
+        const Vector3 gap = c[0] * u[term.corner[0]] + c[1] * u[term.corner[1]] + c[2] * u[term.corner[2]] +
+                            c[3] * u[term.corner[3]];
+        const Vector3 force = ((lambda + term.stiffness) * term.weight) * gap;
         for (std::size_t k = 0; k < 4; ++k)
             if (part.holds(term.corner[k])) result[term.corner[k]] += c[k] * force;
     }
     for (const BendingTerm& term : system_.boundary_terms_) {  // their squares are in the diagonal
         const auto& c = term.coefficient;
-        const Vector gap = c[0] * u[term.corner[0]] + c[1] * u[term.corner[1]] + c[2] * u[term.corner[2]];
+        const Vector3 gap = c[0] * u[term.corner[0]] + c[1] * u[term.corner[1]] + c[2] * u[term.corner[2]];
         for (std::size_t k = 0; k < 3; ++k)
             if (part.holds(term.corner[k]))
                 result[term.corner[k]] += (term.weight * c[k]) * (gap - c[k] * u[term.corner[k]]);
     }
 }
 
-void PointToPlaneSystem::Solver::multiply_rows(const Part& part, const Four& lambda,
-                                               const PerVertex<FourVectors>& u,
-                                               PerVertex<FourVectors>& result) const {
-    multiply_rows_inline(part, lambda, u, result);
-}
-
-/// For the bending weight in each lane of \p lambda.
-template <class Lanes>
-PerVertex<typename Lanes::Vector> PointToPlaneSystem::Solver::solution(const typename Lanes::Number& lambda,
-                                                                       const Accuracy& accuracy) const {
-    using Number = typename Lanes::Number;
-    using Vector = typename Lanes::Vector;
+PerVertex<Vector3> PointToPlaneSystem::Solver::solution(float lambda, const Accuracy& accuracy) const {
     const int n = system_.diagonal_.size();
-    const Vector zero = Lanes::vector(Vector3::Zero());
-    PerVertex<typename Lanes::Matrix> inverse(n);
-    PerVertex<Vector> u(n, zero), residual(n, zero), scaled(n, zero), step(n, zero), image(n, zero);
+    const Vector3 zero = Vector3::Zero();
+    PerVertex<Symmetric3> inverse(n);
+    PerVertex<Vector3> u(n, zero), residual(n, zero), scaled(n, zero), step(n, zero), image(n, zero);
     for_rows([&](VertexId v) {
         if (!system_.network_.alive(v)) return;
-        inverse[v] = Lanes::inverse(system_.diagonal_[v],
-                                    lambda * system_.bending_diagonal_[v] + system_.stiff_diagonal_[v]);
-        residual[v] = Lanes::vector(system_.force_[v]) + lambda * Lanes::vector(system_.bending_force_[v]);
+        Symmetric3 block = system_.diagonal_[v];
+        block.add_identity(lambda * system_.bending_diagonal_[v] + system_.stiff_diagonal_[v]);
+        inverse[v] = block.inverse();
+        residual[v] = system_.force_[v] + lambda * system_.bending_force_[v];
         step[v] = scaled[v] = inverse[v] * residual[v];
     });
-    Descent<Lanes> descent(dots<Lanes>(residual, scaled), accuracy.tolerance);
-    for (int i = 0; i < accuracy.iterations && descent.goes_on(); ++i) {
+    double energy = dot(residual, scaled);
+    const double enough = accuracy.tolerance * accuracy.tolerance * energy;
+    for (int i = 0; i < accuracy.iterations && energy > enough && energy > 0; ++i) {
         multiply(lambda, step, image);
-        const Number alpha = descent.step_lengths(dots<Lanes>(step, image));
+        const double curvature = dot(step, image);
+        if (!(curvature > 0)) break;
+        const auto alpha = static_cast<float>(energy / curvature);
         for_rows([&](VertexId v) {
             u[v] += alpha * step[v];
             residual[v] -= alpha * image[v];
             scaled[v] = inverse[v] * residual[v];
         });
-        const Number beta = descent.conjugation(dots<Lanes>(residual, scaled));
+        const double before = std::exchange(energy, dot(residual, scaled));
+        const auto beta = static_cast<float>(energy / before);
         for_rows([&](VertexId v) { step[v] = scaled[v] + beta * step[v]; });
     }
     return u;
@@ -154,21 +145,7 @@ std::vector<PerVertex<Vector3>> PointToPlaneSystem::solve(const std::vector<floa
                                                           const Accuracy& accuracy) const {
     const Solver solver(*this, team);
     std::vector<PerVertex<Vector3>> solutions;
-    for (std::size_t begin = 0; begin < lambdas.size(); begin += FourLanes::kCount) {
-        const std::size_t lanes = std::min(lambdas.size() - begin, FourLanes::kCount);
-        if (lanes == 1) {
-            solutions.push_back(solver.solution<OneLane>(lambdas[begin], accuracy));
-            continue;
-        }
-        Four lambda{};  // the last weight fills the lanes that are left
-        for (std::size_t i = 0; i < FourLanes::kCount; ++i)
-            lambda[i] = lambdas[begin + std::min(i, lanes - 1)];
-        const PerVertex<FourVectors> four = solver.solution<FourLanes>(lambda, accuracy);
-        for (std::size_t i = 0; i < lanes; ++i) {
-            solutions.emplace_back(four.size());
-            for (VertexId v = 0; v < four.size(); ++v) solutions.back()[v] = four[v].lane(i);
-        }
-    }
+    for (const float lambda : lambdas) solutions.push_back(solver.solution(lambda, accuracy));
     return solutions;
 }
 
