@@ -3,8 +3,14 @@
 
 #include "vcg_core/engine/slab_schedule.h"
 
+#include <vcg/space/box3.h>
+
 #include <algorithm>
+#include <limits>
 #include <numeric>
+#include <utility>
+
+#include "vcg_core/base/median.h"
 
 namespace neuralmesh {
 
@@ -12,7 +18,46 @@ namespace {
 
 constexpr int kLeastPerThread = 48;  ///< signals: with fewer, synchronisation costs more than a thread saves
 
+// Of ThreadTiming.
+constexpr int kTrial = 24;            ///< batches of each kind in a trial
+constexpr int kWarmUp = 8;            ///< of these, not timed: they fill the other core's cache
+constexpr int kBetweenTrials = 2048;  ///< batches from the start of one trial to that of the next
+
 }  // namespace
+
+AxisPartition::AxisPartition(const std::vector<vcg::Point3f>& sample) {
+    vcg::Box3f box;
+    for (const vcg::Point3f& p : sample) box.Add(p);
+    axis_ = sample.empty() ? 0 : box.MaxDim();
+    for (const vcg::Point3f& p : sample) coordinates_.push_back(p[axis_]);
+    std::sort(coordinates_.begin(), coordinates_.end());
+    cut(1);
+}
+
+void AxisPartition::cut(int count) {
+    constexpr float kEnd = std::numeric_limits<float>::infinity();
+    const auto slabs = static_cast<std::size_t>(count);
+    borders_.assign(slabs + 1, kEnd);
+    borders_.front() = -kEnd;
+    for (std::size_t i = 1; i < slabs && !coordinates_.empty(); ++i)
+        borders_[i] = coordinates_[coordinates_.size() * i / slabs];
+}
+
+int AxisPartition::of(const vcg::Point3f& p) const {
+    int slab = 0;
+    while (!range(slab).holds(p)) ++slab;
+    return slab;
+}
+
+bool ThreadTiming::use_all_threads() const { return batch_ < 2 * kTrial ? batch_ < kTrial : all_are_faster_; }
+
+void ThreadTiming::add_batch(double nanoseconds_per_signal) {
+    if (batch_ < 2 * kTrial && batch_ % kTrial >= kWarmUp)
+        (use_all_threads() ? all_threads_ : one_thread_).push_back(nanoseconds_per_signal);
+    if (++batch_ == 2 * kTrial)
+        all_are_faster_ = median(std::move(all_threads_)) < median(std::move(one_thread_));
+    if (batch_ == kBetweenTrials) *this = ThreadTiming();
+}
 
 void SlabSchedule::begin_batch(int count, Network& network, WinnerSearch& search) {
     const int threads = std::clamp(count / kLeastPerThread, 1, team_.members());

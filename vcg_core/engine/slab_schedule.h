@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Which thread computes which Basic Steps and moves which vertices.
+// Which thread computes which Basic Steps and moves which vertices: space is cut into slabs across one axis,
+// one slab per thread, as long as all threads together are faster than one.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -11,12 +12,60 @@
 
 #include "vcg_core/base/indexed.h"
 #include "vcg_core/base/thread_team.h"
-#include "vcg_core/engine/axis_partition.h"
-#include "vcg_core/engine/thread_timing.h"
 #include "vcg_core/engine/winner_search.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
+
+/// Slabs across the longest axis of a sample, each with equally many of its points.
+class AxisPartition {
+public:
+    /// Starts with one slab, all of space. \p sample may be empty. O(n log n) for n points.
+    explicit AxisPartition(const std::vector<vcg::Point3f>& sample);
+
+    /// Replaces the slabs by \p count new ones, at least 1. O(count).
+    void cut(int count);
+    int count() const { return static_cast<int>(borders_.size()) - 1; }
+
+    /// The points p with begin <= p[axis] < end.
+    struct Range {
+        int axis;
+        float begin;
+        float end;
+
+        bool holds(const vcg::Point3f& p) const {
+            return static_cast<int>(begin <= p[axis]) & static_cast<int>(p[axis] < end);  // without a branch
+        }
+    };
+    Range range(int slab) const {
+        const auto i = static_cast<std::size_t>(slab);
+        return {axis_, borders_[i], borders_[i + 1]};
+    }
+    /// The slab that holds p. O(count). \pre p is finite
+    int of(const vcg::Point3f& p) const;
+
+private:
+    int axis_ = 0;
+    std::vector<float> coordinates_;  ///< of the sample along the axis, in rising order
+    std::vector<float> borders_;      ///< slab i reaches from borders_[i] to borders_[i + 1]
+};
+
+/// Times batches on one thread and on all, periodically, and chooses the faster: it depends on inter-core
+/// latency and load. A batch that was interrupted does not decide. The choice does not change what is
+/// computed.
+class ThreadTiming {
+public:
+    /// Whether to run the next batch on all threads.
+    bool use_all_threads() const;
+    /// Reports the duration of that batch.
+    void add_batch(double nanoseconds_per_signal);
+
+private:
+    int batch_ = 0;                   ///< since the last trial began
+    std::vector<double> one_thread_;  ///< the timed batches of the trial, in ns per signal
+    std::vector<double> all_threads_;
+    bool all_are_faster_ = false;  ///< in the last trial
+};
 
 /// Cuts space into slabs, one per thread. A thread computes the steps of the signals in its slab and alone
 /// moves the vertices that belong to it, so those stay in the cache of its core. A vertex belongs to the slab

@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Every point lies in exactly one slab, and all slabs hold equally many points of the sample.
-#include "vcg_core/engine/axis_partition.h"
+#include "vcg_core/engine/slab_schedule.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // The faster number of threads is chosen from made-up durations, and again when they change.
-#include "vcg_core/engine/thread_timing.h"
+#include "vcg_core/engine/slab_schedule.h"
 
 #include <gtest/gtest.h>
 
