@@ -21,7 +21,7 @@ PAGE = "vcg_core/what_steers_the_result.md"
 INERT = [
     (r":k(\w*Chunk|\w*AtATime|Lanes|Packets|InBatch|Batch|MostChunks)$",
      "how work is divided between threads and lanes"),
-    (r"base/(thread_team|huge_pages|platform|parallel_for)\.|engine/slab|basic_step_batch\.cpp:"
+    (r"base/(thread_team|platform|parallel_for)\.|engine/slab|basic_step_batch\.cpp:"
      r"kLeastPerThread|:kLeastOrdered$|:kLeastOutOfCache$|:k\w*Ahead$|:kPrefetchDistance$|:kTypicalSignals$|"
      r"base/cheapest_first\.h:", "speed: the same result"),
     (r"engine/(winner_search|cell_pyramid|tournament|scaled_numbers|eight_steps)|mesh/(face_tree|face_packets|vertex_order|"

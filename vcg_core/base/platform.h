@@ -32,7 +32,6 @@
 #endif
 #if defined(__linux__) && !defined(NEURALMESH_PORTABLE)
 #include <dlfcn.h>
-#include <sys/mman.h>
 #endif
 
 /// Inlines a function regardless of its size.
@@ -105,17 +104,6 @@ NEURALMESH_ALWAYS_INLINE T* assume_aligned(T* from) {
 inline void spin_pause() {
 #ifdef NEURALMESH_SSE2
     _mm_pause();
-#endif
-}
-
-/// Size and alignment of a huge page.
-constexpr std::size_t kHugePageBytes = std::size_t{1} << 21;
-
-/// Asks the system to use huge pages for \p memory, which is aligned to kHugePageBytes. The system may
-/// refuse; that affects the speed only.
-inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
-#ifdef MADV_HUGEPAGE
-    madvise(memory, bytes / kHugePageBytes * kHugePageBytes, MADV_HUGEPAGE);
 #endif
 }
 

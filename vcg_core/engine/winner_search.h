@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "vcg_core/base/huge_pages.h"
 #include "vcg_core/base/simd.h"
 #include "vcg_core/engine/cell_pyramid.h"
 #include "vcg_core/mesh/network.h"
@@ -123,7 +122,7 @@ private:
     std::uint64_t scan_all(const vcg::Point3f& s) const;
 
     Network& network_;
-    HugeVector<VertexId> heads_;
+    std::vector<VertexId> heads_;
     CellPyramid occupied_;
     int out_of_range_ = 0;  ///< vertices outside the cells of the pyramid
     CellLists lists_;

@@ -282,8 +282,8 @@ PerVertex<VertexId> Network::renumber(const std::vector<VertexId>& order) {
         }
         ++id;
     }
-    HugeVector<Ring> rings;
-    HugeVector<VertexRecord> slots_in_order;
+    std::vector<Ring> rings;
+    std::vector<VertexRecord> slots_in_order;
     rings.reserve(std::max(rings_.capacity(), order.size()));
     slots_in_order.reserve(std::max(slots_.capacity(), order.size() + 1));
     slots_in_order.push_back(kSentinel);

@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "vcg_core/base/error.h"
-#include "vcg_core/base/huge_pages.h"
 #include "vcg_core/mesh/free_ids.h"
 #include "vcg_core/mesh/ring.h"
 
@@ -156,8 +155,8 @@ private:
     static constexpr VertexRecord kSentinel{1e18F, 1e18F, 1e18F, -1};
     static constexpr VertexRecord kFreeSlot{0, 0, 0, -1};
 
-    HugeVector<Ring> rings_;
-    HugeVector<VertexRecord> slots_{kSentinel};  ///< slot v is element v + 1
+    std::vector<Ring> rings_;
+    std::vector<VertexRecord> slots_{kSentinel};  ///< slot v is element v + 1
     std::vector<VertexId> free_;                 ///< removed ids while gaps_ is empty
     FreeIds gaps_;                               ///< free ids of a network that renumber() left with gaps
     int vertex_count_ = 0;
