@@ -47,7 +47,7 @@ FitOptions fit_options(const LearningTask& task, const Settings& settings, const
     options.expect_layers = plan.expects_layers;
     options.noise = task.noise_by_place ? &*task.noise_by_place : nullptr;
     options.reduce_to = plan.carried;
-    options.by_volume = options.precise = plan.by_volume;
+    options.by_volume = plan.by_volume;
     // Growth by the noise of each place may end early.
     const bool refines = plan.carried < settings.target_vertices || (task.noise_by_place && plan.fills_up);
     options.refine_to = refines ? settings.target_vertices : 0;

@@ -27,9 +27,6 @@ struct FitOptions {
     int reduce_to = 0;
     /// The network is the result of another fit.
     bool fitted_before = false;
-    /// Whether the noise is small beside the edges, or the shape tells what goes. Then the reduction makes do
-    /// with fewer points, and its rounds remove all vertices whose costs do not depend on each other.
-    bool precise = false;
     /// Reduce by the shape of the fitted mesh (volume_collapse.h), if a third of the vertices or more are to
     /// go, and end the fit with rounds that gain little.
     bool by_volume = false;

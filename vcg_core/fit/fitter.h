@@ -144,8 +144,7 @@ private:
     void set_points_aside(int points_per_vertex);
     bool wants_reduction(int vertices, int at_start, Progress& progress) const;
     bool reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress);
-    bool reduce_by_costs(int vertices, bool precise, Surface& surface, PointsByFace points,
-                         Progress& progress);
+    bool reduce_by_costs(int vertices, Surface& surface, PointsByFace points, Progress& progress);
     PointsByFace update_for_removal(Surface& surface, PointsByFace points);
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
 

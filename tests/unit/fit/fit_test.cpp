@@ -283,7 +283,6 @@ TEST(Fit, DoesNothingByVolumeWhereFewVerticesAreToGo) {
     Network by_costs = by_volume;
     FitOptions options;
     options.reduce_to = 2000;
-    options.precise = true;
     fit(by_costs, target, options);
     options.by_volume = true;
     fit(by_volume, target, options);
