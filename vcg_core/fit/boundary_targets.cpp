@@ -47,8 +47,7 @@ public:
     /// Of the boundary edge that begins at \p a.
     void add_target(VertexId a, std::vector<BoundaryTarget>& targets) {
         edge_ = {a, network_.ring(a)[0], network_.ring(a)[1]};
-        const Span<const int> around = surface_.faces_around(a);
-        face_ = *std::find_if(around.begin(), around.end(), [&](int f) { return has_corners(f); });
+        face_ = corner_of_edge(surface_, edge_[0], edge_[1]).face;
         const Vector3 along = at(1) - at(0);
         const Vector3 area = along.cross(at(2) - at(0));
         const float length = along.norm();
@@ -86,20 +85,10 @@ public:
 private:
     const Vector3& at(std::size_t corner) const { return surface_.positions[edge_[corner]]; }
 
-    bool has_corners(int f) const {
-        const Triangle& face = surface_.faces[f];
-        return std::all_of(edge_.begin(), edge_.end(),
-                           [&](VertexId v) { return std::find(face.begin(), face.end(), v) != face.end(); });
-    }
-
     /// Distributes the points around the edge's face among the parts, as distances outward from the edge.
     void collect_heights(int parts) {
         for (std::vector<float>& heights : heights_) heights.clear();
-        faces_.clear();
-        for (VertexId v : edge_)
-            for (int f : surface_.faces_around(v)) faces_.push_back(f);
-        std::sort(faces_.begin(), faces_.end());
-        faces_.erase(std::unique(faces_.begin(), faces_.end()), faces_.end());
+        collect_faces(surface_, edge_, faces_);
         for (int f : faces_) {
             if (normal_.dot(unit_normal(surface_, f)) < kBent) continue;
             for (const PointsByFace::Assignment& assigned : points_.of(f)) {

@@ -52,7 +52,7 @@ public:
 
     /// The way from \p v to the line of its two planes; 0 if there are none, or if the line is far.
     Vector3 way_to_crease(VertexId v, float noise_variance) {
-        collect_faces(v);
+        collect_faces(surface_, network_.ring(v), faces_);
         if (!choose_seeds()) return Vector3::Zero();
         const float edge = mean_edge(v);
         if (!(noise_variance < kNoisiest * kNoisiest * edge * edge)) return Vector3::Zero();
@@ -80,15 +80,6 @@ private:
         for (const VertexId u : network_.ring(v))
             sum += (surface_.positions[u] - surface_.positions[v]).norm();
         return sum / static_cast<float>(network_.ring(v).valence);
-    }
-
-    /// Those of the two-ring, each once.
-    void collect_faces(VertexId v) {
-        faces_.clear();
-        for (const VertexId u : network_.ring(v))
-            for (const int f : surface_.faces_around(u)) faces_.push_back(f);
-        std::sort(faces_.begin(), faces_.end());
-        faces_.erase(std::unique(faces_.begin(), faces_.end()), faces_.end());
     }
 
     /// Whether all normals lie in so narrow a cone that no two differ by more than kAlike allows.
@@ -253,8 +244,8 @@ private:
     const Surface& surface_;
     const PerFace<Side>& all_sides_;
     const PointsByFace& points_;
-    std::vector<int> faces_;
-    std::vector<Side> sides_;  ///< of the two-ring
+    std::vector<int> faces_;   ///< of the two-ring
+    std::vector<Side> sides_;  ///< theirs
     std::vector<Sample> samples_;
     double reach_ = 0;
     std::array<Plane, 2> planes_;

@@ -32,16 +32,6 @@ struct Quad {
     int f, g;
 };
 
-/// The number of the face (a, b, c).
-int face_with(const Surface& surface, VertexId a, VertexId b, VertexId c) {
-    for (int f : surface.faces_around(a)) {
-        const Triangle& face = surface.faces[f];
-        for (std::size_t k = 0; k < 3; ++k)
-            if (face[k] == a && face[(k + 1) % 3] == b && face[(k + 2) % 3] == c) return f;
-    }
-    return -1;
-}
-
 /// Judges the flips of edges.
 class FlipGains {
 public:
@@ -158,9 +148,12 @@ std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface,
             for (int i = 0; i < ring.valence; ++i) {
                 const VertexId b = ring[i];
                 if (b < a || !network.can_flip(a, b)) continue;
-                Quad q{a, b, ring.next(i), ring.previous(i), 0, 0};
-                q.f = face_with(surface, a, b, q.c);
-                q.g = face_with(surface, b, a, q.d);
+                const Quad q{a,
+                             b,
+                             ring.next(i),
+                             ring.previous(i),
+                             corner_of_edge(surface, a, b).face,
+                             corner_of_edge(surface, b, a).face};
                 const float variance =
                     variances.empty() ? 1.0F
                                       : (variances[a] + variances[b] + variances[q.c] + variances[q.d]) / 4;

@@ -42,16 +42,6 @@ float spread_at(const Surface& surface, const PointsByFace& points, VertexId v) 
     return std::sqrt(*at) / kNormalQuantile;
 }
 
-/// The faces at the corners of \p face, in rising order.
-std::vector<int> faces_around(const Surface& surface, int face) {
-    std::vector<int> faces;
-    for (const VertexId v : surface.faces[face])
-        faces.insert(faces.end(), surface.faces_around(v).begin(), surface.faces_around(v).end());
-    std::sort(faces.begin(), faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-    return faces;
-}
-
 }  // namespace
 
 StrayPoints::StrayPoints(const Network& network, const Surface& surface, const PointsByFace& points,
@@ -99,8 +89,10 @@ bool StrayPoints::has_company(const PointsByFace::Assignment& point, int face) c
                                                               : height < other.height;
         }
     };
+    std::vector<int> faces;
+    collect_faces(surface_, surface_.faces[face], faces);
     std::vector<Near> near;
-    for (const int f : faces_around(surface_, face))
+    for (const int f : faces)
         for (const PointsByFace::Assignment& a : points_.of(f))
             if (&a != &point) near.push_back({(a.point - point.point).squaredNorm(), height(a, f)});
     const auto end = near.begin() + static_cast<std::ptrdiff_t>(std::min(near.size(), kNearest));

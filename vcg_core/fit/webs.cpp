@@ -41,15 +41,6 @@ bool is_web(const Surface& surface, const PointsByFace& points, const PerVertex<
     return static_cast<float>(count) <= kMostShare * expected;
 }
 
-int face_of(const Surface& surface, VertexId a, VertexId b, VertexId c) {
-    for (const int f : surface.faces_around(a)) {
-        const Triangle& face = surface.faces[f];
-        if (std::count_if(face.begin(), face.end(), [&](VertexId v) { return v == b || v == c; }) == 2)
-            return f;
-    }
-    return -1;
-}
-
 }  // namespace
 
 int open_webs(Network& network, const Surface& surface, const PointsByFace& points,
@@ -65,7 +56,7 @@ int open_webs(Network& network, const Surface& surface, const PointsByFace& poin
         if (!network.can_open_face(v)) continue;
         const VertexId after = network.ring(v)[0], corner = network.ring(v)[1];
         if (barred[v] + barred[after] + barred[corner] > 0) continue;
-        const int f = face_of(surface, v, after, corner);
+        const int f = corner_of_edge(surface, v, after).face;
         if (f < 0 || !is_web(surface, points, density, f)) continue;
         network.open_face(v);
         ++opened;

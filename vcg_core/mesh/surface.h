@@ -5,6 +5,7 @@
 // over faces that leave the connectivity alone.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -70,6 +71,16 @@ struct FaceCorner {
 
 /// The face with the edge from \p a to \p b in its sense of rotation, and the corner of \p a there.
 FaceCorner corner_of_edge(const Surface& surface, VertexId a, VertexId b);
+
+/// Replaces \p faces by those at any of \p vertices, each once, in rising order.
+template <class Vertices>
+void collect_faces(const Surface& surface, const Vertices& vertices, std::vector<int>& faces) {
+    faces.clear();
+    for (const VertexId v : vertices)
+        for (const int f : surface.faces_around(v)) faces.push_back(f);
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+}
 
 /// Unit normal of the face beyond the edge \p a to \p b of a face, which has it as b to a; 0 on a boundary.
 /// O(valence).
