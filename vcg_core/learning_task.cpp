@@ -250,9 +250,12 @@ void begin_open(LearningTask& task, OpenStart start, const Settings& settings) {
         task.warnings.push_back(
             "The points enclose no space, or openings too wide to close: the surface ends "
             "where they end. Choose surface 1 to close it.");
-    remove_groups_without_component(task, start.outliers, {&start.positions});
+    std::vector<vcg::Point3f> viewer;
+    if (start.viewer) viewer.push_back(*start.viewer);
+    remove_groups_without_component(task, start.outliers, {&start.positions, &viewer});
     task.parts_faced_by_normals = start.faced_by_normals;
     task.network = Network(start.positions, start.faces);
+    if (!viewer.empty()) task.network.set_viewer(viewer.front());
     task.landing_signals = kLandingSignalsOfOpen;
 }
 

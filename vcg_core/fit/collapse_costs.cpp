@@ -114,6 +114,7 @@ private:
             const Vector3 outside = normal_beyond(surface_, a, b);
             const float fold = before.dot(outside);
             keeps = (!kCollapseRules.turns_over(before, after) || kCollapseRules.is_folded(fold)) &&
+                    !surface_.turns_away(before, after, at(u)) &&
                     !kCollapseRules.folds(fold, after.dot(outside)) &&
                     !kCollapseRules.is_sliver(triangle_quality(at(v), at(a), at(b)),
                                               triangle_quality(at(u), at(a), at(b)));

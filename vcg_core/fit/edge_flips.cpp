@@ -82,7 +82,11 @@ private:
             std::min({new_f.dot(bc), new_g.dot(ca), new_g.dot(ad), new_f.dot(db), new_f.dot(new_g)});
         shape.old_quality = std::min(triangle_quality(a, b, c), triangle_quality(b, a, d));
         shape.new_quality = std::min(triangle_quality(c, d, b), triangle_quality(d, c, a));
-        shape.turns_over = kFlipRules.turns_over(mean, new_f) || kFlipRules.turns_over(mean, new_g);
+        const auto turns = [&](const Vector3& n) {
+            return kFlipRules.turns_over(mean, n) ||
+                   (surface_.turns_away(old_f, n, a) && surface_.turns_away(old_g, n, a));
+        };
+        shape.turns_over = turns(new_f) || turns(new_g);
         shape.unfolds = kFlipRules.is_folded(shape.old_fold) && shape.new_fold > shape.old_fold + kUnfolding;
         shape.flat = old_f.dot(old_g) > kFlat && new_f.dot(new_g) > kFlat;
         return shape;

@@ -123,6 +123,8 @@ private:
     bool is_spoiled(int face) const {
         if (kMoveRules.turns_over(limits_.normals_[face], normals_[face]) && limits_.folded_[face] == 0)
             return true;
+        if (surface_.turns_away(limits_.normals_[face], normals_[face], surface_.corner(face, 0)))
+            return true;
         return kMoveRules.is_sliver(limits_.qualities_[face], quality_of(surface_, face, moved_));
     }
 

@@ -6,12 +6,14 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/fit/cut_faces.h"
 #include "vcg_core/fit/refine.h"
+#include "vcg_core/fit/unfold.h"
 #include "vcg_core/fit/untangle.h"
 
 namespace neuralmesh {
 
 std::optional<std::vector<SelfCrossing>> make_sound(Network& network, PerVertex<VertexId>& origins,
                                                     ThreadTeam& team, Progress& progress) {
+    unfold(network);
     std::optional<std::vector<SelfCrossing>> left = untangle(network, kGentle, team, progress);
     if (!left || left->empty() || network.boundary_loop_count() == 0 || skips("cut_faces")) return left;
     NoProgress unasked;  // a stop from here on would leave fewer vertices

@@ -46,6 +46,15 @@ FaceHatSums hat_sums(const Surface& surface, const PointsByFace& points, int fac
     return sums;
 }
 
+/// Whether the corner \p gone of \p face turns it away from the viewer if it moves to \p place.
+bool turns_away(const Surface& surface, int face, VertexId gone, const Vector3& place) {
+    std::array<Vector3, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = surface.faces[face][k] == gone ? place : surface.positions[surface.faces[face][k]];
+    return surface.turns_away(unit_normal(surface, face), unit_normal(corners[0], corners[1], corners[2]),
+                              place);
+}
+
 /// The split of the edge a-b by its faces; its gain is negative if too few points are near, or if it is less
 /// than \p least_gain for points of weight 1.
 EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const PerFace<FaceHatSums>& sums,
@@ -74,7 +83,16 @@ EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const Per
     const float offset = std::min(std::max(both.phi_residual / both.phi_phi, -bound), bound);
     const float gain = both.phi_residual * both.phi_residual / both.phi_phi;
     const bool enough = gain >= least_gain * points.mean_weight(faces[0], faces[1]);
-    return {enough ? gain : -1, a, b, 0.5F * (at_a + at_b) + offset * normal.normalized()};
+    const Vector3 middle = 0.5F * (at_a + at_b);
+    Vector3 way = offset * normal.normalized();
+    // Along its line of sight a vertex turns no face away.
+    if (std::any_of(faces.begin(), faces.end(), [&](int f) {
+            return turns_away(surface, f, a, middle + way) || turns_away(surface, f, b, middle + way);
+        })) {
+        const Vector3 sight = (*surface.viewer - middle).normalized();
+        way = sight * sight.dot(way);
+    }
+    return {enough ? gain : -1, a, b, middle + way};
 }
 
 float cubed(float x) { return x * x * x; }

@@ -11,6 +11,7 @@
 #include <vcg/space/point3.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -59,6 +60,9 @@ public:
     /// The vertex slots. slots()[-1] is a sentinel: infinitely far, and the end of every list of links.
     VertexRecord* slots() { return slots_.data() + 1; }
     const VertexRecord* slots() const { return slots_.data() + 1; }
+    /// Where all of the surface was seen from; nothing: nobody knows. The mesh does not use it.
+    const std::optional<vcg::Point3f>& viewer() const { return viewer_; }
+    void set_viewer(const std::optional<vcg::Point3f>& viewer) { viewer_ = viewer; }
     /// Reserves memory for that many vertices.
     void reserve(int vertices);
     /// Memory in use, without reserved capacity.
@@ -160,6 +164,7 @@ private:
     std::vector<VertexId> free_;                 ///< removed ids while gaps_ is empty
     FreeIds gaps_;                               ///< free ids of a network that renumber() left with gaps
     int vertex_count_ = 0;
+    std::optional<vcg::Point3f> viewer_;
 };
 
 class Network::Vertices {

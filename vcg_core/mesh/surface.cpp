@@ -22,6 +22,7 @@ Surface::Surface(const Network& network)
     for (int f = 0; f < faces.size(); ++f)
         for (VertexId v : faces[f]) face_of_[static_cast<std::size_t>(next[v]++)] = f;
     mark_boundary(network);
+    if (network.viewer()) viewer = to_eigen(*network.viewer());
 }
 
 void Surface::mark_boundary(const Network& network) {

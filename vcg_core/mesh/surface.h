@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "vcg_core/base/span.h"
@@ -23,12 +24,23 @@ public:
 
     PerVertex<Vector3> positions;  ///< by slot of the network
     PerFace<Triangle> faces;       ///< Network::faces()
+    std::optional<Vector3> viewer;  ///< Network::viewer()
 
     int face_count() const { return faces.size(); }
     bool has_boundary() const { return !boundary_.empty(); }
     /// Whether the edge from corner \p k to the next one, of \p face, lies on the boundary.
     bool on_boundary(int face, std::size_t k) const {
         return has_boundary() && (boundary_[face] >> k & 1) != 0;
+    }
+    /// Positive if a face at \p p with such a \p normal shows its front to the viewer, or if there is none;
+    /// grows with the cosine between the normal and the line of sight.
+    float facing(const Vector3& normal, const Vector3& p) const {
+        return viewer ? normal.dot(*viewer - p) : 1.0F;
+    }
+    /// Whether a face at \p p is turned away from the viewer \p after a change, further than it was \p
+    /// before. Of normals of length 1.
+    bool turns_away(const Vector3& before, const Vector3& after, const Vector3& p) const {
+        return facing(after, p) < std::min(0.0F, facing(before, p));
     }
     /// Position of corner \p k, 0 to 2, of \p face.
     const Vector3& corner(int face, int k) const {

@@ -72,6 +72,17 @@ std::vector<FacingVote> facing_votes(const Network& network, const TargetSpace& 
     return votes;
 }
 
+double share_turned_away(const Network& network, const Point3f& viewer) {
+    double away = 0, all = 0;
+    for (const Triangle& f : network.faces()) {
+        const Point3f& p = network.position(f[0]);
+        const Point3f area = area_vector(p, network.position(f[1]), network.position(f[2]));
+        all += static_cast<double>(area.Norm());
+        if (area * (viewer - p) < 0) away += static_cast<double>(area.Norm());
+    }
+    return away / all;
+}
+
 void orient_convex_side_outward(Network& network) {
     const PerVertex<int> component = network.components();
     const std::vector<Triangle> faces = network.faces();

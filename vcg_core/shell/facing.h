@@ -27,6 +27,9 @@ struct FacingVote {
 /// O(points used x log faces). \pre !target.has_faces(), and the network has a face
 std::vector<FacingVote> facing_votes(const Network& network, const TargetSpace& target);
 
+/// The share of the area of \p network that shows its back to \p viewer. O(faces).
+double share_turned_away(const Network& network, const vcg::Point3f& viewer);
+
 /// Turns every component over that is not seen from outside, as a scanner sees it: whose volume, its boundary
 /// loops closed by fans around their centres, is negative. O(faces).
 void orient_convex_side_outward(Network& network);

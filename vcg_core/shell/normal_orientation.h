@@ -24,8 +24,9 @@ struct Orientation {
 /// Turns \p normals, of length 1, so that those of \p neighbours agree along the minimum spanning tree of
 /// what they connect: first between points whose planes continue each other, last across walls. Pairs of
 /// neighbours may occur twice. O(pairs log pairs).
-/// \param sights the directions, of length 1, in which points are seen by a viewer, who is one more neighbour
-/// of theirs: first of those that are seen from straight ahead. 0 where there is none; empty: nowhere.
+/// \param sights the directions in which points are seen by a viewer, who is one more neighbour of theirs:
+/// first of those whose sight has the greatest part along the normal, up to 1. 0 where there is none; empty:
+/// nowhere.
 Orientation orient_normals(const std::vector<vcg::Point3f>& positions,
                            const std::vector<std::pair<int, int>>& neighbours,
                            const std::vector<vcg::Point3f>& sights, std::vector<vcg::Point3f>& normals);

@@ -13,6 +13,7 @@
 #include <vcg/space/point3.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,8 @@ struct OpenStart {
     int components = 0;
     int genus = 0;             ///< of all components together
     int loops = 0;             ///< boundary loops
+    /// Far above, if nothing is turned away from there: terrain and what stands on it.
+    std::optional<vcg::Point3f> viewer;
     int faced_by_normals = 0;  ///< components with a boundary that face the side of the target's normals
     /// of the smallest sphere around the widest hole, as share of the mesh's diagonal
     double widest_loop = 0;

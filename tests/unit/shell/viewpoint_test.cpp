@@ -48,7 +48,7 @@ struct Seen {
         parts = orient_normals(points.positions, neighbours, {}, points.normals).parts;
     }
     bool turn_to(const vcg::Point3f& origin, const std::optional<vcg::Point3f>& sensor = {}) {
-        return turn_to_viewer(neighbours, parts, origin, sensor, points);
+        return turn_to_viewer(neighbours, parts, origin, sensor, points).has_value();
     }
 
     /// The share of the normals that point to \p viewpoint; with \p far the direction of one.
@@ -129,6 +129,32 @@ TEST(Viewpoint, TellsADepthStepFromTheSidesOfAWall) {
     ASSERT_EQ(seen.turned_to({0, 0, 1}, true), 0.5);
     EXPECT_TRUE(seen.turn_to(kFarAway));
     EXPECT_EQ(seen.turned_to({0, 0, 1}, true), 1);
+}
+
+TEST(Viewpoint, TurnsAWallByAllOfItsPoints) {
+    // Of stairs, the tread is seen well and the wall, below its edge, at an angle of 20 to 30 degrees. Links
+    // between the two would have its back seen.
+    constexpr int kAcross = 10;
+    Seen seen(shapes::grid(kAcross, kAcross), false);
+    const int first = seen.points.size();
+    for (int i = 0; i < kAcross; ++i) {
+        seen.neighbours.emplace_back(first - kAcross + i, first + i);
+        for (int down = 0; down < kAcross; ++down) {
+            const int own = first + down * kAcross + i;
+            if (i > 0) seen.neighbours.emplace_back(own, own - 1);
+            if (down > 0) seen.neighbours.emplace_back(own, own - kAcross);
+        }
+    }
+    for (int down = 1; down <= kAcross; ++down)
+        for (int i = 0; i < kAcross; ++i)
+            seen.add(
+                {0.5F + 0.1F, static_cast<float>(i) / (kAcross - 1) - 0.5F, -0.1F * static_cast<float>(down)},
+                {1, 0, 0});
+    seen.orient(false);
+    const vcg::Point3f sensor(-3, 0, 8);
+    ASSERT_EQ(seen.turned_to(sensor), 0.5);
+    EXPECT_TRUE(seen.turn_to(kFarAway, sensor));
+    EXPECT_EQ(seen.turned_to(sensor), 1);
 }
 
 TEST(Viewpoint, IsAboveWhereTheOriginIsNoSensor) {

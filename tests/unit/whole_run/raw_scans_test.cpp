@@ -119,6 +119,22 @@ TEST(RawScans, TreesAreLeftOutAndTheGroundIsOneSheet) {
     EXPECT_LT(above, 30) << "vertices in the crowns";
 }
 
+TEST(RawScans, PointsAtSeveralHeightsDoNotFoldASheet) {
+    // A wood beside a meadow: its points fill the height of some spacings under a wavy top.
+    constexpr double kHeight = 4, kSize = 100;
+    Random random(1);
+    Cloud cloud;
+    for (int i = 0; i < 30000; ++i) {
+        const double x = kSize * static_cast<double>(random.unit()),
+                     y = kSize * static_cast<double>(random.unit());
+        const double height = static_cast<double>(2 * random.unit() - 1);
+        const bool wood = x > kSize / 2;
+        cloud.emplace_back(x, y,
+                           wood ? kHeight * (std::sin(1.3 * x) * std::sin(1.1 * y) + height) : 0.02 * height);
+    }
+    EXPECT_GT(figures_of(learn(cloud, 3000), {0, 0, 1e6}).facing, 0.99);
+}
+
 TEST(RawScans, OnePlaneAndCrossingPlanesAreOpen) {
     Cloud crossing = shapes::plane_cloud(20000, 1);
     for (const Point3d& p : shapes::plane_cloud(20000, 2)) crossing.emplace_back(p[0], 0, p[1]);
