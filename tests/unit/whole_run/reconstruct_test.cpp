@@ -6,9 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "tests/unit/support/environment.h"
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
@@ -17,6 +19,7 @@
 namespace neuralmesh {
 namespace {
 
+using environment::in_tiers;
 using shapes::Cloud;
 using soundness::expect_exact;
 using soundness::expect_sound;
@@ -47,6 +50,28 @@ TEST(Reconstruct, FollowsNoNoiseOfFewPoints) {
         double squares = 0;
         for (const vcg::Point3d& p : mesh.positions) squares += (p.Norm() - 1) * (p.Norm() - 1);
         EXPECT_LT(std::sqrt(squares / 2000), 0.4 * kDeviation) << seed;
+    }
+}
+
+/// Degrees from the normals of \p mesh to those of the unit sphere, mean over the faces.
+double normals_off_sphere(const NeuralMesh& mesh) {
+    double sum = 0;
+    for (const auto& [a, b, c] : mesh.faces) {
+        const auto at = [&](int v) { return mesh.positions[static_cast<std::size_t>(v)]; };
+        const vcg::Point3d normal = (at(b) - at(a)) ^ (at(c) - at(a)), out = at(a) + at(b) + at(c);
+        sum += std::acos(std::clamp(normal * out / (normal.Norm() * out.Norm()), -1.0, 1.0));
+    }
+    return sum / static_cast<double>(mesh.faces.size()) * 180 / shapes::kPi;
+}
+
+// Vertices that the noisy points cannot place followed their noise: normals were off by 20 to 30 degrees.
+TEST(Reconstruct, IsAsSmoothWithMoreVerticesThanNoiseAllows) {
+    for (const double noise : in_tiers<double>({0.1}, {0.06, 0.15})) {
+        const Cloud cloud = shapes::sphere_cloud(4000, noise);
+        const double coarse = normals_off_sphere(learn_watched(cloud, with_target(400)));
+        for (const int vertices : in_tiers<int>({1600}, {800, 3000}))
+            EXPECT_LT(normals_off_sphere(learn_watched(cloud, with_target(vertices))), coarse + 3)
+                << noise << ", " << vertices;
     }
 }
 
