@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <list>
 #include <map>
-#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -148,9 +148,9 @@ public:
         const auto finer = meshes_.lower_bound(vertices);
         if (finer == meshes_.end() || !settings_.redistributes_vertices())
             return learn(vertices, 0, monotone);
-        const std::shared_ptr<Run> run = finer->second.run;
-        check(*run, vertices);
-        return add(vertices, {run, run->learning.reduced(finer->second.learned, vertices, monotone)});
+        const Run& run = *finer->second.run;
+        check(run.task, vertices);
+        return add(vertices, {&run, run.learning.reduced(finer->second.learned, vertices, monotone)});
     }
     /// The same with a brief fit. \return the error that a longer one is likely to leave
     double sketch(int vertices, Progress& progress) {
@@ -173,17 +173,17 @@ private:
         int made_for;  ///< vertices
     };
     struct Mesh {
-        std::shared_ptr<Run> run;
+        const Run* run;
         LearnedNetwork learned;
     };
 
     double learn(int vertices, int rounds, MonotoneProgress& progress) {
-        if (!run_ || vertices > kServes * run_->made_for) prepare(vertices, progress);
-        check(*run_, vertices);
-        return add(vertices, {run_, run_->learning.with(vertices, progress, rounds)});
+        if (runs_.empty() || vertices > kServes * runs_.back().made_for) prepare(vertices, progress);
+        Run& run = runs_.back();
+        return add(vertices, {&run, run.learning.with(vertices, progress, rounds)});
     }
-    void check(const Run& run, int vertices) const {
-        if (vertices < std::min(run.task.vertices_needed, settings_.target_vertices))
+    void check(const LearningTask& task, int vertices) const {
+        if (vertices < std::min(task.vertices_needed, settings_.target_vertices))
             throw SettingError("The components and handles of the cloud need more vertices.");
     }
     double add(int vertices, Mesh mesh) {
@@ -196,13 +196,15 @@ private:
         Settings settings = settings_;
         settings.target_vertices = vertices;
         PartOf preparing(progress, 0, kPrepared);
-        run_ = std::make_shared<Run>(stages_.prepare(examination_.learned(), settings, preparing), settings);
+        LearningTask task = stages_.prepare(examination_.learned(), settings, preparing);
+        check(task, vertices);
+        runs_.emplace_back(std::move(task), settings);
     }
 
     const Settings& settings_;
     const OuterStages& stages_;
     Examination& examination_;
-    std::shared_ptr<Run> run_;
+    std::list<Run> runs_;         ///< the last has the start mesh for the most vertices
     std::map<int, Mesh> meshes_;  ///< by vertices
 };
 
