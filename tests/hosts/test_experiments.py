@@ -237,7 +237,7 @@ ASKS = """#include "vcg_core/base/ablation.h"
 #include <exception>
 int main() {
     try {
-        std::printf("%d %d", neuralmesh::skips("strays"), neuralmesh::skips("hold"));
+        std::printf("%d %d", neuralmesh::skips("webs"), neuralmesh::skips("hold"));
     } catch (const std::exception& error) {
         std::printf("%s", error.what());
     }
@@ -254,16 +254,16 @@ def test_stages_are_skipped_in_a_development_build_only(tmp_path):
         environment = {"NEURALMESH_SKIP": names, "NEURALMESH_ASKED": str(tmp_path / "asked.txt")}
         return subprocess.run([tmp_path / "asks"], env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout
 
-    assert answers("strays,hold") == "0 0" and not (tmp_path / "asked.txt").exists()
-    assert answers("strays", "-DNEURALMESH_ABLATION") == "1 0"
-    assert (tmp_path / "asked.txt").read_text().split() == ["hold", "strays"]
+    assert answers("webs,hold") == "0 0" and not (tmp_path / "asked.txt").exists()
+    assert answers("webs", "-DNEURALMESH_ABLATION") == "1 0"
+    assert (tmp_path / "asked.txt").read_text().split() == ["hold", "webs"]
     assert answers("", "-DNEURALMESH_ABLATION") == "0 0"
-    sentence = answers("strays,cobwebs", "-DNEURALMESH_ABLATION")
+    sentence = answers("webs,cobwebs", "-DNEURALMESH_ABLATION")
     assert '"cobwebs", which does not exist' in sentence and sentence.endswith(".")
 
 
 def without_a_stage(plugin_run):
-    """peers.run() as if the plugin could skip: "hold" gives another mesh, "strays" the same, "refine" no mesh; "layers" is
+    """peers.run() as if the plugin could skip: "hold" gives another mesh, "webs" the same, "refine" no mesh; "layers" is
     never asked for."""
 
     def run(method, cloud, folder, counts, environment=None, settings=None, **others):
@@ -272,7 +272,7 @@ def without_a_stage(plugin_run):
         if skipped == "refine":
             raise peers.PeerError("The stage is needed.")
         changed = {**settings, "signals_per_split": 20} if "hold" in skipped else settings
-        (folder / "asked.txt").write_text("hold strays refine")
+        (folder / "asked.txt").write_text("hold webs refine")
         return plugin_run(method, cloud, folder, counts, settings=changed, **others)
 
     return run
@@ -285,12 +285,12 @@ def test_the_table_of_stages_says_what_each_brings(build, tmp_path, monkeypatch,
     monkeypatch.setattr(peers, "run", without_a_stage(peers.run))
     monkeypatch.setattr(ablation, "check_plugin", lambda options: None)
     words = ["--plugin", plugin, "--small", "--out", str(tmp_path), "--groups", "closed,walls,open cuts,virtual scans",
-             "--stages", "hold,strays,refine,layers", "--all-losers", "hold,strays"]
+             "--stages", "hold,webs,refine,layers", "--all-losers", "hold,webs"]
     results = ablation.main(words)
     assert [results[name]["runs"] for name in results] == [4] * 6
-    assert results["hold"]["changed"] > 0 and results["hold, strays"]["changed"] == results["hold"]["changed"]
-    assert results["strays"]["changed"] == results["layers"]["changed"] == 0
-    assert results["strays"]["error"] == {"closed": 1, "walls": 1, "open cuts": 1, "virtual scans": 1}
+    assert results["hold"]["changed"] > 0 and results["hold, webs"]["changed"] == results["hold"]["changed"]
+    assert results["webs"]["changed"] == results["layers"]["changed"] == 0
+    assert results["webs"]["error"] == {"closed": 1, "walls": 1, "open cuts": 1, "virtual scans": 1}
     assert results["refine"]["saved"] >= 1 and ablation.verdict(results["refine"]).startswith("stays: ")
     assert ablation.verdict(results["layers"]) == "may go: changes no result here"
     assert "| layers | 1.000 | 1.000 |" in capsys.readouterr().out

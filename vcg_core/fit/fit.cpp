@@ -130,6 +130,10 @@ private:
     bool next_round(int round) {
         Surface surface(network_);
         PointsByFace points = fitter_.assign_faces(surface);
+        if (fitter_.mend_boundary(surface, points) > 0) {
+            surface = Surface(network_);
+            points = fitter_.assign_faces(surface);
+        }
         if (options_.redistribute && round >= kFirstRedistribution && round + kQuietRounds < rounds_) {
             const int moved = fitter_.redistribute_vertices(surface, points);
             report_.moved_vertices += moved;

@@ -19,6 +19,7 @@
 #include "vcg_core/fit/sound_start.h"
 #include "vcg_core/fit/sources.h"
 #include "vcg_core/fit/stray_points.h"
+#include "vcg_core/fit/webs.h"
 
 namespace neuralmesh {
 
@@ -400,6 +401,12 @@ int Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
     return guarded(surface, [&](const PerVertex<char>& barred) {
         return neuralmesh::flip_edges(network_, found, barred);
     });
+}
+
+int Fitter::mend_boundary(const Surface& surface, const PointsByFace& points) {
+    if (!surface.has_boundary()) return 0;
+    return guarded(
+        surface, [&](const PerVertex<char>& barred) { return open_webs(network_, surface, points, barred); });
 }
 
 }  // namespace neuralmesh

@@ -97,6 +97,8 @@ public:
     /// surface, that of the network, with them. \pre \p points were assigned to \p surface before it moved
     /// last
     void move_to_creases(Surface& surface, const PointsByFace& points);
+    /// Opens the faces at the boundary that hold no points. \return the number of faces opened
+    int mend_boundary(const Surface& surface, const PointsByFace& points);
 
     const HeldOut& held_out() const { return held_out_; }
     /// For every slot of the network: itself, or for a vertex inserted since untangle_surface() one that was
@@ -142,7 +144,7 @@ private:
     bool wants_reduction(int vertices, int at_start, Progress& progress) const;
     bool reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress);
     bool reduce_by_costs(int vertices, Surface& surface, PointsByFace points, Progress& progress);
-    PointsByFace update_for_removal(const Surface& surface, PointsByFace points);
+    PointsByFace update_for_removal(Surface& surface, PointsByFace points);
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
 
     Network& network_;

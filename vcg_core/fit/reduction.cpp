@@ -120,13 +120,24 @@ bool Fitter::wants_reduction(int vertices, int at_start, Progress& progress) con
     return progress(static_cast<double>(at_start - left) / std::max(1, at_start - vertices), text.c_str());
 }
 
-/// \return the points on the surface after the last solution
-PointsByFace Fitter::update_for_removal(const Surface& surface, PointsByFace points) {
+/// \return the points on the surface after the last solution, mended where it has a boundary
+PointsByFace Fitter::update_for_removal(Surface& surface, PointsByFace points) {
     if (!expects_strays_) {
         points.update_feet(surface, team_);  // the next search follows once the vertices are removed
-        return points;
+        if (!surface.has_boundary()) return points;
+        const Network before = network_;
+        const CrossingGuard guard = guard_;
+        if (mend_boundary(surface, points) == 0) return points;
+        // A face may seem to lack points that are still with the face beside it: search first.
+        network_ = before;
+        guard_ = guard;
     }
-    return assign_faces(surface);  // what is astray is told by the surface as it is
+    points = assign_faces(surface);  // what is astray or missing is told by the surface as it is
+    if (mend_boundary(surface, points) > 0) {
+        surface = Surface(network_);
+        points = assign_faces(surface);
+    }
+    return points;
 }
 
 /// \return whether any vertex was removed

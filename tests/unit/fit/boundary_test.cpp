@@ -13,6 +13,7 @@
 #include "vcg_core/fit/boundary_targets.h"
 #include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/fit.h"
+#include "vcg_core/fit/webs.h"
 
 namespace neuralmesh {
 namespace {
@@ -183,6 +184,26 @@ TEST(FitOfABoundary, BringsHalfASphereToTheEndOfItsPoints) {
     EXPECT_LT(boundary.most, 0.07);  // half an edge
 }
 
+/// How many faces are opened of a sheet whose points have x < \p end; its own ends at 4.
+int webs_of_sheet(float end, int count, char barred = 0) {
+    shapes::Cloud cloud;
+    for (const vcg::Point3d& p : square(count, 4))
+        if (p[0] < static_cast<double>(end)) cloud.push_back(p);
+    FitScene scene(referee::network_of(sheet()), cloud);
+    const PerVertex<char> none(scene.network.slot_count(), barred);
+    const Network before = scene.network;
+    const int opened = open_webs(scene.network, scene.surface, scene.points, none);
+    EXPECT_EQ(scene.network.validate(), "");
+    EXPECT_EQ(scene.network.face_count(), before.face_count() - opened);
+    EXPECT_EQ(scene.network.genus(), 0);
+    EXPECT_EQ(scene.network.boundary_loop_count(), 1);
+    const std::vector<Triangle> gone = new_faces(scene.network, before);
+    EXPECT_EQ(static_cast<int>(gone.size()), opened);
+    for (const Triangle& f : gone)
+        for (const VertexId v : f) EXPECT_GT(before.position(v)[0], end - 0.01F);
+    return opened;
+}
+
 /// The sheet without the quarter where x and y are positive.
 shapes::Shape three_quarters() {
     const auto index = [](int x, int y) { return y <= 0 ? 9 * (y + 4) + x + 4 : 45 + 5 * (y - 1) + x + 4; };
@@ -232,6 +253,16 @@ TEST(FindCollapses, TakeAnEarWithoutArea) {
     EXPECT_GE(of_ear->into, 0);
     EXPECT_EQ(of_ear->cost, 0);
 }
+
+TEST(Webs, AreOpenedWhereThePointsEnd) {
+    EXPECT_GE(webs_of_sheet(1, 20000), 14);  // of 48 faces without points and 21 inner vertices
+}
+
+TEST(Webs, AreNotThereWhereThePointsReachTheEnd) { EXPECT_EQ(webs_of_sheet(4, 20000), 0); }
+
+TEST(Webs, AreNotToldFromFewPoints) { EXPECT_EQ(webs_of_sheet(1, 500), 0); }
+
+TEST(Webs, StayAtBarredVertices) { EXPECT_EQ(webs_of_sheet(1, 20000, 1), 0); }
 
 }  // namespace
 }  // namespace neuralmesh
