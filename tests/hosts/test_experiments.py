@@ -263,16 +263,16 @@ def test_stages_are_skipped_in_a_development_build_only(tmp_path):
 
 
 def without_a_stage(plugin_run):
-    """peers.run() as if the plugin could skip: "hold" gives another mesh, "webs" the same, "refine" no mesh; "layers" is
+    """peers.run() as if the plugin could skip: "hold" gives another mesh, "webs" the same, "notches" no mesh; "layers" is
     never asked for."""
 
     def run(method, cloud, folder, counts, environment=None, settings=None, **others):
         skipped = environment["NEURALMESH_SKIP"]
         assert skipped != "layers"
-        if skipped == "refine":
+        if skipped == "notches":
             raise peers.PeerError("The stage is needed.")
         changed = {**settings, "signals_per_split": 20} if "hold" in skipped else settings
-        (folder / "asked.txt").write_text("hold webs refine")
+        (folder / "asked.txt").write_text("hold webs notches")
         return plugin_run(method, cloud, folder, counts, settings=changed, **others)
 
     return run
@@ -285,13 +285,13 @@ def test_the_table_of_stages_says_what_each_brings(build, tmp_path, monkeypatch,
     monkeypatch.setattr(peers, "run", without_a_stage(peers.run))
     monkeypatch.setattr(ablation, "check_plugin", lambda options: None)
     words = ["--plugin", plugin, "--small", "--out", str(tmp_path), "--groups", "closed,walls,open cuts,virtual scans",
-             "--stages", "hold,webs,refine,layers", "--all-losers", "hold,webs"]
+             "--stages", "hold,webs,notches,layers", "--all-losers", "hold,webs"]
     results = ablation.main(words)
     assert [results[name]["runs"] for name in results] == [4] * 6
     assert results["hold"]["changed"] > 0 and results["hold, webs"]["changed"] == results["hold"]["changed"]
     assert results["webs"]["changed"] == results["layers"]["changed"] == 0
     assert results["webs"]["error"] == {"closed": 1, "walls": 1, "open cuts": 1, "virtual scans": 1}
-    assert results["refine"]["saved"] >= 1 and ablation.verdict(results["refine"]).startswith("stays: ")
+    assert results["notches"]["saved"] >= 1 and ablation.verdict(results["notches"]).startswith("stays: ")
     assert ablation.verdict(results["layers"]) == "may go: changes no result here"
     assert "| layers | 1.000 | 1.000 |" in capsys.readouterr().out
     # All of it is on disk: without time for any run the table is the same.

@@ -35,16 +35,6 @@ constexpr float kAside = 0.5F;
 /// Cosine of the angle between an edge's face and faces nearby beyond which their points are not compared.
 constexpr float kBent = 0.3F;
 
-/// Points per area around every vertex, over two rings. Faces with a boundary edge do not count: the points
-/// beyond the boundary are theirs, too. 0 where there are no other faces. O(vertices).
-PerVertex<float> inner_density(const Network& network, const Surface& surface, const PointsByFace& points) {
-    PerFace<float> counts = points.counts();
-    for (int f = 0; f < counts.size(); ++f)
-        if (surface.on_boundary(f, 0) || surface.on_boundary(f, 1) || surface.on_boundary(f, 2))
-            counts[f] = -1;
-    return point_density(network, surface, counts, kSpreads);
-}
-
 /// Finds the target of one edge after the other.
 class TargetSearch {
 public:
@@ -141,6 +131,14 @@ private:
 };
 
 }  // namespace
+
+PerVertex<float> inner_density(const Network& network, const Surface& surface, const PointsByFace& points) {
+    PerFace<float> counts = points.counts();
+    for (int f = 0; f < counts.size(); ++f)
+        if (surface.on_boundary(f, 0) || surface.on_boundary(f, 1) || surface.on_boundary(f, 2))
+            counts[f] = -1;
+    return point_density(network, surface, counts, kSpreads);
+}
 
 std::vector<BoundaryTarget> find_boundary_targets(const Network& network, const Surface& surface,
                                                   const PointsByFace& points) {

@@ -37,4 +37,8 @@ struct BoundaryTarget {
 std::vector<BoundaryTarget> find_boundary_targets(const Network& network, const Surface& surface,
                                                   const PointsByFace& points);
 
+/// Points per area around every vertex, over two rings. Faces with a boundary edge do not count: the points
+/// beyond the boundary are theirs, too. 0 where there are no other faces. O(vertices).
+PerVertex<float> inner_density(const Network& network, const Surface& surface, const PointsByFace& points);
+
 }  // namespace neuralmesh

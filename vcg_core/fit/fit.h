@@ -70,7 +70,7 @@ struct FitReport {
 /// points are held out of the fit to judge it. Each round assigns the other points to their nearest faces and
 /// solves linear least squares with a bending term, whose weight minimises the error at the held-out points.
 /// Between rounds, edges are flipped and vertices redistributed where that lowers the distances. A boundary
-/// moves to where the points end, from both sides.
+/// moves to where the points end, from both sides, and notches that hold points are filled.
 ///
 /// - With many precise points, later rounds let the surface slide less (the hold of PointToPlaneSystem).
 /// - Between rounds, vertices move to creases of the points (crease_moves.h), where flips then put edges.

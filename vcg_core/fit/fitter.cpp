@@ -16,6 +16,7 @@
 #include "vcg_core/fit/layers.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/noise.h"
+#include "vcg_core/fit/notches.h"
 #include "vcg_core/fit/sound_start.h"
 #include "vcg_core/fit/sources.h"
 #include "vcg_core/fit/stray_points.h"
@@ -405,8 +406,11 @@ int Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
 
 int Fitter::mend_boundary(const Surface& surface, const PointsByFace& points) {
     if (!surface.has_boundary()) return 0;
-    return guarded(
-        surface, [&](const PerVertex<char>& barred) { return open_webs(network_, surface, points, barred); });
+    const std::vector<VertexId> notches = find_notches(network_, surface, points);
+    return guarded(surface, [&](const PerVertex<char>& barred) {
+        const int opened = open_webs(network_, surface, points, barred);
+        return opened + neuralmesh::fill_notches(network_, notches, barred);
+    });
 }
 
 }  // namespace neuralmesh

@@ -97,7 +97,8 @@ public:
     /// surface, that of the network, with them. \pre \p points were assigned to \p surface before it moved
     /// last
     void move_to_creases(Surface& surface, const PointsByFace& points);
-    /// Opens the faces at the boundary that hold no points. \return the number of faces opened
+    /// Fills the notches of the boundary that hold points, and opens the faces there that hold none. \return
+    /// the number of faces filled and opened
     int mend_boundary(const Surface& surface, const PointsByFace& points);
 
     const HeldOut& held_out() const { return held_out_; }
