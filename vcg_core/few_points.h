@@ -20,10 +20,10 @@ struct ConvexSurface {
 };
 
 /// The convex hull of the points of \p cloud with \p vertices vertices, evenly spread. Nothing if there are
-/// more than 1,000 points, if one is farther inside of the hull than a tenth of the mean
-/// spacing or, unless \p thin_too, if the hull is thin beside the distances of its points. If all points are
-/// corners of the hull, it is bent where it turns little from one to the next; sharp edges, as those of a box
-/// of 8 points, stay. By vcglib's quickhull (Barber et al. 1996). O(points x faces + vertices log vertices)
+/// more than 1,000 points, if one is farther inside of the hull than a tenth of the mean spacing or, unless
+/// \p thin_too, if the hull is thin beside the distances of its points. If all points are corners of the
+/// hull, it is bent where it turns little from one to the next; sharp edges, as those of a box of 8 points,
+/// stay. By vcglib's quickhull (Barber et al. 1996). O(points x faces + vertices log vertices)
 /// \pre !cloud.has_faces()
 std::optional<ConvexSurface> convex_surface(const TargetSpace& cloud, int vertices, bool thin_too = false);
 

@@ -61,8 +61,8 @@ public:
     };
     /// For each of the bending weights \p lambdas (1: a gap weighs as much as the points of one vertex at
     /// that distance) the displacement of every slot, by conjugate gradients preconditioned with the 3x3
-    /// diagonal blocks. O(vertices) per iteration. The result does not depend on the
-    /// number of threads.
+    /// diagonal blocks. O(vertices) per iteration. The result does not depend on the number of
+    /// threads.
     std::vector<PerVertex<Vector3>> solve(const std::vector<float>& lambdas, ThreadTeam& team,
                                           const Accuracy& accuracy) const;
     std::vector<PerVertex<Vector3>> solve(const std::vector<float>& lambdas, ThreadTeam& team) const {

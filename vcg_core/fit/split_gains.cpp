@@ -86,7 +86,7 @@ EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const Per
     const Vector3 middle = 0.5F * (at_a + at_b);
     Vector3 way = offset * normal.normalized();
     // Along its line of sight a vertex turns no face away.
-    if (std::any_of(faces.begin(), faces.end(), [&](int f) {
+    if (surface.viewer && std::any_of(faces.begin(), faces.end(), [&](int f) {
             return turns_away(surface, f, a, middle + way) || turns_away(surface, f, b, middle + way);
         })) {
         const Vector3 sight = (*surface.viewer - middle).normalized();
