@@ -80,12 +80,27 @@ def reconstruct_ball_pivoting(meshes, count):
     meshes.add_mesh(pymeshlab.Mesh(mesh.vertex_matrix(), mesh.face_matrix()))
 
 
+def reconstruct_rotation_system(meshes, _count):
+    """Hierarchical rotation-system reconstruction of PyGEL (HRsR), which needs pygel3d and libglu1-mesa."""
+    try:
+        from pygel3d import hmesh
+    except ImportError as error:
+        raise PeerError(f"pygel3d cannot be imported: {error}") from None
+    result = hmesh.hrsr_recon(meshes.current_mesh().vertex_matrix())
+    hmesh.triangulate(result)
+    result.cleanup()
+    faces = [list(result.circulate_face(face, mode="v")) for face in result.faces()]
+    meshes.add_mesh(pymeshlab.Mesh(result.positions(), faces))
+
+
 # name: (reconstruction, whether it depends on the number of vertices)
 PEERS = {
     "poisson": (reconstruct_poisson, False),
     "poisson-smooth": (reconstruct_poisson_smooth, False),
     "ball-pivoting": (reconstruct_ball_pivoting, True),
 }
+# The same, of those that take minutes.
+SLOW_PEERS = {"rotation-system": (reconstruct_rotation_system, False)}
 # The same, of those that need a cloud with normals.
 PEERS_OF_NORMALS = {"poisson-tuned": (reconstruct_poisson_tuned, False)}
 
@@ -143,8 +158,8 @@ def _peak_mb():
 
 
 def run_peer(name, cloud, folder, counts, settings):
-    """A method of PEERS or PEERS_OF_NORMALS. settings: parameters of Screened Poisson and values as text."""
-    reconstruct, by_count = {**PEERS, **PEERS_OF_NORMALS}[name]
+    """A method of PEERS, SLOW_PEERS or PEERS_OF_NORMALS. settings: parameters of Screened Poisson and values as text."""
+    reconstruct, by_count = {**PEERS, **SLOW_PEERS, **PEERS_OF_NORMALS}[name]
     settings = {key: _typed(value) for key, value in settings.items()}
     meshes = pymeshlab.MeshSet(verbose=False)
     before = _peak_mb()
@@ -199,7 +214,7 @@ def _typed(text):
 def run(method, cloud, folder, counts, plugin=None, command=None, settings=None, timeout=300, environment=None):
     """Runs one method on the file cloud for all counts, in other processes. Returns {count: times and memory}.
 
-    method: a name of PEERS or PEERS_OF_NORMALS, or "neural" with a plugin or a command (started as COMMAND CLOUD OUT
+    method: a name of PEERS, SLOW_PEERS or PEERS_OF_NORMALS, or "neural" with a plugin or a command (started as COMMAND CLOUD OUT
     target_vertices=N key=value...). settings: parameters of ours or of Screened Poisson. environment: more variables of
     the processes of a method. Raises PeerError if a process fails or takes longer than timeout seconds.
     """
@@ -269,7 +284,7 @@ def _started(words, timeout, environment=None):
 
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("method", choices=[*PEERS, *PEERS_OF_NORMALS, "neural"])
+    parser.add_argument("method", choices=[*PEERS, *SLOW_PEERS, *PEERS_OF_NORMALS, "neural"])
     parser.add_argument("cloud")
     parser.add_argument("folder", type=Path)
     parser.add_argument("settings", nargs="+", metavar="key=value",
