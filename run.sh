@@ -267,8 +267,6 @@ figures() {
     local plugin="$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
     say "Accuracy against Poisson and quadric collapse"
     "$venv/bin/python" tests/experiments/accuracy/accuracy_table.py --plugin "$plugin" --out out/figures
-    say "Counters against curvature"
-    "$venv/bin/python" tests/experiments/accuracy/compare_curvature.py --plugin "$plugin" --out out/figures
     demo
     tests/experiments/pictures/figures.sh "$build" screenshots out/figures
 }

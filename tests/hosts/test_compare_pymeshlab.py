@@ -2,7 +2,7 @@
 # Copyright the Neural Mesh authors
 
 """The neural mesh compared with Screened Poisson + Quadric Edge Collapse in pymeshlab on a few models, and the
-measuring tools on surfaces of known error. The large tables are by tests/experiments/accuracy/compare_accuracy.py."""
+measuring tools on surfaces of known error."""
 
 import numpy as np
 import pymeshlab
@@ -128,10 +128,6 @@ def peer(measured):
     return lambda name, noise=0.0: measured("poisson", name, noise)
 
 
-def test_the_peer_has_the_vertices_asked_for(peer):
-    assert peer("bunny")["vertices"] == pytest.approx(VERTICES, rel=peers.TOLERANCE)
-
-
 @pytest.mark.parametrize("name", ["bunny", "torus", "linked-tori", "two-spheres", "cup"])
 def test_exact_closed_and_of_the_right_topology(learned, name):
     ours = learned(name)
@@ -140,11 +136,6 @@ def test_exact_closed_and_of_the_right_topology(learned, name):
     assert ours["manifold"] and ours["boundary_edges"] == 0 and not ours["inside_out"]
     assert (ours["genus"], ours["components"]) == (model.genus, model.components)
     assert ours["backward_max"] <= 3 * ours["forward_max"], "a web or a spike"
-
-
-@pytest.mark.parametrize("name", ["bunny", "torus", "linked-tori", "two-spheres", "cup"])
-def test_does_not_cut_through_itself(learned, name):
-    ours = learned(name)
     assert ours["self_intersecting_faces"] <= 0.001 * ours["faces"]
 
 

@@ -8,7 +8,6 @@ import sys
 
 import counter_hosts
 import features
-import given_meshes
 import input_hosts
 import inputs
 import library_hosts
@@ -173,13 +172,15 @@ def test_creases_of_a_noisy_mesh_are_found_better_than_by_any_curvature(pymeshla
     """At the default threshold, against the best threshold of each measure of the mesh, found with the truth."""
     surface = features.load(name, None)
     creases = features.Creases(*surface)
-    clean, noisy = (given_meshes.even(surface, None, 2000, noise) for noise in (0, .6))
-    cloud = models.make_cloud(*surface, 50_000, .6)
-    mesh = given_meshes.counted(*clean)
-    assert features.f1_at(mesh.measure, given_meshes.truth_of(mesh, creases), 1) > .9
-    for signals in (cloud, None):
-        mesh = given_meshes.counted(*noisy, signals)
-        truth = given_meshes.truth_of(mesh, creases)
-        peers = [mesh.dihedral(), mesh.spread(), *(values for _, values in mesh.curvatures())]
-        ours = features.f1_at(mesh.measure, truth, 1)
-        assert ours > .8 and ours > .1 + max(features.best_f1(values, truth) for values in peers)
+
+    def curves(noise, signals):
+        mesh = features.counted(*features.noisy_mesh(surface, 2000, noise), signals)
+        truth = features.truth_of(mesh, creases)
+        return {measure: features.f1_curve(values, truth) for measure, values in features.measures_of(mesh)}
+
+    assert curves(0, None)["crease measure"][features.DEFAULT] > .9
+    for signals in (models.make_cloud(*surface, 50_000, .6), None):
+        found = curves(.6, signals)
+        ours = found.pop("crease measure")[features.DEFAULT]
+        del found["normal counter"]
+        assert ours > .8 and ours > .1 + max(max(curve) for curve in found.values())

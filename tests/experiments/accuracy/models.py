@@ -81,8 +81,6 @@ MODELS = {
     )
 }
 
-# The closed models of the comparison tables.
-TABLE_MODELS = ("bunny", "koala", "dino", "fandisk", "kitten", "rocker-arm", "eight", "feline", "block", "genus3")
 # Publicly available: from Debian packages, or made in code.
 PUBLIC_MODELS = ("bunny", "fandisk", "dino", "armadillo", "homer", "knot", "femur", "elephant", "anchor")
 CODE_MODELS = ("sphere", "torus", "linked-tori", "two-spheres", "cup", "filleted-cube", "crossed-cylinders")
