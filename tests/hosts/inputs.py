@@ -70,14 +70,8 @@ class Input:
         return {**({"target_vertices": self.target} if self.filter == RECONSTRUCTION else {}), **self.parameters}
 
     def triangles(self):
-        """(corners, input face, bits of the new edges) of the faces split into fans of triangles."""
-        cut = []
-        for index, face in enumerate(self.faces):
-            last = len(face) - 1
-            for k in range(1, last):
-                inner = (1 if k > 1 else 0) | (4 if k + 1 < last else 0)
-                cut.append(((face[0], face[k], face[k + 1]), index, inner))
-        return cut
+        """The corners of the faces split into fans of triangles."""
+        return [(face[0], face[k], face[k + 1]) for face in self.faces for k in range(1, len(face) - 1)]
 
     def learned_points(self):
         """The points from which the filter draws its signals, in world coordinates."""
@@ -325,22 +319,4 @@ def write_ply(layer, path):
             rows.append(np.uint8(6).tobytes() + np.array([0, 0, 1, 0, 0, 1], dtype="<f4").tobytes())
         rows.append(np.int32(SELECTED if selected else 0).tobytes())
     path.write_bytes("\n".join(header).encode() + points.tobytes() + b"".join(rows))
-    return path
-
-
-def write_layer(layer, path):
-    """Writes the whole layer in the text format that library_host.cpp reads."""
-    lines = ["matrix " + " ".join(repr(float(x)) for x in layer.matrix.ravel())]
-    for p, q, c, selected, deleted in zip(layer.points, layer.quality(), layer.colors(), layer.selected_points,
-                                          layer.deleted):
-        lines.append(f"vertex {float(p[0])!r} {float(p[1])!r} {float(p[2])!r} {float(q)!r} "
-                     f"{c[0]} {c[1]} {c[2]} {c[3]} {int(selected)} {int(deleted)}")
-    for corners, index, inner in layer.triangles():
-        lines.append(f"face {corners[0]} {corners[1]} {corners[2]} {int(layer.selected_faces[index])} {inner}")
-    if layer.textured:
-        lines.append("textured")
-    lines.append(f"filter {layer.filter}")
-    for key, value in layer.all_parameters().items():
-        lines.append(f"set {key} {int(value)}")
-    path.write_text("\n".join(lines) + "\n")
     return path
