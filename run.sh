@@ -25,7 +25,7 @@ compile_packages="ca-certificates cmake g++ libeigen3-dev libglew-dev libqt5open
 venv_packages="python3-venv"
 demo_packages="glmark2-data libgl1-mesa-dri python3-numpy python3-pil xauth xdotool xvfb"
 bench_packages="libcgal-dev"  # CGAL's surface reconstruction is timed beside ours
-test_packages="binutils libbenchmark-dev libgtest-dev parallel valgrind"
+test_packages="binutils libbenchmark-dev libgtest-dev valgrind"
 release_packages="debootstrap lintian qemu-user wine64"
 declare -A platform_packages=([arm64]="g++-aarch64-linux-gnu googletest qemu-user" [portable]="libgtest-dev"
     [windows]="g++-mingw-w64-x86-64-posix googletest wine64" [libcxx]="clang googletest libc++-dev libc++abi-dev")
