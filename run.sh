@@ -248,9 +248,6 @@ bench() {
         say "${program##*/}"
         "$program" --benchmark_out="$build/${program##*/}.json" --benchmark_out_format=json
     done
-    say "In pymeshlab, compared with common methods"
-    "$venv/bin/python" tests/bench/in_host.py --out "$build/in_host.json" --cgal "$build/tests/cgal_peers" \
-        --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
     say "Error over time, compared with common methods on one thread"
     "$venv/bin/python" tests/bench/error_over_time.py --out "$build/error_over_time.json" --repeats 1 \
         --plot "$build/error_over_time.png" --cgal "$build/tests/cgal_peers" \
