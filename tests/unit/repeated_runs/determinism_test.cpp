@@ -43,6 +43,9 @@ void expect_same_with_threads(const shapes::Cloud& cloud, Settings settings) {
 TEST(Determinism, SameSeedSameBytesWhateverTheThreads) {
     for (const Settings& settings : variants())
         expect_same_with_threads(shapes::sphere_cloud(1500, 0.01), settings);
+    Settings even;
+    even.target_vertices = 500;
+    expect_same_with_threads(shapes::uneven_sphere_cloud(5000, 20, 0.01), even);
 }
 
 /// From 3,000 vertices on, each thread has its own region of space.

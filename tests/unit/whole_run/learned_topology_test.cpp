@@ -115,6 +115,32 @@ TEST(LearnedTopology, OpensWhereTheCloudEndsFromTheTetrahedron) {
     EXPECT_EQ(learn_topology(cloud, settings).report.boundary_loops, 0);
 }
 
+TEST(LearnedTopology, TellsOfOpenings) {
+    Settings settings = settings_of();
+    settings.start_mesh = kTetrahedron;
+    settings.surface = kOpenSurface;
+    const NeuralMesh open = learn_topology(bowl(30000), settings);
+    ASSERT_FALSE(open.report.notes.empty());
+    EXPECT_NE(open.report.notes.back().find("genus 0 with 1 boundary loop(s)."), std::string::npos);
+    EXPECT_TRUE(open.report.warnings.empty());
+    const NeuralMesh closed = learn_topology(shapes::sphere_cloud(30000), settings);
+    EXPECT_EQ(closed.report.boundary_loops, 0);
+    ASSERT_EQ(closed.report.warnings.size(), 1U);
+    EXPECT_NE(closed.report.warnings.back().find("The surface is closed"), std::string::npos);
+}
+
+TEST(LearnedTopology, TheBytesDoNotDependOnTheThreads) {
+    Settings settings = settings_of(1);
+    settings.start_mesh = kTetrahedron;
+    const Cloud cloud = two_spheres(10000, 3);
+    const NeuralMesh one = learn_topology(cloud, settings);
+    EXPECT_EQ(one.report.components, 2);
+    settings.threads = 3;
+    const NeuralMesh three = learn_topology(cloud, settings);
+    EXPECT_EQ(one.positions, three.positions);
+    EXPECT_EQ(one.faces, three.faces);
+}
+
 // Small faces on either side of an edge have no points by chance.
 TEST(LearnedTopology, SharpEdgesAreNoWebs) {
     Settings settings = settings_of();

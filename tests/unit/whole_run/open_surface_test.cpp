@@ -337,5 +337,19 @@ TEST(OpenSurface, CannotStartFromATetrahedron) {
     EXPECT_TRUE(has_warning(mesh, "because start_mesh 1 (tetrahedron) is"));
 }
 
+TEST(OpenSurface, IsTheSameWithAnyNumberOfThreads) {
+    Settings settings = settings_with(3000, kOpenSurface);
+    settings.signals_per_split = 40;
+    settings.min_wins_per_split = 10;
+    const Cloud cloud = open_shapes::cases()[4].cloud;
+    settings.threads = 1;
+    const NeuralMesh one = learn(cloud, settings);
+    settings.threads = 3;
+    const NeuralMesh three = learn(cloud, settings);
+    EXPECT_TRUE(one.positions == three.positions);
+    EXPECT_EQ(one.faces, three.faces);
+    EXPECT_EQ(one.counters, three.counters);
+}
+
 }  // namespace
 }  // namespace neuralmesh
