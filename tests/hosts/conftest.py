@@ -59,11 +59,6 @@ def in_hosts(names, few):
     return [*((name, input_hosts.PYMESHLAB) for name in names), *((name, input_hosts.SERVER) for name in few)]
 
 
-def few_of(values, first=()):
-    """`values` for parametrize, of the second tier but for those in `first`."""
-    return [pytest.param(value, marks=() if value in first else FULL) for value in values]
-
-
 def write_points(path, points, faces=()):
     """Writes a PLY in single precision, so that float and double hosts read the same numbers."""
     header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}",

@@ -71,6 +71,7 @@ def test_a_script_of_meshlabserver_saves_surface_and_lines(build, server, pymesh
                                    "-o", lines, "-l", 2, "-s", script)
     assert code == 0, text
     assert meshlabserver.figures(text)["crease_lines"] == report["crease_lines"]
+    assert "The mesh has 12 crease lines with 8 corners" in text
     saved = input_hosts.new_mesh_set(pymeshlab)
     saved.load_new_mesh(str(surface))
     assert saved.current_mesh().face_number() == report["faces"]

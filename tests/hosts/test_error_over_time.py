@@ -27,11 +27,6 @@ def test_points_that_a_faster_one_is_as_accurate_as_are_left_out():
     assert error_over_time.seconds_to_reach(1 / 9, LINE + slow) == pytest.approx(3)
 
 
-def test_between_two_points_the_seconds_lie_between_theirs_also_off_the_line():
-    points = [(1, 1), (2, .9), (20, .1)]
-    assert error_over_time.seconds_to_reach(.3, points) == pytest.approx(2 * 10 ** .5)
-
-
 def test_an_error_outside_the_points_has_no_seconds():
     assert error_over_time.seconds_to_reach(1 / 100 - 1e-6, LINE) == "finer"
     assert error_over_time.seconds_to_reach(1 + 1e-6, LINE) == "coarser"
@@ -64,13 +59,6 @@ def test_the_chosen_one_does_best_against_ours_not_by_error():
     tuned, chosen = error_over_time.compared(rows, "seconds")[-2:]
     assert (tuned["method"], tuned["ratio"]) == ("poisson-tuned", pytest.approx(10))
     assert (chosen["method"], chosen["seconds"], chosen["ratio"]) == ("poisson-quick", 9, pytest.approx(3))
-
-
-def test_a_failed_run_is_shown_and_not_compared():
-    rows = [row("neural", 100, 1, 1), {"model": "sphere", "method": "poisson", "target": 500, "error": "It crashed."}]
-    rows = error_over_time.compared(rows, "seconds")
-    assert "It crashed." in error_over_time.every_row(rows, "seconds")
-    assert "| Screened Poisson, plain chain | - | - |" in error_over_time.summary(rows, "seconds", [500])
 
 
 def test_a_small_run_measures_every_method_and_shows_its_rows_again(build, tmp_path, monkeypatch, capsys):

@@ -50,17 +50,6 @@ def test_exact_count_sound_mesh_and_the_full_dictionary(build, meshes, model, tm
     assert learned.label() == "Neural Mesh"
 
 
-@pytest.mark.parametrize("shown, selecting", [(0, 1), (1, 0)])
-def test_the_quality_shows_one_measure_and_another_selects(meshes, model, shown, selecting):
-    cloud, _ = model("crossed-cylinders")
-    meshes.load_new_mesh(str(cloud))
-    report = learn(meshes, target_vertices=1500, select_features=True, feature_measure=shown, select_by=selecting)
-    quality, selected = meshes.current_mesh().vertex_scalar_array(), meshes.current_mesh().vertex_selection_array()
-    assert selected.sum() == report["feature_vertices"] > 0
-    threshold = 1 if shown else report["mean_counter"]
-    assert (selected == (quality > threshold)).mean() < 0.99
-
-
 def test_the_input_layer_stays_and_the_result_is_current(meshes, model):
     _, surface = model("sphere")
     meshes.load_new_mesh(str(surface))
@@ -122,20 +111,6 @@ def test_an_open_cloud_faces_the_side_of_its_normals(pymeshlab, meshes, sign):
     out = np.einsum("ij,ij->i", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), corners[:, 0]) > 0
     assert out.mean() > .99 if sign > 0 else out.mean() < .01
     assert np.array_equal(meshes.mesh(0).vertex_normal_matrix(), sign * points)
-
-
-def test_without_normals_nothing_depends_on_use_normals(pymeshlab, meshes):
-    """The host gives every layer the field for normals: zero vectors are none."""
-    points = shapes.sphere(subdivisions=5)[0]
-    points = points[points[:, 2] < .3]
-    results = []
-    for normals, values in ((np.zeros_like(points), {}), (-points, {"use_normals": False}), (None, {})):
-        given = {} if normals is None else {"v_normals_matrix": normals}
-        meshes.add_mesh(pymeshlab.Mesh(points, **given))
-        report = learn(meshes, target_vertices=300, **values)
-        results.append((report["warnings"], meshes.current_mesh().vertex_matrix().tobytes(),
-                        meshes.current_mesh().face_matrix().tobytes()))
-    assert results[0] == results[1] == results[2]
 
 
 def test_learning_goes_on_from_another_layer(pymeshlab, meshes, model):

@@ -83,10 +83,3 @@ def test_the_script_of_counters_selects_the_creases(build, server, model, tmp_pa
     found = meshlabserver.check_mesh(build, tmp_path / "out.ply")
     assert report["stop_reason"] == 0 and found["quality"]
     assert 0 < found["selected"] == report["feature_vertices"] < report["vertices"] == found["vertices"]
-
-
-def test_valences_are_those_of_a_good_mesh(build, server, model, tmp_path):
-    """Without the fit, whose edge flips follow the data and not the valences."""
-    script = meshlabserver.write_script(build, tmp_path / "s.mlx", utility_counter=1, fit_to_points=False)
-    meshlabserver.reconstruct(server, model("bunny")[0], script, tmp_path / "out.ply")
-    assert meshlabserver.check_mesh(build, tmp_path / "out.ply")["regular_valences"] >= 95
