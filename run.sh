@@ -25,7 +25,7 @@ compile_packages="ca-certificates cmake g++ libeigen3-dev libglew-dev libqt5open
 venv_packages="python3-venv"
 demo_packages="glmark2-data libgl1-mesa-dri python3-numpy python3-pil xauth xdotool xvfb"
 bench_packages="libcgal-dev"  # CGAL's surface reconstruction is timed beside ours
-test_packages="binutils libbenchmark-dev libgtest-dev parallel valgrind"
+test_packages="binutils libbenchmark-dev libgtest-dev valgrind"
 release_packages="debootstrap lintian qemu-user wine64"
 declare -A platform_packages=([arm64]="g++-aarch64-linux-gnu googletest qemu-user" [portable]="libgtest-dev"
     [windows]="g++-mingw-w64-x86-64-posix googletest wine64" [libcxx]="clang googletest libc++-dev libc++abi-dev")
@@ -248,9 +248,6 @@ bench() {
         say "${program##*/}"
         "$program" --benchmark_out="$build/${program##*/}.json" --benchmark_out_format=json
     done
-    say "In pymeshlab, compared with common methods"
-    "$venv/bin/python" tests/bench/in_host.py --out "$build/in_host.json" --cgal "$build/tests/cgal_peers" \
-        --plugin "$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
     say "Error over time, compared with common methods on one thread"
     "$venv/bin/python" tests/bench/error_over_time.py --out "$build/error_over_time.json" --repeats 1 \
         --plot "$build/error_over_time.png" --cgal "$build/tests/cgal_peers" \
@@ -267,8 +264,6 @@ figures() {
     local plugin="$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
     say "Accuracy against Poisson and quadric collapse"
     "$venv/bin/python" tests/experiments/accuracy/accuracy_table.py --plugin "$plugin" --out out/figures
-    say "Counters against curvature"
-    "$venv/bin/python" tests/experiments/accuracy/compare_curvature.py --plugin "$plugin" --out out/figures
     demo
     tests/experiments/pictures/figures.sh "$build" screenshots out/figures
 }

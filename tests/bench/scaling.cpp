@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// How the cost grows with vertices, points, outliers and threads; and the time of whole runs. The clouds are
+// How the cost grows with vertices, points and threads; and the time of whole runs. The clouds are
 // points of a bumpy torus, generated one by one, so that only the core stores them. The largest rows take
 // minutes.
 #include <benchmark/benchmark.h>
@@ -19,19 +19,18 @@ using namespace neuralmesh;
 
 constexpr double kTwoPi = 6.283185307179586;
 
-/// Point i of the torus, the same for any number of points; if \p outliers, every 100th is far from it.
-vcg::Point3d point(std::uint64_t i, bool outliers) {
+/// Point i of the torus, the same for any number of points.
+vcg::Point3d point(std::uint64_t i) {
     Random random(i);
     const double u = kTwoPi * static_cast<double>(random.unit());
     const double v = kTwoPi * static_cast<double>(random.unit());
     const double tube = 0.4 + 0.03 * std::sin(8 * u) * std::cos(5 * v);
     const double ring = 1 + tube * std::cos(v);
-    if (outliers && i % 100 == 0) return {1.4 * std::cos(u), 1.4 * std::sin(v), 1.4 * std::sin(u + v)};
     return {ring * std::cos(u), ring * std::sin(u), tube * std::sin(v)};
 }
 
-TargetSpace cloud(std::size_t points, bool outliers = false) {
-    return TargetSpace::points(points, [&](std::size_t i) { return point(i, outliers); });
+TargetSpace cloud(std::size_t points) {
+    return TargetSpace::points(points, [](std::size_t i) { return point(i); });
 }
 
 /// A network of \p vertices vertices, learned once for all benchmarks, with few signals per split: its growth
@@ -91,13 +90,6 @@ void signals_by_points(benchmark::State& state) {
     settle(state, target, 10000, 1);
 }
 BENCHMARK(signals_by_points)->Arg(100000)->Arg(1000000)->Arg(10000000)->Unit(benchmark::kMillisecond);
-
-/// Argument: vertices. One point in a hundred lies far from the surface.
-void signals_with_outliers(benchmark::State& state) {
-    static const TargetSpace target = cloud(1000000, true);
-    settle(state, target, static_cast<int>(state.range(0)), 1);
-}
-BENCHMARK(signals_with_outliers)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond);
 
 class Counting : public Progress {
 public:

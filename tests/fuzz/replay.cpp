@@ -2,9 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Main program of a fuzz target without libFuzzer: replays the inputs in text files, so that the corpus is a
-// test with any compiler. An input is a line in hexadecimal; '#' starts a comment. Without NEURALMESH_FULL in
-// the environment, every second input.
-#include <cstdlib>
+// test with any compiler. An input is a line in hexadecimal; '#' starts a comment.
 #include <fstream>
 #include <iostream>
 #include <string>
@@ -24,7 +22,6 @@ bool read_hex(const std::string& line, std::vector<std::uint8_t>& input) {
 }  // namespace
 
 int main(int count, char** files) {
-    const bool all = std::getenv("NEURALMESH_FULL") != nullptr;
     int inputs = 0;
     for (int i = 1; i < count; ++i) {
         std::ifstream file(files[i]);
@@ -36,11 +33,11 @@ int main(int count, char** files) {
                           << '\n';
                 return 2;
             }
-            if (all || inputs % 2 == 0) LLVMFuzzerTestOneInput(input.data(), input.size());
+            LLVMFuzzerTestOneInput(input.data(), input.size());
             ++inputs;
         }
     }
-    std::cout << (all ? inputs : (inputs + 1) / 2) << " of " << inputs << " inputs replayed\n";
+    std::cout << inputs << " inputs replayed\n";
     // An empty corpus tests nothing.
     return inputs > 0 ? 0 : 2;
 }

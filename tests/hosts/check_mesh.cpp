@@ -54,17 +54,6 @@ void print(const char* key, bool value) {
     std::cout << ", \"" << key << "\": " << (value ? "true" : "false");
 }
 
-/// Percentage of the vertices that have valence 5, 6 or 7.
-double regular_valences(Mesh& mesh) {
-    Mesh::PerVertexAttributeHandle<int> valence = vcg::tri::Allocator<Mesh>::AddPerVertexAttribute<int>(mesh);
-    for (Vertex& v : mesh.vert) valence[v] = 0;
-    for (Face& f : mesh.face)
-        for (int k = 0; k < 3; ++k) ++valence[f.V(k)];
-    int regular = 0;
-    for (Vertex& v : mesh.vert) regular += valence[v] >= 5 && valence[v] <= 7 ? 1 : 0;
-    return 100.0 * regular / mesh.vn;
-}
-
 void print_topology(Mesh& mesh) {
     vcg::tri::UpdateTopology<Mesh>::FaceFace(mesh);
     print("watertight", Clean::IsWaterTight(mesh));
@@ -76,7 +65,6 @@ void print_topology(Mesh& mesh) {
     print("boundary_loops", Clean::CountHoles(mesh));
     print("unreferenced_vertices", Clean::CountUnreferencedVertex(mesh));
     print("volume", vcg::tri::Stat<Mesh>::ComputeMeshVolume(mesh));
-    print("regular_valences", regular_valences(mesh));
 }
 
 /// The exact distance of a point from a face, for vcglib's grids. That of vcglib's HausdorffSampler is too

@@ -28,8 +28,6 @@ import python_site  # noqa: E402
 import times  # noqa: E402
 
 PYTHON_NAME = input_hosts.PYTHON_NAME
-# Made in code, or from a Debian package that run.sh installs; all are closed and of genus 0.
-MODELS = ("sphere", "cup", "filleted-cube", "crossed-cylinders", "bunny")
 CLOUD_POINTS = 20_000
 
 
@@ -57,16 +55,8 @@ def pytest_runtest_protocol(item):
 
 
 def in_hosts(names, few):
-    """(name, host) for parametrize: all in pymeshlab, a few in meshlabserver, the others in the second tier."""
-    firsts = {input_hosts.PYMESHLAB: names, input_hosts.SERVER: few}
-    hosts = [input_hosts.PYMESHLAB, *(host for host in input_hosts.HOSTS if host != input_hosts.PYMESHLAB)]
-    return [pytest.param(name, host, marks=() if name in firsts.get(host, ()) else FULL)
-            for host in hosts for name in names]
-
-
-def few_of(values, first=()):
-    """`values` for parametrize, of the second tier but for those in `first`."""
-    return [pytest.param(value, marks=() if value in first else FULL) for value in values]
+    """(name, host) for parametrize: all in pymeshlab, a few in meshlabserver."""
+    return [*((name, input_hosts.PYMESHLAB) for name in names), *((name, input_hosts.SERVER) for name in few)]
 
 
 def write_points(path, points, faces=()):

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import input_hosts
 import inputs
-import library_hosts
 import meshlabserver
 import numpy as np
 
@@ -60,22 +59,7 @@ def in_pymeshlab(pymeshlab, layer, folder):
                    report=report, rest_unchanged=without_values(input_hosts.state(meshes)) == without_values(before))
 
 
-def in_library(build, release, layer, folder):
-    out = folder / "out.txt"
-    plugin = meshlabserver.plugin_path(build, f"meshlab-{release}")
-    file = inputs.write_layer(layer, folder / "layer.txt")
-    report, = library_hosts.outcomes(library_hosts.run(build, release, plugin, file, out))
-    assert (report["layers"], report["current"]) == (2, "layer")
-    if report["sentence"]:
-        return Counted(sentence=report["sentence"], rest_unchanged=report["unchanged"])
-    values = np.loadtxt(out, ndmin=2)
-    return Counted(quality=values[:, 0].astype("f4"), selected=values[:, 1] != 0, report=report,
-                   rest_unchanged=report["unchanged"])
-
-
 def count(build, server, pymeshlab, host, layer, folder):
     if host == input_hosts.SERVER:
         return in_server(build, server, pymeshlab, layer, folder)
-    if host == input_hosts.PYMESHLAB:
-        return in_pymeshlab(pymeshlab, layer, folder)
-    return in_library(build, host.split()[1], layer, folder)
+    return in_pymeshlab(pymeshlab, layer, folder)

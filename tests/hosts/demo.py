@@ -60,7 +60,7 @@ def error_of(build, arguments, report):
 def draw(mesh):
     """Makes a picture of the mesh with MeshLab, in the same folder."""
     picture = mesh.with_suffix(".png")
-    subprocess.run([sys.executable, str(PICTURE), str(mesh), str(picture), "--style", "flat-lines", "--color"], check=True)
+    subprocess.run([sys.executable, str(PICTURE), str(mesh), str(picture)], check=True)
     return picture
 
 

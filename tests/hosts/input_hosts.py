@@ -8,7 +8,6 @@ import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 
 import inputs
-import library_hosts
 import meshlabserver
 import models
 import numpy as np
@@ -16,7 +15,7 @@ import numpy as np
 PYTHON_NAME = inputs.RECONSTRUCTION
 SERVER = "meshlabserver 2020.09"
 PYMESHLAB = "pymeshlab 2025.7"
-HOSTS = (SERVER, *(f"library {release}" for release in library_hosts.RELEASES), PYMESHLAB)
+HOSTS = (SERVER, PYMESHLAB)
 
 
 @dataclass
@@ -149,7 +148,7 @@ def load(pymeshlab, layer, folder):
     meshes = new_mesh_set(pymeshlab)
     cleaned_by_reader = not np.isfinite(layer.points).all() or any(len(set(face)) < 3 for face in layer.faces)
     if cleaned_by_reader:
-        faces = np.array([corners for corners, _, _ in layer.triangles()], dtype="i4").reshape(-1, 3)
+        faces = np.array(layer.triangles(), dtype="i4").reshape(-1, 3)
         quality = layer.quality().astype(float)
         meshes.add_mesh(pymeshlab.Mesh(layer.points.astype(float), faces, v_scalar_array=quality))
     else:
@@ -186,22 +185,6 @@ def in_pymeshlab(pymeshlab, layer, folder):
     return Outcome(host=PYMESHLAB, mesh=out, origin=origin, report=report, unchanged=unchanged())
 
 
-# --- the libraries of 2022.02 and 2025.07 ------------------------------------------------------------------------
-
-
-def in_library(build, release, layer, folder, layers=3):
-    """layers: their number after the filter."""
-    out = folder / "out.off"
-    plugin = meshlabserver.plugin_path(build, f"meshlab-{release}")
-    file = inputs.write_layer(layer, folder / "layer.txt")
-    report, = library_hosts.outcomes(library_hosts.run(build, release, plugin, file, out))
-    learned = not report["sentence"]
-    assert (report["layers"], report["current"]) == ((layers, "Neural Mesh") if learned else (2, "layer"))
-    return Outcome(sentence=report["sentence"], host=f"library {release}", mesh=out if learned else None, report=report,
-                   origin=_translation_in(np.array(report["matrix"]).reshape(4, 4)) if learned else (0, 0, 0),
-                   unchanged=report["unchanged"])
-
-
 # --- the checks ---------------------------------------------------------------------------------------------------
 
 
@@ -209,9 +192,7 @@ def try_out(build, server, pymeshlab, host, layer, folder):
     """Runs the filter on the layer in the host. AssertionError: a promise is broken."""
     if host == SERVER:
         return in_server(build, server, layer, folder)
-    if host == PYMESHLAB:
-        return in_pymeshlab(pymeshlab, layer, folder)
-    return in_library(build, host.split()[1], layer, folder)
+    return in_pymeshlab(pymeshlab, layer, folder)
 
 
 def check(build, layer, outcome):

@@ -12,7 +12,6 @@ import shutil
 import subprocess
 from pathlib import Path
 
-import inputs
 import library_hosts
 import meshlabserver
 import pytest
@@ -135,29 +134,28 @@ def test_the_package_for_debian_12(build, system):
     check(build, debian.folder / "root/mesh.ply", 10000)
 
 
-def use_library(build, debian, release, plugin, tmp_path):
+def use_library(build, debian, release, plugin):
     """Runs the filter in the system's MeshLab library, since these releases of Debian have no meshlabserver."""
     for file in ("run_library_host", f"liblibrary_host_{release}.so"):
         shutil.copy(build / "tests" / file, debian.folder / "root" / file)
-    inputs.write_layer(inputs.Input(inputs.ball(1000), target=100), debian.folder / "root/layer.txt")
     debian.run(f"./run_library_host {LIBRARIES}/meshlab/libmeshlab-common.so ./liblibrary_host_{release}.so "
-               f"{plugin} layer.txt mesh.off")
+               f"{plugin} mesh.off")
     check(build, debian.folder / "root/mesh.off", 100)
 
 
-def test_the_package_for_debian_13(build, system, tmp_path):
+def test_the_package_for_debian_13(build, system):
     debian = system("trixie")
     debian.prepare("ca-certificates")
     debian.run(f"{APT} install -y --no-install-recommends ./meshlab-plugin-neuralmesh_*deb13u1_amd64.deb")
-    use_library(build, debian, "2022.02", f"{LIBRARIES}/meshlab/plugins/libfilter_neuralmesh.so", tmp_path)
+    use_library(build, debian, "2022.02", f"{LIBRARIES}/meshlab/plugins/libfilter_neuralmesh.so")
 
 
 @pytest.mark.parametrize("release, suite", library_hosts.SUITES.items())
-def test_the_archives(build, system, tmp_path, release, suite):
+def test_the_archives(build, system, release, suite):
     debian = system(suite)
     debian.prepare("meshlab")
     debian.run(f"tar -xzf neural-mesh-*-meshlab-{release}-float-linux-x86_64.tar.gz --strip-components=1")
-    use_library(build, debian, release, "./libfilter_neuralmesh.so", tmp_path)
+    use_library(build, debian, release, "./libfilter_neuralmesh.so")
 
 
 def test_lintian_has_nothing_to_say(dist):

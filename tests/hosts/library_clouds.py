@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Twelve clouds whose meshes must have the same bytes from the library and from the filter, on every system, and the
+"""Six clouds whose meshes must have the same bytes from the library and from the filter, on every system, and the
 recorded sums of these bytes.
 
     library_clouds.py            runs each with the neural_mesh that Python finds, and compares with the record
@@ -11,13 +11,11 @@ Coordinates are made by additions, products and square roots of uniform random n
 Needs numpy alone."""
 
 import hashlib
-import struct
 import sys
 from pathlib import Path
 
 import numpy as np
 
-TYPES = ("float32", "float64", "uint8", "int32", "int64")  # as neural_mesh.h numbers them
 RECORD = Path(__file__).with_name("library_bytes.txt")
 
 
@@ -61,14 +59,8 @@ def clouds():
     density = np.random.default_rng(4).random(3000) < np.where(ball[:, 0] < 0, 1, .2)
     edges = {"target_vertices": 300, "crease_lines": True, "feature_measure": 1}
     return {
-        "double": {"points": ball, "target_vertices": 200},
-        "float": {"points": ball.astype(np.float32), "target_vertices": 200},
-        "noisy": {"points": ball + .04 * (np.random.default_rng(5).random(ball.shape) - .5), "target_vertices": 150},
         "colours": {"points": ball, "colors": paint(ball), "target_vertices": 150},
-        "no colours": {"points": ball, "colors": paint(ball), "target_vertices": 100, "vertex_color": 2},
-        "open": {"points": bowl, "target_vertices": 200},
         "open with normals": {"points": bowl.astype(np.float32), "normals": -bowl, "target_vertices": 150},
-        "creases": {"points": box(3000, 6), **edges},
         "creases of floats": {"points": box(3000, 7).astype(np.float32), "colors": paint(box(3000, 7)), **edges},
         "faces": {"points": surface, "faces": faces, "colors": paint(surface), "target_vertices": 150},
         "stray points": {"points": np.concatenate([ball, stray]), "target_vertices": 150, "surface": 1},
@@ -85,27 +77,6 @@ def arrays_of(mesh):
 
 def sum_of(arrays):
     return hashlib.sha256(b"".join(b"-" if array is None else bytes(array.data) for array in arrays)).hexdigest()[:16]
-
-
-def write_cloud(path, points, colors=None, normals=None, faces=None, **parameters):
-    """Writes what tests/c_api/run_cloud.c reads. Parameters are numbers."""
-    with open(path, "wb") as file:
-        file.write(struct.pack("<i", len(parameters)))
-        for name, value in parameters.items():
-            file.write(struct.pack("<32sd", name.encode(), value))
-        for array in (points, colors, normals, faces):
-            array = np.zeros((0, 3)) if array is None else np.ascontiguousarray(array)
-            file.write(struct.pack("<ii", TYPES.index(array.dtype.name), len(array)) + array.tobytes())
-
-
-def read_result(path):
-    """The arrays of a mesh, as run_cloud.c writes them."""
-    content, arrays = Path(path).read_bytes(), []
-    while content:
-        size, = struct.unpack("<i", content[:4])
-        arrays.append(None if size < 0 else np.frombuffer(content[4:4 + size], np.uint8))
-        content = content[4 + max(size, 0):]
-    return arrays
 
 
 def recorded():

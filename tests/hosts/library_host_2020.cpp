@@ -3,29 +3,20 @@
 
 // MeshLab 2020.09 without its window: the plugin learns a ball many times, and a later allocation fails each
 // time. Qt's own allocations never fail, because they do not go through the replaced functions.
-// run_library_host.cpp starts it; LAYER and OUT are ignored. It prints one JSON object per run.
+// run_library_host.cpp starts it; OUT is ignored. It prints one JSON object per run.
 #include <common/interfaces.h>
 
 #include <QApplication>
 #include <QPluginLoader>
-#include <cmath>
 #include <iostream>
 
-#include "tests/memory/allocations.h"
+#include "ball_runs.h"
 
 namespace {
 
 namespace allocations = neuralmesh::allocations;
-using allocations::Failure;
-
-void add_ball(CMeshO& mesh) {
-    constexpr int kCount = 1000;
-    for (int i = 0; i < kCount; ++i) {
-        const double z = 1 - (2.0 * i + 1) / kCount, turn = 2.399963229728653 * i, rim = std::sqrt(1 - z * z);
-        vcg::tri::Allocator<CMeshO>::AddVertex(
-            mesh, Point3m(Scalarm(rim * std::cos(turn)), Scalarm(rim * std::sin(turn)), Scalarm(z)));
-    }
-}
+using ball_runs::Failure;
+using ball_runs::truth;
 
 class Host {
 public:
@@ -35,7 +26,7 @@ public:
     /// none if -1.
     void learn(long long nth, Failure failure) {
         MeshDocument document;
-        add_ball(document.addNewMesh("", "layer", true)->cm);
+        ball_runs::add_ball(document.addNewMesh("", "layer", true)->cm);
         RichParameterList list;
         filter_.initParameterSet(action_, document, list);
         list.setValue("target_vertices", IntValue(100));
@@ -56,7 +47,6 @@ public:
 
         QStringList logged;
         document.Log.print(logged);
-        const auto truth = [](bool value) { return value ? "true" : "false"; };
         std::cout << "{\"learned\": " << truth(learned) << ", \"escaped\": " << truth(escaped)
                   << ", \"reported\": " << truth(logged.join(' ').contains("signals="))
                   << ", \"layers\": " << document.size() << ", \"current\": \""
@@ -83,11 +73,6 @@ extern "C" __attribute__((visibility("default"))) int library_host(int argc, cha
     }
     Host host(*filter);
     host.learn(-1, Failure::once);
-    // Every allocation near both ends, which are the adapter's, and a sample of those during learning.
-    const long long all = host.allocated;
-    for (long long nth = 0; nth < all; nth += nth < 60 || nth > all - 150 ? 1 : (all - 210) / 20 + 1) {
-        host.learn(nth, Failure::once);
-        host.learn(nth, Failure::from_then_on);
-    }
+    ball_runs::starve(host.allocated, [&](long long nth, Failure failure) { host.learn(nth, failure); });
     return 0;
 }

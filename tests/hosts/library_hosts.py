@@ -30,12 +30,12 @@ def libraries_of(release):
     return folder / "usr/lib/x86_64-linux-gnu"
 
 
-def run(build, release, plugin, layer, out, *mode):
-    """Starts library_host.cpp on a layer file of inputs.write_layer(); returns the finished process."""
+def run(build, release, plugin, out, *mode):
+    """Starts library_host.cpp; returns the finished process."""
     libraries = libraries_of(release)
     command = [libraries / "ld-linux-x86-64.so.2", "--library-path", f"{libraries}/meshlab:{libraries}",
                build / "tests/run_library_host", libraries / "meshlab/libmeshlab-common.so",
-               build / f"tests/liblibrary_host_{release}.so", plugin, layer, out, *mode]
+               build / f"tests/liblibrary_host_{release}.so", plugin, out, *mode]
     return subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                           check=False, timeout=300,
                           env=dict(os.environ, QT_QPA_PLATFORM="offscreen", QT_PLUGIN_PATH=str(libraries / "qt5/plugins")))
@@ -44,7 +44,7 @@ def run(build, release, plugin, layer, out, *mode):
 def run_2020(build, plugin):
     """Starts library_host_2020.cpp with the libraries of the installed MeshLab 2020.09; returns the finished process."""
     command = [build / "tests/run_library_host", meshlabserver.LIBRARIES / "libmeshlab-common.so",
-               build / "tests/liblibrary_host_2020.09.so", plugin, "ball", "nowhere"]
+               build / "tests/liblibrary_host_2020.09.so", plugin, "nowhere"]
     return subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                           check=False, timeout=300, env=dict(os.environ, QT_QPA_PLATFORM="offscreen"))
 

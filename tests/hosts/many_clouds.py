@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Many small clouds, some of them corrupt, for batches."""
+"""Small clouds for batches, and corrupt ones."""
 
 import json
 
 import numpy as np
 
 POINTS = 200
-ONE_IN = 100  # is corrupt
 # What the command is given, to learn them fast.
 SETTINGS = ("target_vertices=60", "settling_signals_per_vertex=0")
 
@@ -35,18 +34,11 @@ CORRUPT = {
 
 
 def make(folder, count):
-    """Writes `count` clouds, cloud_0000.ply and so on. Returns the names of those that are corrupt."""
+    """Writes `count` clouds, cloud_0000.ply and so on."""
     folder.mkdir(parents=True)
     rng = np.random.default_rng(1)
-    corrupt = set()
     for i in range(count):
-        points = ellipsoid(rng)
-        content = ply(points)
-        if i % ONE_IN == ONE_IN // 2:
-            content = list(CORRUPT.values())[i // ONE_IN % len(CORRUPT)](points)
-            corrupt.add(f"cloud_{i:04}.ply")
-        (folder / f"cloud_{i:04}.ply").write_bytes(content)
-    return corrupt
+        (folder / f"cloud_{i:04}.ply").write_bytes(ply(ellipsoid(rng)))
 
 
 def records(out):

@@ -11,7 +11,7 @@ import meshlabserver
 import numpy as np
 import pytest
 import python_site
-from conftest import FULL, few_of, write_points
+from conftest import FULL, write_points
 from PIL import Image
 
 EXAMPLE = Path(__file__).resolve().parent / "examples/texture_pymeshlab.py"
@@ -47,7 +47,7 @@ def first():
     return {}
 
 
-@pytest.mark.parametrize("host", few_of(input_hosts.HOSTS, (input_hosts.SERVER, input_hosts.PYMESHLAB)))
+@pytest.mark.parametrize("host", input_hosts.HOSTS)
 def test_the_mesh_has_the_colours_of_the_layer(build, server, pymeshlab, first, tmp_path, host):
     outcome = input_hosts.try_out(build, server, pymeshlab, host, painted_ball(), tmp_path)
     assert outcome.unchanged and outcome.report["outliers"] == OUTLIERS

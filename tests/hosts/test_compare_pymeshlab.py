@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The neural mesh compared with Screened Poisson + Quadric Edge Collapse in pymeshlab on a few models, and the
-measuring tools on surfaces of known error. The large tables are by tests/experiments/accuracy/compare_accuracy.py."""
+"""The measuring tools of the experiments, on surfaces of known error. The test `accuracy` compares meshes with the peers'."""
 
 import numpy as np
-import pymeshlab
 import pytest
 
 import evaluate
-import meshlabserver
 import models
 import peers
 import shapes
@@ -17,7 +14,6 @@ import shapes
 pytestmark = pytest.mark.full
 
 SAMPLES = 30_000
-VERTICES = 2000
 
 
 # --- the tools ---------------------------------------------------------------------------------------------------
@@ -74,97 +70,3 @@ def test_clouds_are_uniform_noisy_as_asked_and_repeatable():
 def test_a_peer_that_crashes_is_reported_with_a_sentence(tmp_path):
     with pytest.raises(peers.PeerError, match="ended with code"):
         peers.run("poisson", tmp_path / "there_is_none.ply", tmp_path, [500])
-
-
-# --- ours against the peer ---------------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def plugin(build):
-    path = meshlabserver.plugin_path(build, "pymeshlab-2025.7")
-    assert path.exists(), f"There is no plugin at {path}; './run.sh build' makes it."
-    return path
-
-
-def cloud_rms(cloud, mesh):
-    """RMS distance from the points of the cloud to the mesh, in % of the cloud's diagonal."""
-    meshes = pymeshlab.MeshSet(verbose=False)
-    meshes.load_new_mesh(str(cloud))
-    meshes.load_new_mesh(str(mesh))
-    every = {"samplevert": True, "samplenum": meshes.mesh(0).vertex_number(), "maxdist": pymeshlab.PercentageValue(100)}
-    report = meshes.get_hausdorff_distance(sampledmesh=0, targetmesh=1, **every)
-    return 100 * report["RMS"] / meshes.mesh(0).bounding_box().diagonal()
-
-
-@pytest.fixture(scope="module")
-def measured(tmp_path_factory, plugin):
-    """measured(method, name, noise, seed): the measures of a method on a model's cloud, cached."""
-    made = {}
-
-    def one(method, name, noise=0.0, seed=None):
-        key = (method, name, noise, seed)
-        if key not in made:
-            truth = evaluate.Truth(*models.load_model(name))
-            folder = tmp_path_factory.mktemp("measured")
-            models.save_ply(folder / "cloud.ply", models.make_cloud(truth.vertices, truth.faces, SAMPLES, noise))
-            settings = {"random_seed": seed}
-            ours = {"plugin": plugin, "settings": settings} if method == "neural" else {}
-            figures = peers.run(method, folder / "cloud.ply", folder, [VERTICES], **ours)
-            mesh = models.load_mesh(folder / f"{VERTICES}.ply")
-            made[key] = {**evaluate.evaluate(*mesh, truth), **figures[VERTICES],
-                         "cloud_rms": cloud_rms(folder / "cloud.ply", folder / f"{VERTICES}.ply")}
-        return made[key]
-
-    return one
-
-
-@pytest.fixture(scope="module")
-def learned(measured):
-    return lambda name, noise=0.0, seed=1: measured("neural", name, noise, seed)
-
-
-@pytest.fixture(scope="module")
-def peer(measured):
-    return lambda name, noise=0.0: measured("poisson", name, noise)
-
-
-def test_the_peer_has_the_vertices_asked_for(peer):
-    assert peer("bunny")["vertices"] == pytest.approx(VERTICES, rel=peers.TOLERANCE)
-
-
-@pytest.mark.parametrize("name", ["bunny", "torus", "linked-tori", "two-spheres", "cup"])
-def test_exact_closed_and_of_the_right_topology(learned, name):
-    ours = learned(name)
-    model = models.MODELS[name]
-    assert ours["vertices"] == VERTICES
-    assert ours["manifold"] and ours["boundary_edges"] == 0 and not ours["inside_out"]
-    assert (ours["genus"], ours["components"]) == (model.genus, model.components)
-    assert ours["backward_max"] <= 3 * ours["forward_max"], "a web or a spike"
-
-
-@pytest.mark.parametrize("name", ["bunny", "torus", "linked-tori", "two-spheres", "cup"])
-def test_does_not_cut_through_itself(learned, name):
-    ours = learned(name)
-    assert ours["self_intersecting_faces"] <= 0.001 * ours["faces"]
-
-
-@pytest.mark.parametrize("name, noise, bound", [("bunny", 0, 1.2), ("torus", 0, 1.2), ("filleted-cube", 0, 1.2),
-                                                ("bunny", 0.6, 0.6), ("torus", 0.6, 0.6)])
-def test_closer_to_the_truth_than_the_peer(learned, peer, name, noise, bound):
-    assert learned(name, noise)["sum_rms"] <= bound * peer(name, noise)["sum_rms"]
-
-
-def test_the_reported_figures_are_those_of_the_mesh(learned):
-    ours = learned("linked-tori")
-    report = ours["report"]
-    for key in ("vertices", "faces", "genus", "components"):
-        assert report[key] == ours[key], key
-    assert report["boundary_loops"] == 0
-    # Both are measured at 20,000 of the learned points, which are closer than the surface between them.
-    assert report["rms_error"] == pytest.approx(ours["cloud_rms"], rel=0.05)
-
-
-def test_seeds_change_the_mesh_and_not_its_quality(learned):
-    first, second = learned("bunny", 0, 1), learned("bunny", 0, 2)
-    assert first["forward_rms"] != second["forward_rms"]
-    assert first["sum_rms"] == pytest.approx(second["sum_rms"], rel=0.25)

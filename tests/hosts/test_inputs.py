@@ -2,7 +2,7 @@
 # Copyright the Neural Mesh authors
 
 """Every layer of inputs.py in every host: the result is a correct mesh or an error message, the same in all hosts, and
-the layer is unchanged. inputs_table.py prints this as a table."""
+the layer is unchanged."""
 
 from html import escape
 

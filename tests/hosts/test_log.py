@@ -3,14 +3,11 @@
 
 """What the Python package tells of a run besides its results: neural_mesh.log(), and warnings of Python."""
 
-import json
-import shutil
-
 import inputs
 import meshlabserver
 import pytest
 import python_site
-from conftest import FULL, PYTHON_NAME, write_points
+from conftest import PYTHON_NAME, write_points
 
 
 @pytest.fixture(scope="module")
@@ -171,31 +168,3 @@ def test_the_command_says_warnings_as_sentences(site, sheet, tmp_path):
     said = done.stderr.splitlines()
     assert done.returncode == 0 and said and all(line.startswith("neural-mesh: ") and line.endswith(".") for line in said)
     assert done.stdout.endswith(f" warnings={len(said)}\n")
-
-
-CELLS = ["""import neural_mesh, pymeshlab
-meshes = pymeshlab.MeshSet(verbose=False)
-meshes.load_new_mesh("sheet.ply")
-result = meshes.generate_surface_reconstruction_neural_mesh(target_vertices=100)""",
-         "print(len(neural_mesh.log().warnings) == result['warnings'])\nprint(neural_mesh.log())"]
-
-
-@FULL
-def test_a_notebook_shows_the_warnings_below_their_cell(site, sheet, tmp_path):
-    """The first cell is there twice: the second run of the same line warns, too."""
-    cells = [{"cell_type": "code", "id": f"cell-{number}", "metadata": {}, "execution_count": None, "outputs": [],
-              "source": source} for number, source in enumerate((CELLS[0], *CELLS))]
-    (tmp_path / "notebook.ipynb").write_text(json.dumps({"cells": cells, "metadata": {}, "nbformat": 4,
-                                                         "nbformat_minor": 5}))
-    shutil.copy(sheet, tmp_path)
-    done = python_site.run(site, "-c", "import nbclient, nbformat, sys\n"
-                   "notebook = nbformat.read('notebook.ipynb', 4)\n"
-                   "nbclient.NotebookClient(notebook, kernel_name='python3').execute()\n"
-                   "nbformat.write(notebook, 'done.ipynb')", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    first, again, last = ["".join("".join(output.get("text", "")) for output in cell["outputs"])
-                          for cell in json.loads((tmp_path / "done.ipynb").read_text())["cells"]]
-    warned = [line.split(": ", 1)[1] for line in last.splitlines() if line.startswith("warning: ")]
-    assert last.startswith("True\n") and warned
-    for shown in (first, again):
-        assert shown.count("NeuralMeshWarning: ") == len(warned) and all(text in shown for text in warned)

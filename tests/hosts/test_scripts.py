@@ -17,7 +17,6 @@ import meshlabserver
 import numpy as np
 import parameters_page
 import pytest
-from conftest import few_of
 
 NAMES = sorted(example_scripts.EXAMPLES)
 FIRST_PAGE = Path(__file__).resolve().parents[2] / "README.md"
@@ -55,13 +54,10 @@ def test_a_script_with_an_unknown_parameter_is_not_written(build, tmp_path):
         meshlabserver.write_script(build, tmp_path / "wrong.mlx", target_vertexes=5)
 
 
-@pytest.mark.parametrize("name", few_of([name for name in NAMES if name not in example_scripts.FILTERS],
-                                        ("reconstruct",)))
-def test_script_runs_and_its_result_is_sound(build, server, model, tmp_path, name):
+def test_the_script_with_the_defaults_makes_a_sound_mesh(build, server, model, tmp_path):
     cloud, surface = model("bunny")
-    source = surface if name == "vertices_of_a_mesh" else cloud
-    script = example_scripts.FOLDER / f"{name}.mlx"
-    report = meshlabserver.reconstruct(server, source, script, tmp_path / "out.ply")
+    script = example_scripts.FOLDER / "reconstruct.mlx"
+    report = meshlabserver.reconstruct(server, cloud, script, tmp_path / "out.ply")
     found = meshlabserver.check_mesh(build, tmp_path / "out.ply", surface)
     wanted = int(re.search(r'name="target_vertices" value="(\d+)"', script.read_text()).group(1))
 
@@ -75,13 +71,8 @@ def test_script_runs_and_its_result_is_sound(build, server, model, tmp_path, nam
     assert found["volume"] > 0, "the faces look inwards"
     assert found["quality"] and found["color"]
     # The mean edge is about 170 / sqrt(vertices) % of the diagonal; the error is proportional to its square.
-    bound = 0.08 * 10000 / wanted
-    assert found["rms_to_mesh"] <= bound and found["rms_to_reference"] <= bound
-    assert report["rms_error"] <= bound
-    if example_scripts.EXAMPLES[name].get("select_features"):
-        assert 0 < found["selected"] == report["feature_vertices"] < wanted
-    else:
-        assert found["selected"] == 0
+    assert max(found["rms_to_mesh"], found["rms_to_reference"], report["rms_error"]) <= 0.08 * 10000 / wanted
+    assert found["selected"] == 0
 
 
 def test_the_script_of_counters_selects_the_creases(build, server, model, tmp_path):
@@ -92,11 +83,3 @@ def test_the_script_of_counters_selects_the_creases(build, server, model, tmp_pa
     found = meshlabserver.check_mesh(build, tmp_path / "out.ply")
     assert report["stop_reason"] == 0 and found["quality"]
     assert 0 < found["selected"] == report["feature_vertices"] < report["vertices"] == found["vertices"]
-
-
-@pytest.mark.parametrize("utility_counter", few_of((0, 1), (1,)))
-def test_valences_are_those_of_a_good_mesh(build, server, model, tmp_path, utility_counter):
-    """Without the fit, whose edge flips follow the data and not the valences."""
-    script = meshlabserver.write_script(build, tmp_path / "s.mlx", utility_counter=utility_counter, fit_to_points=False)
-    meshlabserver.reconstruct(server, model("bunny")[0], script, tmp_path / "out.ply")
-    assert meshlabserver.check_mesh(build, tmp_path / "out.ply")["regular_valences"] >= 95

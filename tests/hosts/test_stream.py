@@ -19,10 +19,9 @@ from stream_clouds import FILES, ORIGIN, POINTS, ascii_ply, bench, e57, las, ply
 @pytest.fixture(scope="module")
 def stream(site):
     """stream(word...) -> the finished process of the command."""
-    def run(*words, modules=(), **options):
-        path = os.pathsep.join(map(str, (site, *modules)))
+    def run(*words, **options):
         return subprocess.run([sys.executable, "-m", "neural_mesh", "stream", *map(str, words)], text=True, check=False,
-                              capture_output=True, env=dict(os.environ, PYTHONPATH=path), **options)
+                              capture_output=True, env=dict(os.environ, PYTHONPATH=str(site)), **options)
     return run
 
 
@@ -39,12 +38,6 @@ def results(done):
 def error_of(done, status):
     assert done.returncode == status and "Traceback" not in done.stderr, done.stderr
     return done.stderr.splitlines()[-1]
-
-
-def test_memory_that_processes_share_counts_once():
-    forks = "data = b'x' * 100_000_000; import os, time; [os.fork() for _ in range(2)]; time.sleep(1)"
-    memory = bench.run_watched([sys.executable, "-c", forks], None)[2]
-    assert 100_000_000 < memory < 150_000_000  # of four processes
 
 
 @FULL
@@ -104,14 +97,6 @@ def test_points_that_are_not_finite_are_counted(stream, tmp_path):
     assert "all 4,498 points" in done.stdout and not done.stderr
 
 
-def test_pymeshlab_is_not_needed(stream, tmp_path):
-    (tmp_path / "modules").mkdir()
-    (tmp_path / "modules/pymeshlab.py").write_text("raise ImportError('no pymeshlab')\n")
-    cloud = write_points(tmp_path / "cloud.ply", bench.surface(3000, 1))
-    found = results(stream(cloud, tmp_path / "mesh.ply", "target_vertices=100", modules=[tmp_path / "modules"]))
-    assert 0 < found["points_rms"] < found["points_maximum"] < found["diagonal"]
-
-
 # Bad input
 
 
@@ -138,11 +123,8 @@ BAD = {
     "nan.ply": (lambda path: ply(path, "f8", "<", points=POINTS * np.nan), "holds no point with finite coordinates."),
     "words.xyz": (lambda path: path.write_text("no points\n" * 200), "has no line that begins with three numbers."),
     "bytes.xyz": (lambda path: path.write_bytes(b"1 2 3\n" + bytes(200_000)), "more than 65536 bytes.|the line"),
-    "empty.las": (lambda path: path.touch(), "is empty."),
     "text.las": (lambda path: path.write_text("some text\n" * 100), "cannot be read: "),
     "short.las": (lambda path: short(path, las), "is cut short: it announces 1000 points and"),
-    "short.laz": (lambda path: short(path, las), "cannot be read: |cut short"),
-    "text.e57": (lambda path: path.write_text("some text\n" * 100), "cannot be read: "),
     "short.e57": (lambda path: short(path, e57), "cannot be read: "),
     "cloud.abc": (lambda path: path.write_text("1 2 3\n"), "has no ending that stream reads: .ply, .xyz"),
     "few.xyz": (lambda path: path.write_text("1 2 3\n4 5 6\n"), "points"),
@@ -173,8 +155,6 @@ def small(tmp_path):
     (["small.ply"], "The mesh small.ply would replace its cloud: give another name."),
     (["folder.ply"], "folder.ply is a folder: give the name of a file."),
     (["mesh.ply", "vertices=5"], "There is no parameter vertices."),
-    (["mesh.ply", "target_vertices=1"], "choose a value from 4 to"),
-    (["mesh.ply", "--memory", "much"], "argument --memory: invalid memory_size value: 'much'"),
     (["mesh.ply", "--memory", "100MB"], "10,000 vertices need "),
     (["mesh.ply", "--memory", "1GB", "target_vertices=1000000"], "1,000,000 vertices need "),
 ])
@@ -222,11 +202,6 @@ def test_folders_that_are_not_provably_left_stay(stream, small, tmp_path):
 
 def hidden(folder):
     return sorted(folder.glob(".*"))
-
-
-def test_counts_are_printed_in_full(site):
-    from neural_mesh.parameters import line_of
-    assert line_of({"points": 20_000_000, "rms": 1 / 3}) == "points=20000000 rms=0.333333"
 
 
 @FULL

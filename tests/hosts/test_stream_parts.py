@@ -164,6 +164,3 @@ def test_the_least_axes_are_those_of_numpy(site):
     least, middle, found = _least_axes(matrices.transpose(1, 2, 0).copy())
     assert np.abs(least - values[:, 0]).max() < 1e-12 and np.abs(middle - values[:, 1]).max() < 1e-12
     assert np.abs((found.T * axes[:, :, 0]).sum(axis=1))[2:] == pytest.approx(1, abs=1e-9)
-
-
-# The command

@@ -11,7 +11,6 @@ import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-import inputs
 import library_hosts
 import meshlabserver
 import pytest
@@ -64,8 +63,7 @@ def test_meshlabs_build_compiles_it_without_a_warning(objects):
 def test_it_gives_the_same_mesh_as_the_plugin(build, objects, tmp_path):
     plugin = tmp_path / "libfilter_neuralmesh.so"
     run("g++", "-shared", "-o", plugin, *objects[1], "-lQt5Core", "-lQt5Widgets", "-pthread")
-    layer = inputs.write_layer(inputs.Input(inputs.ball(1000), target=100), tmp_path / "layer.txt")
     for file in (plugin, meshlabserver.plugin_path(build, "meshlab-2025.07")):
-        done = library_hosts.run(build, "2025.07", file, layer, tmp_path / f"{file.parent.name}.off")
+        done = library_hosts.run(build, "2025.07", file, tmp_path / f"{file.parent.name}.off")
         assert library_hosts.outcomes(done)[0]["vertices"] == 100
     assert (tmp_path / f"{tmp_path.name}.off").read_bytes() == (tmp_path / "meshlab-2025.07.off").read_bytes()

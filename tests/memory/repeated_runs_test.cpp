@@ -10,7 +10,6 @@
 #include <thread>
 
 #include "tests/memory/allocations.h"
-#include "tests/unit/support/environment.h"
 #include "tests/unit/support/soundness.h"
 
 namespace neuralmesh {
@@ -39,8 +38,8 @@ TEST(RepeatedRuns, LeakNothing) {
     long long before = 0;
     long long living = 0;
     constexpr int kWarmUp = 20;
-    const int runs = environment::full() ? 100 : 30;
-    for (int i = 0; i < kWarmUp + runs; ++i) {
+    constexpr int kRuns = 30;
+    for (int i = 0; i < kWarmUp + kRuns; ++i) {
         if (i == kWarmUp) {
             before = allocations::resident_bytes();
             living = allocations::living();
@@ -55,7 +54,7 @@ TEST(RepeatedRuns, LeakNothing) {
     RecordProperty("grown_bytes", std::to_string(grown));
     // The heap of the C library may keep ten kilobytes per run. Blocks of our own are counted above; this
     // finds other memory, such as the stacks of threads.
-    EXPECT_LT(grown, runs * ((1 << 20) / 100)) << "bytes in " << runs << " runs";
+    EXPECT_LT(grown, kRuns * ((1 << 20) / 100)) << "bytes";
 }
 
 TEST(RepeatedRuns, TwoAtOnceGiveTheBytesOfOneAlone) {

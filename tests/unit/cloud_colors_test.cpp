@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Vertex colours from those of a cloud: accuracy, the plain slow computation, and places without points.
+// Vertex colours from those of a cloud: the plain slow computation, and places without points.
 #include "vcg_core/cloud_colors.h"
 
 #include <gtest/gtest.h>
@@ -46,29 +46,6 @@ PerVertex<Color> colors_of(const TargetSpace& target, const Network& network, in
     NoProgress progress;
     Random random(1);
     return cloud_colors(target, network, threads, random, progress);
-}
-
-double mean_error(const PerVertex<Color>& found, const std::vector<vcg::Point3d>& places, double period) {
-    double sum = 0;
-    for (int v = 0; v < found.size(); ++v) {
-        const Color truth = wavy(places[static_cast<std::size_t>(v)], period);
-        for (std::size_t k = 0; k < 3; ++k) sum += std::abs(int{found[v][k]} - int{truth[k]});
-    }
-    return sum / (3 * found.size());
-}
-
-double mean_edge(const shapes::Shape& shape) {
-    return static_cast<double>(mean_edge_length(Surface(referee::network_of(shape))));
-}
-
-/// 10,242 vertices, and waves ten edges long.
-TEST(CloudColors, AreWithinThreeCodesOfASmoothTexture) {
-    const shapes::Shape sphere = shapes::icosphere(5);
-    const double period = 10 * mean_edge(sphere);
-    const TargetSpace target =
-        colored(shapes::sphere_cloud(100000), [&](const vcg::Point3d& p) { return wavy(p, period); });
-    const auto found = colors_of(target, targets::network_in_frame(target, sphere));
-    EXPECT_LT(mean_error(found, sphere.positions, period), 3);
 }
 
 TEST(CloudColors, DoNotDependOnTheThreads) {

@@ -12,7 +12,6 @@
 #include <map>
 #include <set>
 
-#include "tests/unit/support/cube_edges.h"
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
 #include "vcg_core/learning/two_planes.h"
@@ -20,6 +19,15 @@
 
 namespace neuralmesh {
 namespace {
+
+/// Of a point near the cube's surface from the nearest edge of the cube.
+double distance_from_edge(const vcg::Point3f& p) {
+    std::array<double, 3> off{};
+    for (int k = 0; k < 3; ++k)
+        off[static_cast<std::size_t>(k)] = std::abs(std::abs(static_cast<double>(p[k])) - 1);
+    std::sort(off.begin(), off.end());
+    return std::hypot(off[0], off[1]);
+}
 
 constexpr int kPieces = 8;  ///< edges of the mesh along an edge of the cube
 

@@ -103,23 +103,6 @@ TEST(MeshCounters, FindTheEdgesOfACube) {
     }
 }
 
-TEST(MeshCounters, ShowEitherMeasureAndSelectByEither) {
-    const Shape cube = fine_cube(10);
-    const TargetSpace target = targets::target_of(shapes::box_cloud(20000));
-    for (const int shown : {0, 1})
-        for (const int selecting : {0, 1}) {
-            Settings settings;
-            settings.feature_measure = shown;
-            settings.select_by = selecting;
-            const MeshCounters found = count(cube, target, settings);
-            const double threshold = shown == kCreaseMeasure ? 1 : found.report.mean_counter;
-            std::size_t alike = 0;
-            for (std::size_t i = 0; i < found.counters.size(); ++i)
-                alike += (static_cast<double>(found.counters[i]) > threshold) == (found.features[i] != 0);
-            EXPECT_EQ(alike == found.counters.size(), shown == selecting);
-        }
-}
-
 /// A plane has no features, though its faces are of many sizes and the points are noisy.
 TEST(MeshCounters, FindNothingOnAPlane) {
     Shape plane = shapes::grid(25, 25);

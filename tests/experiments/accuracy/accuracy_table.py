@@ -55,6 +55,7 @@ def parse(arguments):
     parser.add_argument("--vertices", type=compare_accuracy.numbers(int), default=[500, 2000, 10000])
     parser.add_argument("--models", type=compare_accuracy.numbers(str), help="names of models.py")
     parser.add_argument("--peers", type=compare_accuracy.numbers(str), default=list(PEERS), help="the goals are over the first")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a parameter of ours")
     parser.add_argument("--only", choices=["accuracy", "topology"], help="one of the two tables")
     parser.add_argument("--small", action="store_true", help="a few quick runs, for the tests")
     options = parser.parse_args(arguments)
@@ -65,6 +66,7 @@ def parse(arguments):
         parser.error(f"There is no {program}: build it first.")
     options.program = hashlib.sha256(program.read_bytes()).hexdigest()[:12]
     options.cloud_seed, options.measure_samples, options.samples = 1, evaluate.SAMPLES, 200_000
+    options.settings = dict(word.split("=", 1) for word in options.set)
     options.end = time.monotonic() + 60 * options.minutes
     options.topology_models = models.TOPOLOGY_MODELS + EXTRA_TOPOLOGY
     if not options.models:
@@ -94,10 +96,10 @@ def kept(options, key, make):
 
 def ours(options, case, counts, seed):
     key = {"program": options.program, "vertices": counts, "seed": seed, "measure": options.measure_samples,
-           **case.key()}
+           **options.settings, **case.key()}
     return kept(options, key, lambda: case.rows(
         "neural", counts, seed, plugin=options.plugin, command=options.ours_command,
-        settings={"random_seed": str(seed)}))
+        settings={**options.settings, "random_seed": str(seed)}))
 
 
 def with_samples(options, samples):

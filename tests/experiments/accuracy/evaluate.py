@@ -42,18 +42,25 @@ def face_normals(vertices, faces):
     return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
 
 
-def distances(vertices, faces, truth):
-    """The distances of the true surface's samples from the mesh, and of the mesh's samples from the true surface, in %
-    of the diagonal: ((points, distances), (points, distances))."""
-    points, _ = models.sample_surface(vertices, faces, truth.samples, np.random.default_rng(20030102))
+def _measured(vertices, faces, truth):
+    """A MeshSet with the truth, its samples, those of the mesh, and the mesh, the samples with their distances; those
+    samples and their faces; and the two reports."""
+    points, of_face = models.sample_surface(vertices, faces, truth.samples, np.random.default_rng(20030102))
     meshes = pymeshlab.MeshSet(verbose=False)
     for mesh in (pymeshlab.Mesh(truth.vertices, truth.faces), pymeshlab.Mesh(truth.points), pymeshlab.Mesh(points),
                  pymeshlab.Mesh(vertices, faces)):
         meshes.add_mesh(mesh)
-    # The filter leaves each vertex's distance in its quality.
+    # samplenum's default is the size of the current layer, not of the sampled one.
     every = {"samplevert": True, "samplenum": truth.samples, "maxdist": pymeshlab.PercentageValue(100)}
-    meshes.get_hausdorff_distance(sampledmesh=1, targetmesh=3, **every)
-    meshes.get_hausdorff_distance(sampledmesh=2, targetmesh=0, **every)
+    forward = meshes.get_hausdorff_distance(sampledmesh=1, targetmesh=3, **every)
+    backward = meshes.get_hausdorff_distance(sampledmesh=2, targetmesh=0, **every)
+    return meshes, points, of_face, forward, backward
+
+
+def distances(vertices, faces, truth):
+    """The distances of the true surface's samples from the mesh, and of the mesh's samples from the true surface, in %
+    of the diagonal: ((points, distances), (points, distances))."""
+    meshes, points, *_ = _measured(vertices, faces, truth)
     percent = 100 / truth.diagonal
     return ((truth.points, meshes.mesh(1).vertex_scalar_array() * percent),
             (points, meshes.mesh(2).vertex_scalar_array() * percent))
@@ -65,15 +72,7 @@ def evaluate(vertices, faces, truth):
         raise ValueError("The mesh has no faces, so there is nothing to compare.")
     if not np.isfinite(vertices).all():
         raise ValueError("The mesh has vertices whose coordinates are not finite numbers.")
-    points, of_face = models.sample_surface(vertices, faces, truth.samples, np.random.default_rng(20030102))
-    meshes = pymeshlab.MeshSet(verbose=False)
-    for mesh in (pymeshlab.Mesh(truth.vertices, truth.faces), pymeshlab.Mesh(truth.points), pymeshlab.Mesh(points),
-                 pymeshlab.Mesh(vertices, faces)):
-        meshes.add_mesh(mesh)
-    # samplenum's default is the size of the current layer, not of the sampled one.
-    every = {"samplevert": True, "samplenum": truth.samples, "maxdist": pymeshlab.PercentageValue(100)}
-    forward = meshes.get_hausdorff_distance(sampledmesh=1, targetmesh=3, **every)
-    backward = meshes.get_hausdorff_distance(sampledmesh=2, targetmesh=0, **every)
+    meshes, points, of_face, forward, backward = _measured(vertices, faces, truth)
     percent = 100 / truth.diagonal
     result = {
         "forward_rms": forward["RMS"] * percent,

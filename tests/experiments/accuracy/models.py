@@ -34,11 +34,6 @@ class Model:
     components: int
     sources: tuple  # of "code:FUNCTION", "data:FILE", "deb:PACKAGE:MEMBER" or "deb:PACKAGE:ARCHIVE!MEMBER"
     boundary_loops: int = 0
-    creases: bool = False
-
-    @property
-    def closed(self):
-        return self.boundary_loops == 0
 
 
 _CGAL = "deb:libcgal-demo:usr/share/doc/libcgal-dev/data.tar.gz!data/meshes/"
@@ -49,8 +44,7 @@ MODELS = {
         # Debian packages (the first available source is used, so a data folder saves the download)
         Model("bunny", 0, 1, ("deb:glmark2-data:usr/share/glmark2/models/bunny.obj",
                               "data:mesh/bunny_closed_35k.ply")),
-        Model("asteroid", 0, 1, ("deb:glmark2-data:usr/share/glmark2/models/asteroid-high.3ds",)),
-        Model("fandisk", 0, 1, ("data:mesh/fandisk_16k.ply", _CGAL + "fandisk_large.off"), creases=True),
+        Model("fandisk", 0, 1, ("data:mesh/fandisk_16k.ply", _CGAL + "fandisk_large.off")),
         Model("dino", 0, 1, ("data:mesh/dino_diplodocus_24k.ply", _CGAL + "diplodocus.off")),
         Model("armadillo", 0, 1, (_CGAL + "armadillo.off",)),
         Model("camel", 0, 1, (_CGAL + "camel.off",)),
@@ -58,14 +52,14 @@ MODELS = {
         Model("knot", 1, 1, (_CGAL + "knot1.off",)),
         Model("femur", 2, 1, (_CGAL + "femur.off",)),
         Model("elephant", 3, 1, (_CGAL + "elephant.off",)),
-        Model("anchor", 4, 1, (_CGAL + "anchor_dense.off",), creases=True),
+        Model("anchor", 4, 1, (_CGAL + "anchor_dense.off",)),
         # data folder
         Model("koala", 0, 1, ("data:mesh/koala_50k.ply",)),
         Model("kitten", 1, 1, ("data:mesh/kitten_9k.ply",)),
         Model("rocker-arm", 1, 1, ("data:mesh/rocker-arm_10k.ply",)),
         Model("eight", 2, 1, ("data:mesh/eight_5k.ply",)),
         Model("feline", 2, 1, ("data:mesh/feline_50k.ply",)),
-        Model("block", 3, 1, ("data:mesh/block_9k.ply",), creases=True),
+        Model("block", 3, 1, ("data:mesh/block_9k.ply",)),
         Model("genus3", 3, 1, ("data:mesh/genus3_7k.ply",)),
         Model("turbine", 11, 1, ("data:mesh/turbine_9k.ply",)),
         Model("maxplanck", 0, 1, ("data:mesh/maxplanck_45k_open.ply",), boundary_loops=1),
@@ -77,12 +71,10 @@ MODELS = {
         Model("two-spheres", 0, 2, ("code:two_spheres",)),
         Model("cup", 0, 1, ("code:cup",)),
         Model("filleted-cube", 0, 1, ("code:filleted_cube",)),
-        Model("crossed-cylinders", 0, 1, ("code:crossed_cylinders",), creases=True),
+        Model("crossed-cylinders", 0, 1, ("code:crossed_cylinders",)),
     )
 }
 
-# The closed models of the comparison tables.
-TABLE_MODELS = ("bunny", "koala", "dino", "fandisk", "kitten", "rocker-arm", "eight", "feline", "block", "genus3")
 # Publicly available: from Debian packages, or made in code.
 PUBLIC_MODELS = ("bunny", "fandisk", "dino", "armadillo", "homer", "knot", "femur", "elephant", "anchor")
 CODE_MODELS = ("sphere", "torus", "linked-tori", "two-spheres", "cup", "filleted-cube", "crossed-cylinders")

@@ -2,30 +2,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The table of surfaces with boundary: boundaries, topology and distances, ours and the peers'.
+"""The table of surfaces with boundary: boundaries, topology and distances.
 
     open_table.py LEARN [--data FOLDER] [--models NAME,...] [--kinds plane,three,sphere,whole,views 1,...,half]
-                  [--counts N,...] [--seeds N] [--noise PERCENT,...] [--peers front,pivoting,trimmed] [--front PROGRAM]
+                  [--counts N,...] [--seeds N] [--noise PERCENT,...]
 
 LEARN is the program build/tests/learn; for the kind half, models are files of scans. 200,000 points are drawn from a cut
-model; the methods get only them. Boundary distances are means between points on the boundary edges, in mean edges (those
+model. Boundary distances are means between points on the boundary edges, in mean edges (those
 of an even mesh of the same area and number of faces); "to" is from the true boundary, "from" to it. Spurious and missing
 area is farther than a mean edge from the other surface. RMS distances are % of the diagonal of the true surface.
 
-Peers: Ball Pivoting, Screened Poisson without the faces far from the points, and CGAL's Advancing Front (build the
-target cgal_peers and name it with --front), each reduced by edge collapse to the same number of vertices. Every row is
-kept in OUT/open_table.json, ours by the checksum of LEARN, and taken from there again.
+Every row is kept in OUT/open_table.json, by the checksum of LEARN, and taken from there again.
 """
 
 import argparse
 import functools
 import hashlib
+import itertools
 import json
 import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pymeshlab
 from scipy.spatial import cKDTree
 
@@ -33,9 +31,7 @@ import models
 import open_surfaces
 import peers
 from accuracy_table import TABLE_MODELS
-from compare_accuracy import geometric_mean, numbers, table
-
-PEERS = ("front", "pivoting", "trimmed")
+from compare_accuracy import numbers, table
 
 
 def parse(arguments):
@@ -47,11 +43,8 @@ def parse(arguments):
     parser.add_argument("--counts", type=numbers(int), default=[500, 2000, 10000])
     parser.add_argument("--noise", type=numbers(float), default=[0.0])
     parser.add_argument("--seeds", type=int, default=1)
-    parser.add_argument("--peers", type=numbers(str), default=[], help=f"of {', '.join(PEERS)}")
-    parser.add_argument("--front", default="build/tests/cgal_peers", help="the program cgal_peers")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a parameter of ours")
     parser.add_argument("--out", type=Path, default=Path("build/experiments"))
-    parser.add_argument("--rows", action="store_true", help="print every row, too")
     return parser.parse_args(arguments)
 
 
@@ -61,13 +54,6 @@ def ours(options, cloud, count, seed):
                            *options.set], check=False, capture_output=True, text=True)
     if done.returncode != 0:
         raise peers.PeerError(done.stderr.strip()[-300:])
-    return models.load_mesh(out), json.loads(done.stdout)["seconds"]
-
-
-def front(options, cloud, count):
-    out = cloud.with_name("front.off")
-    done = subprocess.run([options.front, "advancing-front", cloud, out, f"target_vertices={count}"], check=True,
-                          capture_output=True, text=True)
     return models.load_mesh(out), json.loads(done.stdout)["seconds"]
 
 
@@ -98,16 +84,11 @@ def in_pymeshlab(method, cloud, count):
     return (mesh.vertex_matrix(), mesh.face_matrix()), clock.read()[0]
 
 
-def row_of(options, method, cloud, case, count, seed):
+def row_of(options, cloud, case, count, seed):
     try:
-        if method == "ours":
-            mesh, seconds = ours(options, cloud, count, seed)
-        elif method == "front":
-            mesh, seconds = front(options, cloud, count)
-        else:
-            mesh, seconds = in_pymeshlab(method, cloud, count)
+        mesh, seconds = ours(options, cloud, count, seed)
         return {**open_surfaces.measure(*mesh, case), "seconds": seconds}
-    except (peers.PeerError, models.ModelError, ValueError, subprocess.CalledProcessError) as error:
+    except (peers.PeerError, models.ModelError, ValueError) as error:
         return {"error": str(error)}
 
 
@@ -119,36 +100,32 @@ def all_rows(options, kept, keep):
         for name in options.models:
             for kind in options.kinds:
                 case, cloud = None, options.out / "work" / f"open-{Path(name).stem}-{kind.replace(' ', '')}-{noise}.ply"
-                runs = [("ours", count, seed) for count in options.counts for seed in range(1, options.seeds + 1)]
-                runs += [(method, count, 0) for method in options.peers for count in options.counts]
-                for method, count, seed in runs:
-                    key = "|".join(map(str, (name, kind, noise, method, count, seed, build if seed else "")))
+                for count, seed in itertools.product(options.counts, range(1, options.seeds + 1)):
+                    key = "|".join(map(str, (name, kind, noise, count, seed, build)))
                     if key not in kept:
                         if case is None:
                             case = open_surfaces.case_of(name, kind, noise, options.data)
                             cloud.parent.mkdir(parents=True, exist_ok=True)
                             models.save_ply(cloud, case.cloud)
-                        keep(key, {"model": Path(name).stem, "kind": kind, "noise": noise, "method": method,
-                                   "count": count, **row_of(options, method, cloud, case, count, seed)})
+                        keep(key, {"model": Path(name).stem, "kind": kind, "noise": noise,
+                                   "count": count, **row_of(options, cloud, case, count, seed)})
                         print(line(kept[key]), file=sys.stderr, flush=True)
                     rows.append(kept[key])
                 cloud.unlink(missing_ok=True)
     return rows
 
 
-def cells(row):
-    name = [row["model"], row["kind"], f"{row['noise']:g} %", row["method"], row["count"]]
+def line(row):
+    """One run, for whoever waits."""
+    name = [row["model"], row["kind"], f"{row['noise']:g} %", row["count"]]
     if "error" in row:
-        return [*name, row["error"][:60], "", "", "", "", "", "", ""]
+        return " | ".join(map(str, [*name, row["error"][:60]]))
     true_loops, true_chi = row.get("true_loops", "?"), row.get("true_chi", "?")
     boundary = f"{row['to']:.2f} / {row['from']:.2f}" if "to" in row else "-"
-    return [*name, boundary, f"{row['length']:.2f}" if "length" in row else "-", f"{row['loops']} of {true_loops}",
+    figures = [boundary, f"{row['length']:.2f}" if "length" in row else "-", f"{row['loops']} of {true_loops}",
             f"{row['chi']} of {true_chi}", f"{row['spurious']:.2f} / {row['missing']:.2f}",
             f"{row['forward']:.4f} / {row['backward']:.4f}", row["cut"], f"{row['seconds']:.1f}"]
-
-
-def line(row):
-    return " | ".join(map(str, cells(row)))
+    return " | ".join(map(str, [*name, *figures]))
 
 
 def share(flags):
@@ -156,24 +133,11 @@ def share(flags):
     return f"{sum(flags)} of {len(flags)}"
 
 
-def over_best_peer(rows, others):
-    """Geometric mean and maximum over the models of our sum of both RMS over that of the best peer."""
-    best = {}
-    for row in others:
-        if "error" not in row:
-            key = (row["model"], row["kind"], row["noise"], row["count"])
-            best[key] = min(best.get(key, np.inf), row["forward"] + row["backward"])
-    ratios = [(row["forward"] + row["backward"]) / best[key] for row in rows
-              if (key := (row["model"], row["kind"], row["noise"], row["count"])) in best]
-    return f"{geometric_mean(ratios):.2f} ({max(ratios):.2f})" if ratios else "-"
-
-
 def summary(rows):
-    """By kind, noise and number of vertices: how many runs are within the goals, and the error over the best peer."""
+    """By kind, noise and number of vertices: how many runs are within the goals."""
     lines = []
     for kind, noise, count in dict.fromkeys((row["kind"], row["noise"], row["count"]) for row in rows):
-        group = [row for row in rows if (row["kind"], row["noise"], row["count"]) == (kind, noise, count)]
-        own = [row for row in group if row["method"] == "ours"]
+        own = [row for row in rows if (row["kind"], row["noise"], row["count"]) == (kind, noise, count)]
         good = [row for row in own if "error" not in row]
         known = [row for row in good if "true_loops" in row]
         bounded = [row for row in known if "to" in row]
@@ -185,10 +149,9 @@ def summary(rows):
             share(max(row["to"], row["from"]) <= 1 for row in bounded),
             share(.9 <= row["length"] <= 1.2 for row in bounded),
             share(max(row["spurious"], row["missing"]) <= .5 for row in known),
-            share(row["backward"] <= 2 * row["forward"] for row in known),
-            over_best_peer(good, [row for row in group if row["method"] != "ours"])])
+            share(row["backward"] <= 2 * row["forward"] for row in known)])
     return table(["kind", "noise", "vertices", "sound", "topology right", "boundary <= 1 edge", "length .9 to 1.2",
-                  "area <= .5 %", "backward <= 2 x forward", "error over the best peer (worst)"], lines)
+                  "area <= .5 %", "backward <= 2 x forward"], lines)
 
 
 def main(arguments=None):
@@ -205,9 +168,6 @@ def main(arguments=None):
         rows = all_rows(options, kept, keep)
     except models.ModelError as error:
         sys.exit(str(error))
-    if options.rows:
-        print(table(["model", "kind", "noise", "method", "vertices", "boundary to / from", "length", "loops", "chi",
-                     "spurious / missing %", "RMS forward / backward %", "faces cut", "seconds"], map(cells, rows)))
     print(summary(rows))
 
 

@@ -4,12 +4,10 @@
 
 """Neural meshes of raw scans: outliers, levels of noise and misregistration, uneven density, few points per vertex.
 
-    scan_table.py --plugin LIBRARY.so [--data FOLDER] [--out FOLDER] [--kinds ...] [--peers tuned,tuned-selected]
+    scan_table.py --plugin LIBRARY.so [--data FOLDER] [--out FOLDER] [--groups ...] [--peers plain]
 
 prints tables (markdown) and writes OUT/scan_table.json, to which a later call adds. Outliers are compared with the same
-cloud without them, everything else with the peers: plain (normals, Screened Poisson of depth 8, Quadric Edge Collapse),
-tuned (the best of nine pairs of depth and samples per node, from normals that the truth turned the right way), and
-tuned-selected (the same after MeshLab's outlier selection). Lengths are % of the diagonal of the true surface. Of scans
+cloud without them, everything else with the plain chain (normals, Screened Poisson of depth 8, Quadric Edge Collapse). Lengths are % of the diagonal of the true surface. Of scans
 by views, forward distances are those of the parts that a view sees.
 """
 
@@ -37,8 +35,8 @@ PER_VERTEX, NOISE = (1.3, 2, 4, 5, 10, 40), (0, .1)
 DENSITIES = (1, 10, 30)
 WORST_SHARE = .01  # of the surface, whose part of the squared error is told
 GROUPS = ("outliers", "levels", "density", "points")
-DEPTHS, SAMPLES_PER_NODE = (7, 8, 9), (1.5, 5, 15)
-PEERS = ("plain", "tuned", "tuned-selected")
+DEPTHS, SAMPLES_PER_NODE = (7, 8, 9), (1.5, 5, 15)  # of Screened Poisson, tuned
+PEERS = ("plain",)
 
 
 def parse(arguments):
@@ -103,36 +101,6 @@ def turned_normals(points, truth):
     return np.where(wrong[:, None], -normals, normals)
 
 
-def without_selected(points):
-    """What MeshLab's outlier selection, at its defaults, leaves."""
-    meshes = pymeshlab.MeshSet(verbose=False)
-    meshes.add_mesh(pymeshlab.Mesh(points))
-    meshes.compute_selection_point_cloud_outliers()
-    meshes.meshing_remove_selected_vertices()
-    return meshes.current_mesh().vertex_matrix()
-
-
-def tuned_chain(points, truth, count):
-    """The mesh with the lowest error of nine; the choice knows the truth, which no user does."""
-    cloud = pymeshlab.Mesh(points, v_normals_matrix=turned_normals(points, truth))
-    best = None
-    for depth in DEPTHS:
-        for samples in SAMPLES_PER_NODE:
-            meshes = pymeshlab.MeshSet(verbose=False)
-            meshes.add_mesh(cloud)
-            peers.poisson_of_normals(meshes, depth=depth, samplespernode=samples)
-            if meshes.current_mesh().face_number() == 0:
-                continue
-            peers.decimated(meshes, count)
-            mesh = meshes.current_mesh()
-            measures = evaluate.evaluate(mesh.vertex_matrix(), mesh.face_matrix(), truth)
-            if best is None or measures["sum_rms"] < best["sum_rms"]:
-                best = measures
-    if best is None:
-        raise peers.PeerError("No Poisson reconstruction has a large component.")
-    return best
-
-
 def where(mesh, truth):
     """Where the error is: forward plus backward RMS in the sparse third, the last along the longest axis, and the part
     of the squared error that WORST_SHARE of the surface carries, the larger of both ways."""
@@ -149,8 +117,6 @@ def where(mesh, truth):
 
 
 def measured(method, points, truth, options, folder):
-    if method in ("tuned", "tuned-selected"):
-        return tuned_chain(without_selected(points) if method == "tuned-selected" else points, truth, options.vertices)
     folder.mkdir(parents=True, exist_ok=True)
     models.save_ply(folder / "cloud.ply", points)
     ours = {"plugin": options.plugin, "settings": options.settings} if method == "neural" else {}

@@ -15,7 +15,6 @@ The same of the crease lines that the filter makes: recall, precision and their 
 (means). Prints a table and writes OUT/crease.md and OUT/crease.json.
 """
 
-import json
 import sys
 
 import numpy as np
@@ -27,8 +26,6 @@ import import_paths  # noqa: F401
 import paper_runs
 from compare_accuracy import table
 
-MODELS = ("fandisk", "block", "l-block", "crossed-cylinders", "half-filleted-cube", "stepped-shaft", "plate-with-bores",
-          "chamfered-wedge")
 NEAR = 0.5  # of a mean edge
 STEPS = 20  # points per mean edge along a line
 
@@ -84,8 +81,7 @@ def true_creases(vertices, faces, step):
 def lines_of(case):
     """The ends of the crease lines of the mesh, as sharp_edges()."""
     out = case.folder / "lined.ply"
-    paper_runs.learn(case.options.learn, case.folder / "cloud.ply", out, target_vertices=case.options.vertices,
-                     utility_counter=features.UTILITY["adaptive"], crease_lines=1)
+    paper_runs.learn(case.options.learn, case.cloud, out, target_vertices=case.options.vertices, crease_lines=1)
     meshes = pymeshlab.MeshSet(verbose=False)
     meshes.load_new_mesh(f"{out}.creases.ply")
     lines = meshes.current_mesh()
@@ -93,7 +89,7 @@ def lines_of(case):
 
 
 def row_of(case):
-    mesh = case.learned("adaptive", True)
+    mesh = case.learned()
     edge = float(np.linalg.norm(mesh.positions[mesh.ends[:, 0]] - mesh.positions[mesh.ends[:, 1]], axis=1).mean())
     truth = true_creases(*case.surface, edge / STEPS)
     bevel = distances(truth[0], (mesh.positions, mesh.faces))
@@ -109,19 +105,14 @@ def line_of(row):
 
 
 def main(arguments=None):
-    parser = features.parser_of(__doc__, MODELS)
-    parser.set_defaults(noise=(0, 0.1))
-    parser.add_argument("--learn", required=True, help="the core as a program (target learn)")
-    options = parser.parse_args(sys.argv[1:] if arguments is None else arguments)
+    options = features.parse(arguments, __doc__, noise=(0, 0.1))
     try:
         rows = features.kept_rows(row_of, options, "crease.jsonl")
     except paper_runs.RunError as error:
         sys.exit(str(error))
-    text = table(["model", "noise %", "bevel", "sharp edges: recall", "precision", "missed by", "strayed by",
-                  "crease lines: recall", "precision", "missed by", "strayed by"], map(line_of, rows))
-    (options.out / "crease.md").write_text(text + "\n")
-    (options.out / "crease.json").write_text(json.dumps(rows))
-    print(text)
+    features.write(options, "crease", table(["model", "noise %", "bevel", "sharp edges: recall", "precision", "missed by",
+                                             "strayed by", "crease lines: recall", "precision", "missed by",
+                                             "strayed by"], map(line_of, rows)), rows)
 
 
 if __name__ == "__main__":

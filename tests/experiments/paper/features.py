@@ -2,19 +2,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Feature detection: the learned counters compared with analyses of the final mesh and of the cloud.
+"""What selects features best: the two learned measures at the default threshold, and measures of the final mesh.
 
     features.py --learn build/tests/learn [--data FOLDER] [--out FOLDER]
 
-Prints a table (markdown) and writes OUT/features.md and OUT/features.json. An interrupted run continues where it
-stopped (OUT/features/rows.jsonl).
-
 True features are the edges of the true mesh with an angle of more than 30 degrees between their faces. A vertex of
-the result is a feature if its distance from one is at most half the mean length of the edges at the vertex. F1 is
-given at the best threshold (found with the truth, for each model, noise level and measure) and, for the crease
-measure, also at its default threshold of 1. Two columns are upper bounds: the *oracle* takes, for each vertex, the
-largest angle between two of 400,000 true normals within half an edge; the *oracle mesh* analyses the final mesh with
-the true normals of its faces.
+the result is a feature if its distance from one is at most half the mean length of the edges at the vertex. Each
+measure of the final mesh has one threshold for all models, the best for the noise level of the row; it is found with
+the truth. Curvatures are multiplied by the mean edge of the mesh, so that the size of a model does not matter; the
+counter is divided by its mean (eq 7). Prints the F1, mean over the models, and writes OUT/features.md and
+OUT/features.json. Rows are kept in OUT/features, so an interrupted run continues where it stopped.
 """
 
 import argparse
@@ -27,7 +24,6 @@ from pathlib import Path
 import numpy as np
 import pymeshlab
 from scipy.spatial import cKDTree
-from scipy.stats import rankdata
 
 import import_paths  # noqa: F401
 import cad_parts
@@ -36,13 +32,14 @@ import paper_runs
 from compare_accuracy import numbers, table
 
 CREASE_DEGREES = 30
-DEFAULT_THRESHOLD = 1.0
-UTILITY = {"even": 1, "adaptive": 0}
-STAGES = {"learned": False, "fitted": True}  # the parameter fit_to_points
-MODELS = ("fandisk", "block", "crossed-cylinders", "half-filleted-cube", "filleted-cube")
+MODELS = ("fandisk", "block", "l-block", "crossed-cylinders", "half-filleted-cube", "stepped-shaft", "plate-with-bores",
+          "chamfered-wedge")
 CURVATURES = ("Mean Curvature", "RMS Curvature", "ABS Curvature")
-NEIGHBOURS = (20, 40, 80)
-
+COUNTERS = "compute_scalar_by_neural_normal_counter_per_vertex"
+REMESHING_ROUNDS = 8
+THRESHOLDS = np.geomspace(1e-3, 1e2, 401)
+DEFAULT = int(np.argmin(np.abs(np.log(THRESHOLDS))))  # the threshold of 1
+LEARNED = ("crease measure", "normal counter")
 
 def load(name, data):
     return cad_parts.PARTS[name]() if name in cad_parts.PARTS else models.load_model(name, data)
@@ -76,9 +73,7 @@ class Creases:
         cosine = (n[sides[:, 0]] * n[sides[:, 1]]).sum(axis=1)
         step = models.diagonal(v) / 4000
         points = []
-        sharp = cosine < np.cos(np.radians(CREASE_DEGREES))
-        self.middles, self.cosines = v[ends[sharp]].mean(axis=1), cosine[sharp]
-        for a, b in v[ends[sharp]]:
+        for a, b in v[ends[cosine < np.cos(np.radians(CREASE_DEGREES))]]:
             count = int(np.ceil(np.linalg.norm(b - a) / step)) + 1
             points.append(a + (b - a) * np.linspace(0, 1, count)[:, None])
         self.tree = cKDTree(np.vstack(points)) if points else None
@@ -117,9 +112,9 @@ class Mesh:
         along = self.positions[self.ends[:, 0]] - self.positions[self.ends[:, 1]]
         return self.of_edges(np.linalg.norm(along, axis=1))
 
-    def dihedral(self, normals=None):
-        """The largest angle at any edge, as 1 - cosine, of the faces or of other normals given for them."""
-        n = unit_normals(self.positions, self.faces) if normals is None else normals
+    def dihedral(self):
+        """The largest angle at any edge, as 1 - cosine."""
+        n = unit_normals(self.positions, self.faces)
         bend = 1 - (n[self.sides[:, 0]] * n[self.sides[:, 1]]).sum(axis=1)
         most = np.zeros(len(self.positions))
         for k in (0, 1):
@@ -142,88 +137,35 @@ class Mesh:
             yield kind, np.nan_to_num(np.abs(meshes.current_mesh().vertex_scalar_array()))
 
 
-def surface_variation(points, places, neighbours):
-    """Least eigenvalue over the trace of the covariance of the nearest points (Pauly et al. 2002)."""
-    near = points[cKDTree(points).query(places, k=neighbours)[1]]
-    near = near - near.mean(axis=1, keepdims=True)
-    values = np.linalg.eigvalsh(np.einsum("vki,vkj->vij", near, near))
-    return values[:, 0] / values.sum(axis=1)
+def truth_of(mesh, creases):
+    return creases.distance(mesh.positions) <= 0.5 * mesh.edge_length()
 
 
-class Oracle:
-    """Normals of the true surface at 400,000 points."""
-
-    def __init__(self, vertices, faces, samples=400_000):
-        points, of_face = models.sample_surface(vertices, faces, samples, np.random.default_rng(20030105))
-        self.tree, self.normals = cKDTree(points), unit_normals(vertices, faces)[of_face]
-
-    def around(self, mesh):
-        """For every vertex the largest 1 - cosine between the normal at one place and those within half an edge."""
-        turn = np.zeros(len(mesh.positions))
-        for i, near in enumerate(self.tree.query_ball_point(mesh.positions, 0.5 * mesh.edge_length())):
-            if near:
-                turn[i] = 1 - (self.normals[near] @ self.normals[near[0]]).min()
-        return turn
-
-    def turn(self, places, radius):
-        """The largest angle in degrees between two true normals within radius of each place."""
-        angles = []
-        for near in self.tree.query_ball_point(places, radius):
-            normals = self.normals[near[:300]]
-            angles.append(np.degrees(np.arccos((normals @ normals.T).min().clip(-1, 1))) if len(near) else 0.0)
-        return np.array(angles)
-
-    def of_faces(self, mesh):
-        return mesh.dihedral(self.normals[self.tree.query(mesh.positions[mesh.faces].mean(axis=1))[1]])
+def noisy_mesh(surface, count, noise):
+    """The true surface with about count evenly spaced vertices, moved by noise in % of the diagonal; creases stay."""
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.add_mesh(pymeshlab.Mesh(*surface))
+    meshes.meshing_merge_close_vertices()
+    area = meshes.get_geometric_measures()["surface_area"]
+    edge = np.sqrt(2 * area / (np.sqrt(3) * count))  # of equilateral triangles, two per vertex
+    meshes.meshing_isotropic_explicit_remeshing(iterations=REMESHING_ROUNDS, targetlen=pymeshlab.PureValue(edge),
+                                                checksurfdist=False)
+    vertices, faces = meshes.current_mesh().vertex_matrix(), meshes.current_mesh().face_matrix()
+    spread = noise / 100 * models.diagonal(surface[0])
+    return vertices + spread * np.random.default_rng(7).standard_normal(vertices.shape), faces
 
 
-def best_f1(x, truth):
-    order = np.argsort(-x, kind="stable")
-    f1 = 2 * np.cumsum(truth[order]) / (np.arange(1, len(x) + 1) + truth.sum())
-    return float(f1.max())
-
-
-def f1_at(x, truth, threshold):
-    found = x > threshold
-    return float(2 * (found & truth).sum() / max(1, found.sum() + truth.sum()))
-
-
-def roc_area(x, truth):
-    positives, negatives = truth.sum(), (~truth).sum()
-    return float((rankdata(x)[truth].sum() - positives * (positives + 1) / 2) / max(1, positives * negatives))
-
-
-def measures_of(mesh, cloud, oracle):
-    yield "eq 6 counter", mesh.eq6
-    yield "dihedral", mesh.dihedral()
-    yield "normal spread", mesh.spread()
-    yield from mesh.curvatures()
-    for k in NEIGHBOURS:
-        yield f"cloud variation {k}", surface_variation(cloud, mesh.positions, k)
-    yield "oracle", oracle.around(mesh)
-    yield "oracle mesh", oracle.of_faces(mesh)
-
-
-def judged(x, truth):
-    return {"best": best_f1(x, truth), "roc": roc_area(x, truth)}
-
-
-def judge(mesh, creases, cloud, oracle):
-    """All figures of one mesh. Without creases in the truth: the share of vertices called features."""
-    if creases.tree is None:
-        return {"false positives": float((mesh.measure > DEFAULT_THRESHOLD).mean())}
-    distance = creases.distance(mesh.positions)
-    truth = distance <= 0.5 * mesh.edge_length()
-    figures = {"features": float(truth.mean()),
-               "crease measure": {"default": f1_at(mesh.measure, truth, DEFAULT_THRESHOLD),
-                                  **judged(mesh.measure, truth)}}
-    for name, x in measures_of(mesh, cloud, oracle):
-        figures[name] = judged(x, truth)
-    # "Half an edge" as half of the mean edge of the mesh, the same for all vertices.
-    even = distance <= 0.5 * mesh.edge_length().mean()
-    figures["by mean edge"] = {"default": f1_at(mesh.measure, even, DEFAULT_THRESHOLD),
-                               "best": best_f1(mesh.measure, even), "dihedral": best_f1(mesh.dihedral(), even)}
-    return figures
+def counted(vertices, faces, cloud=None):
+    """A given mesh with the counters by signals from the cloud, or from its faces."""
+    meshes = pymeshlab.MeshSet(verbose=False)
+    if cloud is not None:
+        meshes.add_mesh(pymeshlab.Mesh(cloud))
+    meshes.add_mesh(pymeshlab.Mesh(vertices, faces))
+    values = []
+    for measure in (0, 1):
+        meshes.apply_filter(COUNTERS, signal_layer=0, feature_measure=measure)
+        values.append(meshes.current_mesh().vertex_scalar_array().copy())
+    return Mesh(vertices, faces, *values)
 
 
 class Case:
@@ -239,59 +181,17 @@ class Case:
 
     @cached_property
     def cloud(self):
-        points = models.make_cloud(*self.surface, self.options.samples, self.noise)
-        models.save_ply(self.folder / "cloud.ply", points)
-        return points
+        path = self.folder / "cloud.ply"
+        models.save_ply(path, models.make_cloud(*self.surface, self.options.samples, self.noise))
+        return path
 
-    @cached_property
-    def truth(self):
-        return Creases(*self.surface), self.cloud, Oracle(*self.surface)
-
-    def learned(self, utility, fit):
+    def learned(self):
         """The mesh, learned twice, once for each measure."""
-        assert len(self.cloud)  # writes the file
         paths = [self.folder / f"mesh{measure}.ply" for measure in (0, 1)]
         for measure, path in enumerate(paths):
-            paper_runs.learn(self.options.learn, self.folder / "cloud.ply", path, feature_measure=measure,
-                             target_vertices=self.options.vertices, utility_counter=UTILITY[utility],
-                             fit_to_points=int(fit))
+            paper_runs.learn(self.options.learn, self.cloud, path, feature_measure=measure,
+                             target_vertices=self.options.vertices)
         return Mesh.from_files(paths)
-
-    def row(self, utility, fit):
-        """The figures of one mesh."""
-        mesh = self.learned(utility, STAGES[fit])
-        return {"model": self.name, "noise": self.noise, "mesh": utility, "stage": fit, **judge(mesh, *self.truth)}
-
-    def chamfer(self):
-        """Whether the creases are edges of the true mesh: medians of the angle at an edge that counts as a crease, and
-        of the turn of the surface within .5 % of the diagonal around it. None without creases."""
-        creases, _, oracle = self.truth
-        if creases.tree is None:
-            return None
-        some = np.random.default_rng(1).permutation(len(creases.middles))[:1000]
-        return {"edge": float(np.median(np.degrees(np.arccos(creases.cosines[some].clip(-1, 1))))),
-                "surface": float(np.median(oracle.turn(creases.middles[some], models.diagonal(self.surface[0]) / 200)))}
-
-
-def all_rows(options):
-    """The rows of the table, and per model what chamfer() found."""
-    kept = paper_runs.Kept(options.out / "features" / "rows.jsonl", options.learn)
-    rows, chamfers = [], {}
-    for name in options.models:
-        for noise in options.noise:
-            case = Case(name, noise, options)
-            try:
-                if name not in chamfers:
-                    chamfers[name] = kept.row(case.chamfer, name=name,
-                                              surface=paper_runs.digest(case.surface[0].tobytes()))
-                key = {"name": name, "noise": noise, "samples": options.samples, "vertices": options.vertices,
-                       "surface": paper_runs.digest(case.surface[0].tobytes())}
-                rows += [kept.row(partial(case.row, utility, fit), utility=utility, fit=fit, **key)
-                         for utility in UTILITY for fit in STAGES]
-            except models.ModelError as error:
-                print(error, file=sys.stderr)
-        print(f"{name}: done", file=sys.stderr, flush=True)
-    return rows, chamfers
 
 
 def kept_rows(row_of, options, file):
@@ -307,74 +207,68 @@ def kept_rows(row_of, options, file):
     return rows
 
 
-def best_of(row, names):
-    return max(row[name]["best"] for name in names)
+def f1_curve(values, truth):
+    """F1 at each of THRESHOLDS."""
+    found = np.sort(values)
+    right = np.sort(values[truth])
+    count = len(found) - np.searchsorted(found, THRESHOLDS, side="right")
+    hits = len(right) - np.searchsorted(right, THRESHOLDS, side="right")
+    return (2 * hits / np.maximum(1, count + truth.sum())).tolist()
 
 
-MESH_MEASURES = ("dihedral", "normal spread", *CURVATURES)
-CLOUD_MEASURES = tuple(f"cloud variation {k}" for k in NEIGHBOURS)
+def measures_of(mesh):
+    yield "crease measure", mesh.measure
+    yield "normal counter", mesh.eq6 / mesh.eq6.mean()
+    yield "dihedral", mesh.dihedral()
+    yield "normal spread", mesh.spread()
+    edge = mesh.edge_length().mean()
+    for kind, values in mesh.curvatures():
+        yield kind, edge * values
 
 
-def line_of(row):
-    ours, final = row["crease measure"], best_of(row, MESH_MEASURES)
-    mark = "" if ours["default"] >= final else " (short)"
-    figures = [final, row["dihedral"]["best"], row["normal spread"]["best"], best_of(row, CURVATURES),
-               best_of(row, CLOUD_MEASURES), row["oracle"]["best"], row["oracle mesh"]["best"],
-               row["by mean edge"]["default"], row["by mean edge"]["dihedral"]]
-    return [row["model"], row["mesh"], row["stage"], f"{row['noise']:g}", f"{ours['default']:.3f}{mark}",
-            f"{ours['best']:.3f}", f"{ours['roc']:.3f}", f"{row['eq 6 counter']['best']:.3f}",
-            *(f"{figure:.3f}" for figure in figures)]
+def row_of(case):
+    """The curves of one model at one noise level."""
+    mesh = case.learned()
+    truth = truth_of(mesh, Creases(*case.surface))
+    return {"model": case.name, "noise": case.noise, "curves": {k: f1_curve(x, truth) for k, x in measures_of(mesh)}}
 
 
-def report(rows, chamfers):
-    judged_rows = [row for row in rows if "crease measure" in row]
-    text = [table(["model", "mesh", "stage", "noise %", "crease measure at 1", "at its best", "ROC area", "eq 6",
-                   "best of the final mesh", "dihedral", "spread", "curvature", "cloud", "oracle", "oracle mesh",
-                   "mean edge: at 1", "mean edge: dihedral"], map(line_of, judged_rows)), ""]
-    for stage in STAGES:
-        of_stage = [row for row in judged_rows if row["stage"] == stage]
-        wins = sum(row["crease measure"]["default"] >= best_of(row, MESH_MEASURES) for row in of_stage)
-        text.append(f"{stage}: at its threshold of 1 the crease measure is at least as good as the best final-mesh measure "
-                    f"at its best threshold in {wins} of {len(of_stage)} cases.")
-    for row in rows:
-        if "false positives" in row:
-            text.append(f"{row['model']}, {row['mesh']}, {row['stage']}, noise {row['noise']:g} %: no creases, "
-                        f"{100 * row['false positives']:.2f} % of the vertices above 1.")
-    for name, angles in chamfers.items():
-        if angles:
-            text.append(f"{name}: an edge that counts as a crease has {angles['edge']:.0f} degrees (median); the surface "
-                        f"turns by {angles['surface']:.0f} within .5 % of the diagonal around it.")
-    return "\n".join(text)
+def report(rows):
+    names = list(rows[0]["curves"])
+    lines = []
+    for noise in sorted({r["noise"] for r in rows}):
+        mean = {name: np.mean([r["curves"][name] for r in rows if r["noise"] == noise], axis=0) for name in names}
+        lines.append([f"{noise:g}", *(f"{mean[name][DEFAULT]:.3f}" for name in LEARNED),
+                      *(f"{mean[name].max():.3f}" for name in names)])
+    return table(["noise %", *(f"{name} at 1" for name in LEARNED), *(f"{name} at its best" for name in names)], lines)
 
 
-def parser_of(description, default_models):
+def parse(arguments, description=__doc__, noise=(0, 0.1, 0.3, 0.6)):
     """The options that tables of features have in common."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--learn", required=True, help="the core as a program (target learn)")
     parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
-    parser.add_argument("--models", type=numbers(str), default=default_models)
-    parser.add_argument("--noise", type=numbers(float), default=(0, 0.1, 0.3, 0.6), help="%% of the diagonal")
+    parser.add_argument("--models", type=numbers(str), default=MODELS)
+    parser.add_argument("--noise", type=numbers(float), default=noise, help="%% of the diagonal")
     parser.add_argument("--samples", type=int, default=200_000)
     parser.add_argument("--vertices", type=int, default=5000)
     parser.add_argument("--out", type=Path, default=Path("out/figures"))
-    return parser
-
-
-def parse(arguments):
-    parser = parser_of(__doc__, MODELS)
-    parser.add_argument("--learn", required=True, help="the core as a program (target learn)")
     return parser.parse_args(arguments)
+
+
+def write(options, name, text, rows):
+    (options.out / f"{name}.md").write_text(text + "\n")
+    (options.out / f"{name}.json").write_text(json.dumps(rows))
+    print(text)
 
 
 def main(arguments=None):
     options = parse(arguments)
     try:
-        rows, chamfers = all_rows(options)
+        rows = kept_rows(row_of, options, "rows.jsonl")
     except paper_runs.RunError as error:
         sys.exit(str(error))
-    text = report(rows, chamfers)
-    (options.out / "features.md").write_text(text + "\n")
-    (options.out / "features.json").write_text(json.dumps(rows, indent=1))
-    print(text)
+    write(options, "features", report(rows), rows)
 
 
 if __name__ == "__main__":

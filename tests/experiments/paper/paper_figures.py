@@ -2,16 +2,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The pictures of the documentation and the paper's three figures, drawn by MeshLab.
+"""The pictures of the documentation and two figures of the paper, drawn by MeshLab.
 
     paper_figures.py --learn build/tests/learn [--data FOLDER] [--out FOLDER] [--pictures FOLDER]
 
-bunny.png: from points to mesh to counters. closeup.png: a part of it, as points and as wireframe. fig1.png: density of the mesh
-against curvature. fig2.png: counters as colours. fig3.png: levels of detail. The numbers in the captions are written to OUT/figures.json. With a data folder
-Fig. 3 shows Max-Planck and Dino, as in the paper, else models from Debian packages.
+bunny.png: from points to mesh to counters. closeup.png: a part of it, as points and as wireframe. fig2.png:
+counters as colours. fig3.png: levels of detail. The numbers in the captions are written to OUT/figures.json. With a data
+folder Fig. 3 shows Max-Planck and Dino, as in the paper, else models from Debian packages.
 """
 
 import argparse
+import contextlib
 import json
 import os
 import sys
@@ -19,20 +20,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import pymeshlab
-from matplotlib import colormaps
-from scipy.spatial import cKDTree
-from scipy.stats import spearmanr
 
 import import_paths  # noqa: F401
 import models
 import paper_runs
 from compare_accuracy import numbers
 from meshlab_picture import Picture, camera_axes, render
-from meshlab_picture_sheet import Legend, contact_sheet, legend_of_mesh
+from meshlab_picture_sheet import contact_sheet, legend_of_mesh
 from small_png import make_small
 
-FIGURES = ("bunny", "closeup", "fig1", "fig2", "fig3")
+FIGURES = ("bunny", "closeup", "fig2", "fig3")
 LEVELS = (500, 2000, 5000, 10000, 20000)
 COUNTER_TITLE = "feature counter"
 
@@ -83,12 +80,14 @@ class Studio:
         """The first `count` subjects whose model is available."""
         found = []
         for name in names:
-            if len(found) < count and paper_runs.is_available(name, self.options.data):
-                found.append(SUBJECTS[name])
+            if len(found) < count:
+                with contextlib.suppress(models.ModelError):
+                    models.load_model(name, self.options.data)
+                    found.append(SUBJECTS[name])
         return found
 
     def surface(self, subject):
-        return paper_runs.surface(subject.name, self.options.data)
+        return models.load_model(subject.name, self.options.data)
 
     def cloud(self, subject):
         path = self.options.out / f"figure_{subject.name}.ply"
@@ -158,75 +157,6 @@ def closeup(studio):
     studio.sheet("closeup", [row], [["the points", "the mesh"]], size=(440, 380))
 
 
-def vertex_areas(vertices, faces):
-    """A third of the area of the faces around each vertex."""
-    corners = vertices[faces]
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-    return np.bincount(faces.ravel(), np.repeat(area / 3, 3), minlength=len(vertices))
-
-
-def mean_curvature(vertices, faces):
-    """The absolute mean curvature at the vertices, MeshLab's discrete one, averaged over the one-ring."""
-    meshes = pymeshlab.MeshSet(verbose=False)
-    meshes.add_mesh(pymeshlab.Mesh(vertices, faces))
-    meshes.compute_scalar_by_discrete_curvature_per_vertex(curvaturetype="Mean Curvature")
-    values = np.abs(meshes.current_mesh().vertex_scalar_array())
-    values[~np.isfinite(values)] = 0
-    total, count = np.zeros(len(vertices)), np.zeros(len(vertices))
-    for a, b in ((0, 1), (1, 2), (2, 0)):
-        np.add.at(total, faces[:, a], values[faces[:, b]])
-        np.add.at(total, faces[:, b], values[faces[:, a]])
-        np.add.at(count, faces[:, a], 1)
-        np.add.at(count, faces[:, b], 1)
-    return (total + values) / (count + 1)
-
-
-def density_correlation(mesh, truth, curvature):
-    """Spearman's rank correlation of vertex density with the mean curvature of the true surface nearby."""
-    vertices, faces = models.load_mesh(mesh)
-    areas = vertex_areas(vertices, faces)
-    radius = float(np.median(np.sqrt(areas)))
-    # The curvature over the vertex's own share of the surface, or at least at the place next to it.
-    tree = cKDTree(truth)
-    near = tree.query_ball_point(vertices, radius)
-    _, nearest = tree.query(vertices)
-    around = [curvature[found].mean() if found else curvature[closest] for found, closest in zip(near, nearest)]
-    return float(spearmanr(-areas, around).statistic)
-
-
-def painted(path, vertices, faces, values, low, high):
-    """Saves a mesh painted by its values from low to high."""
-    colors = colormaps["viridis"](np.clip((values - low) / max(high - low, 1e-300), 0, 1))
-    meshes = pymeshlab.MeshSet(verbose=False)
-    meshes.add_mesh(pymeshlab.Mesh(vertices, faces, v_scalar_array=values, v_color_matrix=colors))
-    meshes.save_current_mesh(str(path), save_vertex_quality=True, save_vertex_color=True)
-    return path
-
-
-def fig1(studio):
-    """The mesh is dense where curvature is high: captions give the correlation of density and curvature."""
-    rows, captions, numbers_of_model = [], [], {}
-    for subject in studio.first_available(PAIR, 2):
-        truth, faces = studio.surface(subject)
-        curvature = mean_curvature(truth, faces)
-        low, high = np.percentile(curvature, (5, 95))
-        colored = painted(studio.options.out / f"figure_{subject.name}_curvature.ply", truth, faces, curvature, low,
-                          high)
-        made = {}
-        for label, utility, fit in (("signal counter", 1, 0), ("normal counter", 0, 0), ("default, with fit", 0, 1),
-                                    ("signal counter, with fit", 1, 1)):
-            mesh, _ = studio.mesh(subject, 4000, utility_counter=utility, fit_to_points=fit)
-            made[label] = mesh, density_correlation(mesh, truth, curvature)
-        numbers_of_model[subject.name] = {label: correlation for label, (_, correlation) in made.items()}
-        shown = list(made)[:3]
-        *wires, _ = subject.pictures([*(made[label][0] for label in shown), colored], "wireframe", line_width=0.6)
-        rows.append([*wires, subject.pictures([colored], "smooth", True)[0]])
-        captions.append([*(f"{label}: {made[label][1]:+.2f}" for label in shown), "mean curvature"])
-    ramp = [tuple(int(255 * c) for c in colormaps["viridis"](x)[:3]) for x in np.linspace(0, 1, 128)]
-    studio.sheet("fig1", rows, captions, Legend("mean curvature", ramp, "low", "high"), (380, 380))
-    studio.numbers["fig1"] = numbers_of_model
-
-
 def fig2(studio):
     """The counters of several models as colours."""
     subjects = studio.first_available(SIX, 6)
@@ -265,7 +195,7 @@ def parse(arguments):
 def main(arguments=None):
     options = parse(arguments)
     studio = Studio(options)
-    makers = {"bunny": bunny, "closeup": closeup, "fig1": fig1, "fig2": fig2, "fig3": fig3}
+    makers = {"bunny": bunny, "closeup": closeup, "fig2": fig2, "fig3": fig3}
     unknown = [name for name in options.figures if name not in makers]
     if unknown:
         sys.exit(f"There is no figure '{unknown[0]}': there are {', '.join(makers)}.")
@@ -275,9 +205,6 @@ def main(arguments=None):
     earlier = json.loads(numbers_file.read_text()) if numbers_file.exists() else {}
     # One figure may be made without the others.
     numbers_file.write_text(json.dumps({**earlier, **studio.numbers}, indent=1))
-    for name, numbers_of_model in studio.numbers.get("fig1", {}).items():
-        print(f"fig1, {name}: correlation of density with curvature " +
-              ", ".join(f"{label} {value:+.2f}" for label, value in numbers_of_model.items()))
     for name, numbers_of_model in studio.numbers.get("fig3", {}).items():
         print(f"fig3, {name}, {numbers_of_model['points']:,} points: " +
               ", ".join(f"{level['vertices']:,} vertices in {level['processor_seconds']:.1f} processor seconds, RMS "

@@ -21,7 +21,6 @@ import numpy as np  # noqa: E402
 import pymeshlab  # noqa: E402
 
 import features  # noqa: E402
-import given_meshes  # noqa: E402
 import models  # noqa: E402
 from meshlab_picture import Picture, render  # noqa: E402
 from meshlab_picture_sheet import contact_sheet  # noqa: E402
@@ -64,10 +63,11 @@ def best_selection(values, truth):
 
 
 def given_row(surface, cloud, folder):
-    vertices, faces = given_meshes.even(surface, cloud, VERTICES, NOISE)
-    mesh = given_meshes.counted(vertices, faces, cloud)
-    truth = given_meshes.truth_of(mesh, features.Creases(*surface))
-    curvature = max((values for _, values in mesh.curvatures()), key=lambda values: features.best_f1(values, truth))
+    vertices, faces = features.noisy_mesh(surface, VERTICES, NOISE)
+    mesh = features.counted(vertices, faces, cloud)
+    truth = features.truth_of(mesh, features.Creases(*surface))
+    curvature = max((values for name, values in features.measures_of(mesh) if name in features.CURVATURES),
+                    key=lambda values: max(features.f1_curve(values, truth)))
     none = np.zeros(len(vertices), dtype=bool)
     found = {"mesh": none, "curvature": best_selection(curvature, truth), "measure": mesh.measure > 1}
     files = [marked(folder / f"creases_{name}.ply", vertices, faces, chosen) for name, chosen in found.items()]

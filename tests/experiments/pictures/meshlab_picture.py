@@ -8,16 +8,11 @@ In a project file each mesh is a layer with its rendering options and a matrix t
 orthographic camera. MeshLab's "Snap All Layers" then draws them all, without decorations, in one start of one to two
 seconds.
 
-    meshlab_picture.py MESH.ply OUT.png [--style smooth+color] [--view 0.3,0.2,1]
-    meshlab_picture.py MESH.ply OUT.png --cloud CLOUD.ply --style flat-lines,smooth+color
-    meshlab_picture.py A.ply B.ply C.ply OUT.png --style wireframe,smooth+color --captions "500,2000,10000"
+    meshlab_picture.py MESH.ply OUT.png    a mesh with its vertex colours
 
-Several meshes make a contact sheet with a row for each style, all at the scale that fits the largest. One mesh in
-several styles makes one row, after its cloud if one is given.
 Needs the Debian packages meshlab, xvfb, xdotool, libgl1-mesa-dri, and numpy and Pillow.
 """
 
-import argparse
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -30,18 +25,15 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "hosts"))
 from gui_session import GuiSession, require_programs, wait_until  # noqa: E402
 from meshlab_picture_ply import positions, read_vertices  # noqa: E402
 from meshlab_picture_project import HALF_HEIGHT, VIEW_TEXT, project_text, settings_text  # noqa: E402
-from meshlab_picture_sheet import contact_sheet, legend_of_mesh  # noqa: E402
 
 PROGRAM = "/usr/bin/meshlab"
 PLUGINS = Path("/usr/lib/x86_64-linux-gnu/meshlab/plugins")
 LIBRARIES = "/usr/lib/x86_64-linux-gnu/meshlab"
 
 STYLES = ("wireframe", "flat", "smooth", "flat-lines", "smooth-lines", "points")
-VIEWS = {"front": (0, 0, 1), "back": (0, 0, -1), "right": (1, 0, 0), "left": (-1, 0, 0),
-         "top": (0, 1, 0), "bottom": (0, -1, 0)}
-
 # MeshLab draws several pixels for each pixel of the picture; their average smooths the lines.
 SUPERSAMPLING = 3
+MARGIN = 0.03  # free border, as a part of the picture's height
 # Size of the menus, tool bars and frames of MeshLab's window.
 CHROME_HEIGHT = 130
 CHROME_WIDTH = 60
@@ -85,7 +77,7 @@ def is_ply(path):
     return str(path).lower().endswith(".ply")
 
 
-def layer_transformation(picture, aspect, margin):
+def layer_transformation(picture, aspect):
     """The 4 x 4 matrix that puts the picture's mesh centred and filling in front of the camera."""
     axes = camera_axes(picture.view, picture.up)
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
@@ -97,7 +89,7 @@ def layer_transformation(picture, aspect, margin):
     if not np.isfinite(low).all():
         raise ValueError(f"{picture.mesh} has no vertex to draw.")
     half = np.maximum((high - low) / 2, 1e-12)
-    scale = HALF_HEIGHT * (1 - 2 * margin) / max(half[1], half[0] / aspect)
+    scale = HALF_HEIGHT * (1 - 2 * MARGIN) / max(half[1], half[0] / aspect)
     matrix = np.eye(4)
     matrix[:3, :3] = scale * axes
     matrix[:3, 3] = -scale * (low + high) / 2
@@ -121,11 +113,11 @@ def program_copy(directory, plugins=()):
     return str(program)
 
 
-def write_settings(directory, background=(255, 255, 255)):
+def write_settings(directory):
     """Puts the settings where a MeshLab started in this GuiSession directory finds them."""
     folder = Path(directory) / "config" / "VCG"
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "MeshLab_64bit_fp.conf").write_text(settings_text(background))
+    (folder / "MeshLab_64bit_fp.conf").write_text(settings_text())
 
 
 def save_all_layers(session, window):
@@ -153,14 +145,14 @@ def load_when_complete(path):
         return None
 
 
-def snapshots(pictures, matrices, size, background):
+def snapshots(pictures, matrices, size):
     """Runs MeshLab once; returns its drawings, one per picture, as it saved them."""
     width, height = (SUPERSAMPLING * length for length in size)
     with GuiSession(width + CHROME_WIDTH, height + CHROME_HEIGHT) as session:
         directory = Path(session.directory)
-        (directory / "project.mlp").write_text(project_text(pictures, matrices, background, SUPERSAMPLING))
+        (directory / "project.mlp").write_text(project_text(pictures, matrices, SUPERSAMPLING))
         (directory / "view.xml").write_text(VIEW_TEXT)
-        write_settings(directory, background)
+        write_settings(directory)
         session.start([program_copy(directory), "project.mlp", "view.xml"], LD_LIBRARY_PATH=LIBRARIES)
         window = session.wait_for_window(r"^MeshLab 20")
         session.wait_for_log("Opened mesh", len(pictures))
@@ -184,115 +176,22 @@ def cut_to_size(drawing, size):
     return drawing.crop((left, 0, left + width, height)).resize(size, Image.LANCZOS)
 
 
-def render(pictures, size=(600, 600), background=(255, 255, 255), margin=0.03):
-    """Draws all pictures in one run of MeshLab; returns Pillow images of exactly `size` pixels.
-
-    margin: free border, as a part of the picture's height. Takes 2 to 4 s. Raises GuiError when
-    MeshLab cannot be run, ValueError for a mesh that cannot be drawn as asked.
-    """
-    pictures = list(pictures)
-    if len(pictures) > 100:
-        raise ValueError("MeshLab numbers its snapshots with two digits: at most 100 pictures in a run.")
+def render(pictures, size=(600, 600)):
+    """Draws all pictures in one run of MeshLab; returns Pillow images of exactly `size` pixels. Takes 2 to 4 s. Raises
+    GuiError when MeshLab cannot be run, ValueError for a mesh that cannot be drawn as asked."""
     for picture in pictures:
         if picture.style not in STYLES:
             raise ValueError(f"There is no style '{picture.style}': it is one of {', '.join(STYLES)}.")
         if picture.color and is_ply(picture.mesh) and "red" not in read_vertices(picture.mesh).dtype.names:
             raise ValueError(f"{picture.mesh} has no vertex colours to show.")
-    matrices = [layer_transformation(picture, size[0] / size[1], margin) for picture in pictures]
-    return [cut_to_size(drawing, size) for drawing in snapshots(pictures, matrices, size, background)]
-
-
-def parse_numbers(text, count, separator, kind, meaning):
-    """`count` numbers; raises argparse's error, which says what the option means."""
-    try:
-        values = tuple(kind(word) for word in text.split(separator))
-    except ValueError:
-        values = ()
-    if len(values) != count:
-        raise argparse.ArgumentTypeError(f"'{text}' is not {meaning}")
-    return values
-
-
-def parse_direction(text):
-    return VIEWS.get(text) or parse_numbers(text, 3, ",", float, f"one of {', '.join(VIEWS)} or x,y,z")
-
-
-def parse_size(text):
-    return parse_numbers(text.lower(), 2, "x", int, "a size such as 600x400")
-
-
-def parse_color(text):
-    values = (255, 255, 255) if text == "white" else parse_numbers(text, 3, ",", int, "white or r,g,b")
-    if not all(0 <= value <= 255 for value in values):
-        raise argparse.ArgumentTypeError("a colour is three numbers r,g,b from 0 to 255")
-    return values
-
-
-def parse_styles(text):
-    """Styles separated by commas, each with or without "+color", as pairs (style, color)."""
-    pairs = [(word.replace("+color", ""), word.endswith("+color")) for word in text.split(",")]
-    for style, _ in pairs:
-        if style not in STYLES:
-            raise argparse.ArgumentTypeError(f"there is no style '{style}': it is one of {', '.join(STYLES)}")
-    return pairs
-
-
-def parse_arguments(arguments):
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("meshes", nargs="+", metavar="MESH.ply")
-    parser.add_argument("out", metavar="OUT.png")
-    parser.add_argument("--style", type=parse_styles, default=[("smooth", False)],
-                        help=f"{', '.join(STYLES)}; +color shows vertex colours; several with commas")
-    parser.add_argument("--color", action="store_true", help="+color for every style")
-    parser.add_argument("--cloud", help="a point cloud to be shown before the mesh")
-    parser.add_argument("--view", type=parse_direction, default=(0.0, 0.0, 1.0),
-                        help=f"from the mesh to the viewer: {', '.join(VIEWS)} or x,y,z")
-    parser.add_argument("--up", type=parse_direction, default=(0.0, 1.0, 0.0))
-    parser.add_argument("--size", type=parse_size, default=(600, 600), help="of one picture, WIDTHxHEIGHT")
-    parser.add_argument("--background", type=parse_color, default=(255, 255, 255), help="white or r,g,b")
-    parser.add_argument("--line-width", type=float, default=0.8, help="pixels")
-    parser.add_argument("--point-size", type=float, default=1.0, help="pixels")
-    parser.add_argument("--captions", default=None, help="one per column, separated by commas")
-    parser.add_argument("--legend", default=None, metavar="TITLE",
-                        help="adds the colour scale, read off the mesh's quality and colours")
-    return parser.parse_args(arguments)
-
-
-def sheet_of(options):
-    """Rows of Pictures: one row per style and one column per mesh, or all of one mesh in one row."""
-    rows = [[Picture(mesh, style, color or options.color, options.view, options.up, options.line_width,
-                     options.point_size, fit_to=[other for other in options.meshes if other != mesh])
-             for mesh in options.meshes] for style, color in options.style]
-    if len(options.meshes) == 1:
-        rows = [[row[0] for row in rows]]
-        if options.cloud:
-            rows[0].insert(0, Picture(options.cloud, "points", False, options.view, options.up,
-                                      point_size=options.point_size, fit_to=options.meshes))
-    return rows
-
-
-def main(arguments=None):
-    options = parse_arguments(arguments)
-    rows = sheet_of(options)
-    drawn = iter(render([picture for row in rows for picture in row], options.size, options.background))
-    images = [[next(drawn) for _ in row] for row in rows]
-    columns = len(rows[0])
-    texts = options.captions.split(",") if options.captions else [""] * columns
-    if len(texts) != columns:
-        raise ValueError(f"There are {columns} columns of pictures, but {len(texts)} captions.")
-    captions = [[""] * columns for _ in rows[1:]] + [texts]
-    legend = legend_of_mesh(options.meshes[-1], options.legend) if options.legend else None
-    if legend and len(options.meshes) > 1:
-        legend.low, legend.high = "low", "high"  # each mesh is painted on a scale of its own
-    if len(rows) == columns == 1 and not options.captions and not legend:
-        images[0][0].save(options.out)
-    else:
-        contact_sheet(images, captions, options.out, legend=legend, background=options.background)
+    matrices = [layer_transformation(picture, size[0] / size[1]) for picture in pictures]
+    return [cut_to_size(drawing, size) for drawing in snapshots(pictures, matrices, size)]
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
     try:
-        main()
+        render([Picture(sys.argv[1], "flat-lines", True)])[0].save(sys.argv[2])
     except (RuntimeError, ValueError, OSError) as error:
         sys.exit(f"meshlab_picture: {error}")

@@ -31,27 +31,18 @@ def read_header(file, path):
             count = int(words[2]) if element == "vertex" else count
         elif words[:1] == ["property"] and element == "vertex":
             fields.append((words[2], TYPES[words[1]]))
-    if storage is None or count is None:
-        raise ValueError(f"{path} has a broken PLY header.")
+    if storage in (None, "ascii") or count is None:
+        raise ValueError(f"{path} has no binary vertices.")
     return storage, count, fields
 
 
 def read_vertices(path):
-    """The vertex element of a PLY file (ascii or binary) as a structured array, one field per property.
+    """The vertex element of a binary PLY file as a structured array, one field per property.
 
     Raises ValueError with a sentence when the file is not a PLY file or ends too soon.
     """
     with open(path, "rb") as file:
         storage, count, fields = read_header(file, path)
-        if storage == "ascii":
-            rows = [tuple(file.readline().split()) for _ in range(count)]
-            if rows and len(rows[-1]) < len(fields):
-                raise ValueError(f"{path} ends before its last vertex.")
-            text = np.array([row[:len(fields)] for row in rows]).reshape(count, len(fields))
-            table = np.empty(count, dtype=fields)
-            for index, (name, kind) in enumerate(fields):
-                table[name] = text[:, index].astype("f8").astype(kind)
-            return table
         order = "<" if storage == "binary_little_endian" else ">"
         table_type = np.dtype([(name, order + kind) for name, kind in fields])
         data = file.read(count * table_type.itemsize)

@@ -18,6 +18,7 @@ SWITCHES = ("visible", "box info", "edge extra", "edge boundary", "face boundary
             "solid unlit", "round points", "points shrink with distance")
 # With the ambient light of OpenGL and MeshLab (0.2 + 0.125) it adds up to 1, so that a surface that faces the viewer
 # has exactly the colours of the legend.
+WHITE = (255, 255, 255)
 LIGHT = (172, 172, 172)
 
 
@@ -53,28 +54,28 @@ def layer_bits(style, color):
             + bits(SWITCHES, switches))
 
 
-def rendering_option(picture, background, supersampling):
+def rendering_option(picture, supersampling):
     """The project file's element with a layer's rendering options."""
     hides_lines = picture.style == "wireframe" and not picture.color
 
     def rgba(rgb):
         return "{} {} {} 255".format(*rgb)
 
-    surface = background if hides_lines else picture.surface_color
+    surface = WHITE if hides_lines else picture.surface_color
     return (f'<RenderingOption pointSize="{picture.point_size * supersampling:g}" '
-            f'wireWidth="{picture.line_width * supersampling:g}" boxColor="{rgba((255, 255, 255))}" '
+            f'wireWidth="{picture.line_width * supersampling:g}" boxColor="{rgba(WHITE)}" '
             f'pointColor="{rgba(picture.line_color)}" wireColor="{rgba(picture.line_color)}" '
             f'solidColor="{rgba(surface)}">{layer_bits(picture.style, picture.color)}</RenderingOption>')
 
 
-def project_text(pictures, matrices, background, supersampling):
+def project_text(pictures, matrices, supersampling):
     """A MeshLab project with one layer per picture, moved by its 4 x 4 matrix."""
     layers = []
     for index, (picture, matrix) in enumerate(zip(pictures, matrices)):
         rows = "\n".join(" ".join(f"{value:.9g}" for value in row) + " " for row in matrix)
         layers.append(f'<MLMesh label="layer{index}" filename={quoteattr(os.path.abspath(picture.mesh))} '
                       f'visible="1">\n<MLMatrix44>\n{rows}\n</MLMatrix44>\n'
-                      f"{rendering_option(picture, background, supersampling)}\n</MLMesh>")
+                      f"{rendering_option(picture, supersampling)}\n</MLMesh>")
     return "<!DOCTYPE MeshLabDocument>\n<MeshLabProject>\n<MeshGroup>\n" + "\n".join(layers) + \
         "\n</MeshGroup>\n<RasterGroup/>\n</MeshLabProject>\n"
 
@@ -99,9 +100,9 @@ def color_setting(name, rgb):
             f'r=\\"{rgb[0]}\\" g=\\"{rgb[1]}\\" b=\\"{rgb[2]}\\"/>\\n"\n')
 
 
-def settings_text(background):
+def settings_text():
     """MeshLab's settings: a plain background, a neutral light, no check for newer versions."""
-    return ("[General]\n" + color_setting("backgroundBotColor", background)
-            + color_setting("backgroundTopColor", background) + color_setting("baseLightDiffuseColor", LIGHT)
+    return ("[General]\n" + color_setting("backgroundBotColor", WHITE)
+            + color_setting("backgroundTopColor", WHITE) + color_setting("baseLightDiffuseColor", LIGHT)
             + "dontRemindMeAboutUpgrade=true\ndontRemindMeToSendEmail=true\n"
             + "lastTimeMeshLabVersionCheckedOnStart=Tue Jan 1 2999\n")

@@ -47,15 +47,10 @@ def legend_of_mesh(path, title, steps=128):
 
 
 def font(size):
-    return ImageFont.truetype("DejaVuSans.ttf", size) if has_dejavu() else ImageFont.load_default()
-
-
-def has_dejavu():
     try:
-        ImageFont.truetype("DejaVuSans.ttf", 10)
-        return True
+        return ImageFont.truetype("DejaVuSans.ttf", size)
     except OSError:
-        return False
+        return ImageFont.load_default()
 
 
 def draw_legend(sheet, legend, top, text_size):
@@ -73,18 +68,9 @@ def draw_legend(sheet, legend, top, text_size):
     draw.text((left + width + GAP, middle), legend.high, TEXT_COLOR, letters, anchor="lm")
 
 
-def contact_sheet(rows, captions, out, legend=None, background=(255, 255, 255), text_size=18):
-    """Puts rows of equally large pictures on one sheet and saves it; returns the Pillow image.
-
-    rows: lists of Pillow images or file names; a single list is one row. captions: the same shape,
-    one line of text under each picture, "" for none. legend: a Legend under the last row.
-    """
-    if rows and not isinstance(rows[0], (list, tuple)):
-        rows, captions = [rows], [captions]
-    rows = [[item if isinstance(item, Image.Image) else Image.open(item).convert("RGB") for item in row]
-            for row in rows]
-    if [len(row) for row in rows] != [len(row) for row in captions]:
-        raise ValueError("Every picture of a contact sheet needs a caption, if only an empty one.")
+def contact_sheet(rows, captions, out, legend=None, text_size=18):
+    """Puts rows of equally large Pillow images on one sheet and saves it. captions: the same shape, one line of text
+    under each picture, "" for none. legend: a Legend under the last row."""
     cell_width = max(image.width for row in rows for image in row)
     line = round(1.7 * text_size)
     heights = [max(image.height for image in row) + (line if any(texts) else 0)
@@ -92,7 +78,7 @@ def contact_sheet(rows, captions, out, legend=None, background=(255, 255, 255), 
     columns = max(len(row) for row in rows)
     width = columns * cell_width + (columns + 1) * GAP
     height = sum(heights) + (len(rows) + 1) * GAP + (line + GAP if legend else 0)
-    sheet = Image.new("RGB", (width, height), background)
+    sheet = Image.new("RGB", (width, height), "white")
     draw, letters, top = ImageDraw.Draw(sheet), font(text_size), GAP
     for row, texts, row_height in zip(rows, captions, heights):
         for column, (image, text) in enumerate(zip(row, texts)):
@@ -105,4 +91,3 @@ def contact_sheet(rows, captions, out, legend=None, background=(255, 255, 255), 
     if legend:
         draw_legend(sheet, legend, top, text_size)
     sheet.save(out)
-    return sheet

@@ -4,9 +4,9 @@
 
 """Real scans and open meshes of them, drawn by MeshLab: the points, ours, and those of other methods.
 
-    open_scans.py LEARN OUT.png --data FOLDER [--sheet few|raw] [--out FOLDER]
+    open_scans.py OUT.png --learn build/tests/learn --data FOLDER [--sheet few|raw] [--out FOLDER]
 
-LEARN is the program build/tests/learn. "few" is three scans with 3,000 vertices beside Ball Pivoting and trimmed Poisson,
+"few" is three scans with 3,000 vertices beside Ball Pivoting and trimmed Poisson,
 "raw" six scans of other kinds with up to 10,000, at most one for five points, beside Screened Poisson of depth 8 whose
 normals face the sensor, and whose faces farther than six spacings from the points are dropped. All meshes of a scan have
 about the same number of vertices.
@@ -103,8 +103,8 @@ def meshes_of(program, scan, folder, sheet, view):
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program")
     parser.add_argument("picture")
+    parser.add_argument("--learn", required=True, help="the core as a program (target learn)")
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--sheet", choices=SHEETS, default="few")
     parser.add_argument("--out", type=Path, default=Path("out/figures"))
@@ -112,7 +112,7 @@ def main(arguments=None):
     options.out.mkdir(parents=True, exist_ok=True)
     sheet, pictures = SHEETS[options.sheet], []
     for name, (view, up) in sheet.scans.items():
-        cloud, files = meshes_of(options.program, options.data / name, options.out, sheet, view)
+        cloud, files = meshes_of(options.learn, options.data / name, options.out, sheet, view)
         seen = {"view": view, "up": up, "fit_to": [str(cloud)]}
         pictures.append(Picture(str(cloud), "points", **seen))
         pictures += [Picture(str(file), "flat-lines", line_width=.3, **seen) for file in files]

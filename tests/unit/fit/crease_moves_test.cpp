@@ -96,13 +96,6 @@ TEST(CreaseMoves, NothingMovesWithMuchNoise) {
     EXPECT_EQ(count_moved(moves_of(scene, 0.5 * kEdge)), 0);
 }
 
-TEST(CreaseMoves, FewPointsMoveNothing) {
-    shapes::Shape mesh = shapes::grid(kColumns, kColumns);
-    for (vcg::Point3d& p : mesh.positions) p[2] = roof(p[0]);
-    const FitScene scene(referee::network_of(mesh), {{0, 0, roof(0)}, {0.1, 0, roof(0.1)}});
-    EXPECT_EQ(count_moved(moves_of(scene)), 0);
-}
-
 TEST(CreaseMoves, ThreadsDoNotMatter) {
     const FitScene scene = roof_scene(0.05 * kEdge);
     const PerVertex<Vector3> one = moves_of(scene, 0.05 * kEdge, 1);

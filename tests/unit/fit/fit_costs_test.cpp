@@ -142,25 +142,6 @@ TEST(FindCollapses, CostIsTheMeasuredRise) {
     EXPECT_LT(small_stars, scene.network.slot_count());
 }
 
-TEST(FindCollapses, MeasuresSmallStarsExactly) {
-    const FitScene scene(referee::network_of(shapes::torus_grid(20, 10), 0.03), shapes::torus_cloud(5000));
-    ThreadTeam team(2);
-    int measured = 0;
-    for (const Collapse& collapse : find_collapses(scene.network, scene.surface, scene.points, team)) {
-        const Span<const int> star = scene.surface.faces_around(collapse.gone);
-        const std::vector<Vector3> points = points_of(scene.points, {star.begin(), star.end()});
-        if (collapse.into < 0 || points.size() >= 128) continue;
-        Network after = scene.network;
-        after.collapse(collapse.gone, collapse.into);
-        const double rise = squared_distances(points, new_faces(scene.network, after), after) -
-                            squared_distances(points, new_faces(after, scene.network), scene.network);
-        if (rise <= 0) continue;
-        ++measured;
-        EXPECT_NEAR(collapse.cost, rise, 1e-5 + 1e-3 * rise);
-    }
-    EXPECT_GT(measured, 30);
-}
-
 /// A flat grid, and points on a gentle wave above it.
 FitScene wave_scene() {
     shapes::Shape grid = shapes::grid(12, 12);
@@ -244,16 +225,6 @@ TEST(FindSplits, OmitsGainsBelowTheBound) {
         EXPECT_EQ(static_cast<std::ptrdiff_t>(some.size()), expected);
         EXPECT_LT(some.size(), all.size());
     }
-}
-
-TEST(LeastSplitGain, IsMoreForEdgesLittleLongerThanTheNoise) {
-    const LeastSplitGain least{4, 16, 0.1F, 1};
-    EXPECT_FLOAT_EQ(least.of(0.01F), 8);
-    EXPECT_FLOAT_EQ(least.of(1), 4.04F);
-    EXPECT_FLOAT_EQ(least.of(100), 4.04F) << "as at the largest length";
-    EXPECT_FLOAT_EQ(least.of(1e-4F), 16);
-    EXPECT_FLOAT_EQ(least.of(0), 16);
-    EXPECT_FLOAT_EQ(LeastSplitGain{}.of(1), 0);
 }
 
 /// The scene of a torus whose points weigh \p upper above the plane z = 0 and \p lower below it.

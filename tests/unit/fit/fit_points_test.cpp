@@ -37,12 +37,6 @@ TEST(ChoosePoints, TakesEveryPointOfACloudOnce) {
     EXPECT_EQ(places.size(), 2000U);
 }
 
-TEST(ChoosePoints, HoldsOutAtMostTenThousand) {
-    const TargetSpace target = soundness::target_of(shapes::sphere_cloud(100000));
-    Random random(1);
-    EXPECT_EQ(choose_points(target, 90000, random).held_out.points.size(), 10000U);
-}
-
 TEST(PrecisePoints, AreManyForEachVertexAndWithoutNoise) {
     ThreadTeam team(1);
     const auto precise = [&](int count, double noise) {
@@ -288,19 +282,6 @@ TEST(HeldOut, DoesNotPreferACrumpledSurface) {
     other.relocate(Surface(crumpled), team);
     EXPECT_LT(held_out.rms_error(Surface(smooth), 1, team),
               0.97 * other.rms_error(Surface(crumpled), 1, team));
-}
-
-TEST(BendingSearch, NarrowsFromAWideRange) {
-    BendingSearch search;
-    const std::vector<float> first = search.next_weights(0);
-    EXPECT_EQ(first, (std::vector<float>{0.3F, 1, 8, 50})) << "none below the least of the first round";
-    search.choose(8);
-    EXPECT_EQ(search.next_weights(0), (std::vector<float>{8, 1, 20}));
-    search.choose(1);
-    EXPECT_EQ(search.next_weights(0.5F), (std::vector<float>{1, 0.5F, 2.5F}))
-        << "none below what noise demands";
-    search.choose(0.5F);
-    EXPECT_EQ(search.next_weights(2), (std::vector<float>{2})) << "no weight twice";
 }
 
 }  // namespace

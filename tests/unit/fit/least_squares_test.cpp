@@ -195,20 +195,6 @@ TEST_F(LeastSquares, TakesStiffnessForBendingWeight) {
         1e-3 * flat(stiff.solve({0.5F}, team, exact)[0]).norm());
 }
 
-// All points lie at the same height above a plane: it moves to them, nearly without sliding sideways.
-TEST(PointToPlaneSystem, LiftsAPlaneToItsPoints) {
-    const Network plane = referee::network_of(shapes::grid(8, 8));
-    const Surface surface(plane);
-    ThreadTeam team(1);
-    const PointsByFace points = points_on(surface, 30, [](Random&) { return 0.05; });
-    const PointToPlaneSystem system(plane, surface, points, team);
-    const PerVertex<Vector3> displacements = system.solve({1}, team, {1e-5, 1000})[0];
-    for (const Vector3& u : displacements) {
-        EXPECT_NEAR(u[2], 0.05, 0.002);
-        EXPECT_LT(u.head<2>().norm(), 0.02);
-    }
-}
-
 // A plane has no bending energy, whatever the shapes of its triangles, and none after it is tilted.
 TEST(BendingTerms, AreZeroOnAPlane) {
     shapes::Shape grid = shapes::grid(8, 8);

@@ -73,13 +73,5 @@ TEST(SoundMoves, DoNotDependOnTheThreads) {
     for (const VertexId v : one.vertices()) EXPECT_EQ(one.position(v), three.position(v));
 }
 
-TEST(SoundMoves, OfLengthZeroChangeNothing) {
-    Network network = hollow_ball(0.6);
-    const Network before = network;
-    ThreadTeam team(1);
-    move_soundly(network, PerVertex<Vector3>(network.slot_count(), Vector3::Zero()), team);
-    for (const VertexId v : network.vertices()) EXPECT_EQ(network.position(v), before.position(v));
-}
-
 }  // namespace
 }  // namespace neuralmesh

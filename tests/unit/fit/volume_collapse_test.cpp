@@ -188,13 +188,5 @@ TEST(VolumeCollapse, StopsWhereTheTopologyWouldChange) {
     EXPECT_EQ(network.genus(), 1);
 }
 
-TEST(VolumeCollapse, SaysWhatItDid) {
-    Network network = referee::network_of(shapes::icosphere(3), 0.01);
-    Network replayed = network;
-    const std::vector<VertexMoves::DoneCollapse> done = collapse_by_volume(network, 100, nobody(network));
-    for (const VertexMoves::DoneCollapse& collapse : done) replayed.collapse(collapse.gone, collapse.into);
-    EXPECT_EQ(network.faces(), replayed.faces());
-}
-
 }  // namespace
 }  // namespace neuralmesh

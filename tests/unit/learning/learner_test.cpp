@@ -54,7 +54,7 @@ void compare_runs(const shapes::Cloud& cloud, const Network& start, LearnerOptio
         std::vector<vcg::Point3f> drawn;
         while (static_cast<int>(drawn.size()) < batch) drawn.push_back(target.sample(random));
         const std::vector<StepResult>& steps = learner.basic_steps(drawn.data(), batch);
-        const std::vector<BasicStep>& expected_steps = expected.basic_steps(drawn);
+        const std::vector<reference::BasicStep>& expected_steps = expected.basic_steps(drawn);
         ASSERT_EQ(steps.size(), drawn.size());
         for (std::size_t step = 0; step < drawn.size(); ++step) {
             ASSERT_EQ(steps[step].winner, expected_steps[step].winner) << "at signal " << i;

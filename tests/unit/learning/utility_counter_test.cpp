@@ -189,20 +189,6 @@ TEST(UtilityCounters, DeferLastsUntilTheNextWin) {
     EXPECT_DOUBLE_EQ(counters.value(3), 5);
 }
 
-TEST(UtilityCounters, ShareKeepsTheSumAndSplitsByArea) {
-    UtilityCounters counters(0.95, 0);
-    counters.resize(3);
-    counters.win(0, 1);
-    counters.win(1, 7);
-    const double whole = counters.value(1);
-    counters.share(1, 2, 3, 1);
-    EXPECT_NEAR(counters.value(1), whole * 0.75, 1e-12);
-    EXPECT_NEAR(counters.value(2), whole * 0.25, 1e-12);
-    counters.share(1, 2, 0, 0);  // twins without any area
-    EXPECT_NEAR(counters.value(1), counters.value(2), 1e-12);
-    EXPECT_EQ(counters.wins(1), 0);
-}
-
 TEST(UtilityCounters, AMatureVertexOfAmountZeroCanBeSplit) {
     // A mesh that no longer turns must still be able to grow.
     UtilityCounters counters(0.95, 2);

@@ -13,19 +13,6 @@
 namespace neuralmesh {
 namespace {
 
-TEST(FreeIds, TakeReturnsANearIdIfThereIsOne) {
-    FreeIds ids;
-    for (const int id : {3, 70, 75, 200, 1000}) ids.add(id);
-    EXPECT_EQ(ids.take(74), 75);
-    EXPECT_EQ(ids.take(74), 70);
-    EXPECT_EQ(ids.take(100), 3) << "in the word before";
-    EXPECT_EQ(ids.take(64), 200) << "two words on";
-    ids.add(5);
-    EXPECT_EQ(ids.take(500), 5) << "none near: the smallest";
-    EXPECT_EQ(ids.take(0), 1000);
-    EXPECT_EQ(ids.count(), 0);
-}
-
 TEST(FreeIds, TakeReturnsEachIdOnce) {
     FreeIds ids;
     std::set<int> expected;

@@ -247,25 +247,6 @@ TEST(Network, EveryOpenedFaceIsExactOrRefused) {
     try_all_vertices(by_hand, &Network::can_open_face, &Network::open_face);
 }
 
-TEST(Network, OperationsOnASphereKeepItsVolume) {
-    const Network before = network_of(shapes::icosphere(2));
-    const double volume = enclosed_volume(before);
-    ASSERT_GT(volume, 0);
-    for (const VertexId v : before.vertices()) {
-        for (int i = 0; i < before.ring(v).valence; ++i) {
-            Network split = before;
-            split.split(v, i, 3, (before.position(v) + before.position(before.ring(v).next(i))) / 2);
-            EXPECT_NEAR(enclosed_volume(split), volume, 0.05 * volume);
-            Network collapsed = before;
-            collapsed.collapse(v, before.ring(v)[i]);
-            EXPECT_NEAR(enclosed_volume(collapsed), volume, 0.05 * volume);
-            Network flipped = before;
-            flipped.flip(v, before.ring(v)[i]);
-            EXPECT_NEAR(enclosed_volume(flipped), volume, 0.05 * volume);
-        }
-    }
-}
-
 TEST(Network, StaysAManifoldOverTenThousandRandomOperations) {
     for (const Start& start : starts()) {
         SCOPED_TRACE(start.name);

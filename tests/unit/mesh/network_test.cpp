@@ -79,31 +79,6 @@ TEST(Network, ANewVertexInheritsTheTagOfItsParent) {
     EXPECT_EQ(network.ring(network.split(8, 0, 4, network.position(8))).tag, 0);
 }
 
-TEST(Network, UsesTheIdsOfRemovedVerticesAgain) {
-    Network network = network_of(shapes::icosphere(1));
-    const int slots = network.slot_count();
-    network.collapse(7, network.ring(7)[0]);
-    EXPECT_FALSE(network.alive(7));
-    EXPECT_EQ(network.vertex_count(), slots - 1);
-    EXPECT_EQ(network.split(20, 0, 3, {0, 0, 0}), 7);
-    EXPECT_TRUE(network.alive(7));
-    EXPECT_EQ(network.slot_count(), slots);
-    EXPECT_EQ(network.split(20, 0, 3, {0, 0, 0}), slots);
-}
-
-TEST(Network, VerticesSkipsFreeSlots) {
-    Network network = network_of(shapes::torus_grid(8, 6));
-    Random random(5);
-    for (int step = 0; step < 500; ++step) random_operation(network, random, 1, 1);
-    ASSERT_LT(network.vertex_count(), network.slot_count());
-    std::vector<VertexId> expected;
-    for (VertexId v = 0; v < network.slot_count(); ++v)
-        if (network.alive(v)) expected.push_back(v);
-    std::vector<VertexId> listed;
-    for (const VertexId v : network.vertices()) listed.push_back(v);
-    EXPECT_EQ(listed, expected);
-}
-
 /// Ids in random order.
 std::vector<VertexId> shuffled_ids(int count, Random& random) {
     std::vector<VertexId> ids(static_cast<std::size_t>(count));
@@ -190,16 +165,6 @@ TEST(Network, CompactRenumbersAndChangesNothingElse) {
     EXPECT_EQ(network.validate(), "");
 }
 
-TEST(Network, ListsEachFaceOnceFromItsSmallestVertex) {
-    const std::vector<Triangle> faces = network_of(shapes::icosphere(1)).faces();
-    ASSERT_EQ(faces.size(), 80U);
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-        EXPECT_LT(faces[i][0], std::min(faces[i][1], faces[i][2]));
-        EXPECT_LE(faces[i == 0 ? 0 : i - 1][0], faces[i][0]);
-    }
-    EXPECT_EQ(canonical(faces).size(), std::set<Triangle>(faces.begin(), faces.end()).size());
-}
-
 void expect_refused(const Shape& shape, const char* why) {
     EXPECT_THROW(network_of(shape), TopologyError) << why;
 }
@@ -263,14 +228,6 @@ TEST(Network, ValidateNamesAPositionThatIsNotFinite) {
     Network network = network_of(shapes::cube());
     network.set_position(5, {0, std::numeric_limits<float>::quiet_NaN(), 0});
     EXPECT_NE(network.validate().find("vertex 5"), std::string::npos);
-}
-
-TEST(Network, AnEmptyNetworkIsSound) {
-    const Network network;
-    EXPECT_EQ(network.validate(), "");
-    EXPECT_EQ(network.vertex_count(), 0);
-    EXPECT_EQ(network.euler_characteristic(), 0);
-    EXPECT_TRUE(network.faces().empty());
 }
 
 }  // namespace

@@ -110,31 +110,12 @@ TEST(SquaredDistanceToTriangle, HasTheBitsOfTheFoot) {
     }
 }
 
-TEST(Triangle, HasItsNormalOnTheSideFromWhichItIsCounterClockwise) {
-    const Vector3 a(0, 0, 0);
-    const Vector3 b(2, 0, 0);
-    const Vector3 c(0, 3, 0);
-    EXPECT_EQ(area_vector(a, b, c), Vector3(0, 0, 6));
-    EXPECT_EQ(unit_normal(a, b, c), Vector3(0, 0, 1));
-    EXPECT_EQ(unit_normal(a, b, b), Vector3(0, 0, 0));
-}
-
 /// 1 + 1 is even in the last place of 2^24 and 2^53; 1 alone is rounded off.
 TEST(Triangle, AddsTheLastTwoOfThreeTermsFirstOnEveryProcessor) {
     const Eigen::Vector3f floats(0x1p24F, 1, 1);
     EXPECT_EQ(floats.dot(Eigen::Vector3f::Ones()), 0x1p24F + 2);
     const Eigen::Vector3d doubles(0x1p53, 1, 1);
     EXPECT_EQ(doubles.dot(Eigen::Vector3d::Ones()), 0x1p53 + 2);
-}
-
-TEST(Triangle, HasAQualityBetweenNeedleAndEquilateral) {
-    const float height = std::sqrt(0.75F);
-    EXPECT_NEAR(triangle_quality({0, 0, 0}, {1, 0, 0}, {0.5F, height, 0}), 1, 1e-6);
-    EXPECT_NEAR(triangle_quality({0, 0, 0}, {1e-3F, 0, 0}, {5e-4F, 1e-3F * height, 0}), 1, 1e-5);
-    // Area 1/2, squared edges 1 + 1 + 2.
-    EXPECT_NEAR(triangle_quality({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), std::sqrt(3.0F) / 2, 1e-6);
-    EXPECT_EQ(triangle_quality({0, 0, 0}, {1, 0, 0}, {2, 0, 0}), 0);
-    EXPECT_EQ(triangle_quality({1, 1, 1}, {1, 1, 1}, {1, 1, 1}), 0);
 }
 
 }  // namespace

@@ -47,21 +47,6 @@ TEST(VertexOrder, MortonOrderSortsByInterleavedCoordinates) {
     EXPECT_EQ(morton_order(network), expected);
 }
 
-TEST(VertexOrder, MortonOrderBringsNearVerticesTogether) {
-    const Network network = torus_with_free_slots();
-    const auto length = [&](const std::vector<VertexId>& order) {
-        double sum = 0;
-        for (std::size_t i = 1; i < order.size(); ++i)
-            sum += static_cast<double>((network.position(order[i]) - network.position(order[i - 1])).Norm());
-        return sum;
-    };
-    std::vector<VertexId> shuffled = morton_order(network);
-    Random random(6);
-    for (std::size_t i = shuffled.size(); i > 1; --i)
-        std::swap(shuffled[i - 1], shuffled[random.below(static_cast<std::uint32_t>(i))]);
-    EXPECT_LT(4 * length(morton_order(network)), length(shuffled));
-}
-
 TEST(VertexOrder, InterleaveFreeSpreadsFreeIdsEvenly) {
     for (const int size : {0, 1, 7, 100})
         for (int count = 0; count <= size; ++count) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Every parameter at both ends of its range, and random settings on random clouds: no crash, a sound mesh,
-// and no more signals than the settings allow. NEURALMESH_RANDOM_RUNS=500 makes 500 runs instead of 12, or 40
-// in the second tier; NEURALMESH_RANDOM_FIRST=N starts with run N, to repeat a failure.
+// Every parameter at an end of its range, and random settings on random clouds: no crash, a sound mesh,
+// and no more signals than the settings allow. NEURALMESH_RANDOM_RUNS=500 makes 500 runs instead of 12;
+// NEURALMESH_RANDOM_FIRST=N starts with run N, to repeat a failure.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -98,21 +98,18 @@ void expect_valid_result(const TargetSpace& target, const Settings& settings) {
     }
 }
 
-/// In the first tier at one end, the lower and the upper by turns.
-TEST(RandomSettings, EveryParameterWorksAtBothEndsOfItsRange) {
+/// The lower and the upper by turns.
+TEST(RandomSettings, EveryParameterWorksAtAnEndOfItsRange) {
     const TargetSpace target = soundness::target_of(shapes::sphere_cloud(500));
     std::size_t i = 0;
     for (const SettingInfo& info : setting_table()) {
-        ++i;
-        for (const double end : {info.low, info.high}) {
-            if (!environment::tried(i, end == info.low ? 1 : 0, 2)) continue;
-            SCOPED_TRACE(testing::Message() << info.id << " = " << end);
-            Settings settings;
-            settings.target_vertices = 60;
-            settings.settling_signals_per_vertex = 10;
-            info.store(settings, end);
-            expect_valid_result(target, settings);
-        }
+        const double end = ++i % 2 == 1 ? info.low : info.high;
+        SCOPED_TRACE(testing::Message() << info.id << " = " << end);
+        Settings settings;
+        settings.target_vertices = 60;
+        settings.settling_signals_per_vertex = 10;
+        info.store(settings, end);
+        expect_valid_result(target, settings);
     }
 }
 
@@ -193,7 +190,7 @@ std::string changes(const Settings& settings) {
 }
 
 TEST(RandomSettings, GiveValidResultsOnRandomClouds) {
-    const int runs = environment::number_of("NEURALMESH_RANDOM_RUNS", environment::full() ? 40 : 12, 1);
+    const int runs = environment::number_of("NEURALMESH_RANDOM_RUNS", 12, 1);
     const int first = environment::number_of("NEURALMESH_RANDOM_FIRST", 0, 0);
     if (HasFailure()) return;
     int learned = 0, scattered = 0;

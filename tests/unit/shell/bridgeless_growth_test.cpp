@@ -104,13 +104,5 @@ TEST(BridgelessGrowth, LeavesNoCavities) {
     EXPECT_TRUE(growth.solid(0, 0, 0));
 }
 
-TEST(BridgelessGrowth, GrowsToTwiceTheRadius) {
-    EXPECT_EQ(grown_level(0), 2);
-    EXPECT_EQ(grown_level(1), 4);
-    EXPECT_EQ(grown_level(9), 36);
-    EXPECT_EQ(grown_level(16), 64);
-    EXPECT_EQ(grown_level(Region::kMaxLevel), Region::kMaxLevel);
-}
-
 }  // namespace
 }  // namespace neuralmesh

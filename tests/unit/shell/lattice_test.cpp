@@ -16,18 +16,6 @@
 namespace neuralmesh {
 namespace {
 
-TEST(Lattice, CoordinatesAreTheInverseOfIndex) {
-    const Lattice lattice = small_lattice();
-    NodeId next = 0;
-    for_each_node(lattice, [&](int x, int y, int z) {
-        EXPECT_EQ(lattice.index(x, y, z), next);
-        EXPECT_EQ(lattice.coordinates(next), (std::array<int, 3>{x, y, z}));
-        EXPECT_EQ(lattice.position(next), lattice.position(x, y, z));
-        ++next;
-    });
-    EXPECT_EQ(next, lattice.size());
-}
-
 TEST(Lattice, CoversItsBoxAndTheMargin) {
     const vcg::Box3f box(vcg::Point3f(-1, 2, 5), vcg::Point3f(1.9F, 2.5F, 5));
     const Lattice lattice(box, 0.5F, 2);
@@ -85,24 +73,6 @@ TEST(Lattice, AdjacencyIsThatOfTheFreudenthalSubdivision) {
             EXPECT_EQ(offset, (std::array<int, 3>{b[0] - a[0], b[1] - a[1], b[2] - a[2]}));
         });
         ASSERT_EQ(found, expected) << i;
-    }
-}
-
-TEST(Lattice, ListsTheNeighboursThatAreMembers) {
-    const Lattice lattice = small_lattice();
-    const Neighbours neighbours(lattice);
-    const PerNode<std::uint32_t> members = random_counts(lattice, 7, 2);
-    const auto is_member = [&](NodeId i) { return members[i] != 0; };
-    for (NodeId i = 0; i < lattice.size(); ++i) {
-        std::vector<NodeId> expected, all;
-        neighbours.for_each(i, [&](NodeId j, int) {
-            all.push_back(j);
-            if (is_member(j)) expected.push_back(j);
-        });
-        const NodeList some = neighbours.of(i, is_member);
-        ASSERT_EQ(std::vector<NodeId>(some.begin(), some.end()), expected) << i;
-        const NodeList every = neighbours.of(i, [](NodeId) { return true; });
-        ASSERT_EQ(std::vector<NodeId>(every.begin(), every.end()), all) << i;
     }
 }
 

@@ -75,29 +75,5 @@ TEST(MarchingTetrahedra, VerticesAreZerosOfTheInterpolation) {
     EXPECT_GT(exact, on_plane / 2);
 }
 
-TEST(MarchingTetrahedra, NoSolidNoFaces) {
-    const Lattice lattice = small_lattice();
-    const IndexedMesh<float> mesh = marching_tetrahedra(lattice, PerNode<float>(lattice.size(), 1.0F));
-    EXPECT_TRUE(mesh.positions.empty());
-    EXPECT_TRUE(mesh.faces.empty());
-}
-
-/// A single node: the surface of its 14 edges, each vertex half an edge away from the node.
-TEST(MarchingTetrahedra, OneNodeHasAVertexOnEachOfItsEdges) {
-    const Lattice lattice = small_lattice();
-    PerNode<float> values(lattice.size(), 1.0F);
-    const NodeId node = lattice.index(5, 5, 5);
-    values[node] = -1.0F;
-    const IndexedMesh<float> mesh = marching_tetrahedra(lattice, values);
-    EXPECT_EQ(mesh.positions.size(), 14U);
-    EXPECT_EQ(mesh.faces.size(), 24U);
-    for (const auto& [dx, dy, dz] : kNeighbourOffsets) {
-        const vcg::Point3f middle = (lattice.position(node) + lattice.position(5 + dx, 5 + dy, 5 + dz)) / 2;
-        int found = 0;
-        for (const vcg::Point3f& p : mesh.positions) found += (p - middle).Norm() < 1e-5F ? 1 : 0;
-        EXPECT_EQ(found, 1);
-    }
-}
-
 }  // namespace
 }  // namespace neuralmesh

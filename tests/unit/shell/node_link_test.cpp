@@ -35,12 +35,6 @@ TEST(NodeLink, NeighboursAreTakenInTheOrderOfTheOffsets) {
     EXPECT_EQ(of_corner, 0b01010101010101U) << "those with no coordinate below 0";
 }
 
-TEST(NodeLink, SmallerIdsAreEverySecondNeighbour) {
-    const Lattice lattice = small_lattice();
-    const NodeId middle = lattice.index(5, 6, 7);
-    EXPECT_EQ(set_of(Neighbours(lattice), middle, [&](NodeId j) { return j < middle; }), kSmallerIds);
-}
-
 TEST(NodeLink, ConnectedSetsAreThoseOfOneComponent) {
     const Lattice lattice = small_lattice();
     const NodeId middle = lattice.index(5, 6, 7);

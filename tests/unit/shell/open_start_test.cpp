@@ -75,12 +75,6 @@ TEST(OpenStart, HasTheTopologyOfTheSurface) {
     }
 }
 
-TEST(OpenStart, CoversASquareOnce) {
-    const Cloud cloud = shapes::plane_cloud(10000);
-    const OpenStart start = start_of(cloud);
-    EXPECT_NEAR(area(start), 0.5, 0.05);  // the diagonal is 1
-}
-
 TEST(OpenStart, IsSmallWhereFewVerticesAreWanted) {
     OpenStartOptions options;
     options.wanted_vertices = 40;
@@ -167,13 +161,6 @@ TEST(OpenStart, RefusesWhatIsNoSurface) {
     EXPECT_NE(refusal(scattered).find("scattered"), std::string::npos);
     EXPECT_NE(refusal(open_shapes::helix(2000)).find("on curves"), std::string::npos);
     EXPECT_NE(refusal(shapes::plane_cloud(99)).find("too few"), std::string::npos);
-}
-
-TEST(OpenStart, RepeatsItself) {
-    const Cloud cloud = open_shapes::cases()[0].cloud;
-    const OpenStart first = start_of(cloud), second = start_of(cloud);
-    EXPECT_EQ(first.faces, second.faces);
-    EXPECT_TRUE(first.positions == second.positions);
 }
 
 TEST(OpenStart, KeepsASmallSheetButNoClump) {

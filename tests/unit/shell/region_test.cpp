@@ -66,12 +66,6 @@ TEST(Region, KnowsTheShareOfTheSurfaceThatEnclosesNothing) {
     EXPECT_NEAR(share(points), 4 / 16.6, 0.05);
 }
 
-TEST(Region, APlaneEnclosesNoSpace) {
-    const Region region = region_of(square(20000), 0.05F);
-    EXPECT_FALSE(region.encloses_space);
-    EXPECT_EQ(region.widest_opening, 0);
-}
-
 TEST(Region, ASparseCloudIsFragmentedAtSmallRadii) {
     const Region region = region_of(square(1000), 0.03F);
     EXPECT_TRUE(is_fragmented(region, 0));
@@ -96,12 +90,6 @@ TEST(Region, TheFringeOfANoisyCloudIsLeftOut) {
     const Region fringed = region_of(points, 0.05F);
     EXPECT_EQ(fringed.counts, clean.counts);
     EXPECT_NE(fringed.counts, count_points(fringed.lattice, points));
-}
-
-TEST(Region, AFewPointsMakeAComponent) {
-    EXPECT_EQ(region_of(sphere(4), 0.1F).min_points, 2);
-    EXPECT_EQ(region_of(sphere(60), 0.1F).min_points, 16);
-    EXPECT_EQ(region_of(sphere(1000), 0.1F).min_points, 20);
 }
 
 }  // namespace

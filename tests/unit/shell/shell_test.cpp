@@ -73,12 +73,6 @@ TEST(Shell, Torus) {
     EXPECT_GT(mesh.confidence, 0.5);
 }
 
-TEST(Shell, TwoSpheresAreTwoComponents) {
-    shell_shapes::Shape both = shell_shapes::sphere(1);
-    shell_shapes::append(both, shell_shapes::sphere(1), {2.3, 0, 0});
-    expect_topology(shell_of_samples(both, 20000), 2, 0);
-}
-
 TEST(Shell, LinkedToriStayLinked) {
     expect_topology(shell_of_samples(shell_shapes::chain(4, 1, 0.2, 1.3), 20000), 4, 4);
 }
@@ -170,18 +164,6 @@ TEST(Shell, NestedSpheresComeAsTheOuterOne) {
     expect_topology(shell_of_samples(both, 20000), 1, 0);
 }
 
-TEST(Shell, AFewPointsAreEnough) {
-    for (const int count : {4, 5, 8, 20, 60}) {
-        Random random(static_cast<std::uint64_t>(count));
-        std::vector<vcg::Point3d> cloud;
-        for (int i = 0; i < count; ++i) {
-            const double x = static_cast<double>(random.unit()), y = static_cast<double>(random.unit());
-            cloud.emplace_back(x, y, static_cast<double>(random.unit()));
-        }
-        expect_sound(shell(cloud));
-    }
-}
-
 TEST(Shell, PiecesOfASparseCloudAreNoComponents) {
     for (const int count : {400, 800, 2000}) {
         Random random(16);
@@ -209,12 +191,6 @@ void expect_same_bytes(const StartMesh& a, const StartMesh& b) {
     EXPECT_EQ(a.faces, b.faces);
 }
 
-TEST(Shell, SameCloudSameBytes) {
-    Random random(2);
-    const auto cloud = shell_shapes::sample(shell_shapes::torus(1, 0.4), 20000, random);
-    expect_same_bytes(shell(cloud), shell(cloud));
-}
-
 /// Only where parts nearly touch, as the points of a sparse cloud do, does the shell use threads.
 TEST(Shell, SparseCloudSameBytesForAnyNumberOfThreads) {
     Random random(16);
@@ -223,18 +199,6 @@ TEST(Shell, SparseCloudSameBytesForAnyNumberOfThreads) {
     alone.threads = 1;
     together.threads = 3;
     expect_same_bytes(shell(cloud, alone), shell(cloud, together));
-}
-
-TEST(Shell, MeshAsTarget) {
-    const shell_shapes::Shape torus = shell_shapes::torus(1, 0.3);
-    const TargetSpace target = TargetSpace::triangles(torus.faces.size(), [&](std::size_t i, int k) {
-        return torus.positions[static_cast<std::size_t>(torus.faces[i][static_cast<std::size_t>(k)])];
-    });
-    Random random(1);
-    NoProgress progress;
-    ShellOptions options;
-    options.samples = 30000;
-    expect_topology(shell_of(target, options, random, progress), 1, 1);
 }
 
 /// Spheres of the given radii about one centre, with \p count points on all.
@@ -278,14 +242,6 @@ TEST(Shell, LayersThatDoNotMeetEncloseNoHollow) {
     std::vector<vcg::Point3d> dirty = spheres({1}, 50000);
     for (const vcg::Point3d& p : spheres({0.5}, 300)) dirty.push_back(p);
     EXPECT_EQ(shell(dirty).components, 1);
-}
-
-TEST(Shell, BadOptionsAreRefused) {
-    Random random(2);
-    const auto cloud = shell_shapes::sample(shell_shapes::sphere(1), 100, random);
-    ShellOptions options;
-    options.max_vertices = 3;
-    EXPECT_THROW(shell(cloud, options), SettingError);
 }
 
 }  // namespace

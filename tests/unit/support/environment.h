@@ -28,19 +28,4 @@ inline int number_of(const char* name, int otherwise, int low) {
     return otherwise;
 }
 
-/// True in `./run.sh test full`, which sets NEURALMESH_FULL: all that a test can vary is to be tried.
-/// Otherwise the variations that find most.
-inline bool full() { return std::getenv("NEURALMESH_FULL") != nullptr; }
-
-/// What to try: \p always, and in the second tier \p in_full as well.
-template <class T>
-std::vector<T> in_tiers(std::vector<T> always, const std::vector<T>& in_full) {
-    if (full()) always.insert(always.end(), in_full.begin(), in_full.end());
-    return always;
-}
-
-/// Whether to try the \p i-th of some cases in the \p j-th of \p count ways: in all ways in the second tier,
-/// otherwise each case in one way, by turns.
-inline bool tried(std::size_t i, std::size_t j, std::size_t count) { return full() || i % count == j; }
-
 }  // namespace neuralmesh::environment

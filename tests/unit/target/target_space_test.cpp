@@ -131,14 +131,6 @@ TEST(TargetSpace, FrameIsCentredWithDiagonalOne) {
     }
 }
 
-TEST(TargetSpace, KeepsPointsAndCorners) {
-    const TargetSpace points = target_of(shapes::sphere_cloud(10));
-    EXPECT_FALSE(points.has_faces());
-    const TargetSpace faces = target_of(shapes::cube());
-    EXPECT_TRUE(faces.has_faces());
-    EXPECT_EQ(faces.positions().size(), 36U);
-}
-
 /// Sum of (seen - expected)^2 / expected.
 double chi_square(const std::vector<int>& seen, const std::vector<double>& expected) {
     double sum = 0;

@@ -38,19 +38,6 @@ TEST(EvenSampling, SpreadsTheVerticesEvenly) {
     EXPECT_LT(upper_vertices(learned(cloud, settings_of(false))), 190);
 }
 
-TEST(EvenSampling, DoesNotDependOnTheThreads) {
-    const shapes::Cloud cloud = shapes::uneven_sphere_cloud(5000, 20, 0.01);
-    Settings settings = settings_of(true);
-    settings.threads = 1;
-    const NeuralMesh one = learned(cloud, settings);
-    settings.threads = 3;
-    const NeuralMesh three = learned(cloud, settings);
-    EXPECT_EQ(one.positions, three.positions);
-    EXPECT_EQ(one.faces, three.faces);
-    EXPECT_EQ(one.counters, three.counters);
-    EXPECT_EQ(one.report.rms_error, three.report.rms_error);
-}
-
 TEST(EvenSampling, LeavesEvenCloudsAlone) {
     const shapes::Cloud cloud = shapes::sphere_cloud(5000, 0.01);
     EXPECT_EQ(learned(cloud, settings_of(true)).positions, learned(cloud, settings_of(false)).positions);

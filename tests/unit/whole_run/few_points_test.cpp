@@ -9,7 +9,6 @@
 #include <tuple>
 #include <vector>
 
-#include "tests/unit/support/environment.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/reconstruct.h"
@@ -17,7 +16,6 @@
 namespace neuralmesh {
 namespace {
 
-using environment::in_tiers;
 using shapes::Cloud;
 
 /// Turned, so that its edges follow no axis.
@@ -50,12 +48,10 @@ double quality(const vcg::Point3d& a, const vcg::Point3d& b, const vcg::Point3d&
     return edges > 0 ? 2 * std::sqrt(3.0) * ((b - a) ^ (c - a)).Norm() / edges : 0;
 }
 
-NeuralMesh expect_well_shaped(const Cloud& cloud, int vertices, std::uint64_t seed = 1) {
-    SCOPED_TRACE(std::to_string(cloud.size()) + " points, " + std::to_string(vertices) + " vertices, seed " +
-                 std::to_string(seed));
+NeuralMesh expect_well_shaped(const Cloud& cloud, int vertices) {
+    SCOPED_TRACE(std::to_string(cloud.size()) + " points");
     Settings settings;
     settings.target_vertices = vertices;
-    settings.random_seed = static_cast<int>(seed);
     NoProgress progress;
     const NeuralMesh mesh = reconstruct(soundness::target_of(cloud), settings, progress);
     soundness::expect_exact(mesh, settings);
@@ -75,31 +71,18 @@ NeuralMesh expect_well_shaped(const Cloud& cloud, int vertices, std::uint64_t se
 }
 
 TEST(FewPoints, OfASphereMakeWellShapedFaces) {
-    for (const int count :
-         in_tiers<int>({6, 50, 200, 255}, {5, 8, 12, 20, 35, 70, 100, 150, 254, 256, 257, 300}))
-        for (const std::uint64_t seed : in_tiers<std::uint64_t>({1}, {2, 3}))
-            expect_well_shaped(shapes::sphere_cloud(count, 0, seed), 1000, seed);
-}
-
-TEST(FewPoints, OfABoxMakeWellShapedFaces) {
-    for (const int count : in_tiers<int>({20, 200}, {50, 100, 255, 300}))
-        for (const int turn : in_tiers<int>({1}, {0, 2}))
-            expect_well_shaped(turned_by(turn * 0.7, shapes::box_cloud(count, {1, 2, 3})), 1000);
+    for (const int count : {6, 50, 200, 255}) expect_well_shaped(shapes::sphere_cloud(count), 1000);
 }
 
 TEST(FewPoints, AreMoreThanTheVertices) {
-    for (const int count : in_tiers<int>({100}, {80, 200, 255}))
-        for (const std::uint64_t seed : in_tiers<std::uint64_t>({1}, {2, 3})) {
-            SCOPED_TRACE(std::to_string(count) + " points, seed " + std::to_string(seed));
-            Settings settings;
-            settings.target_vertices = 50;
-            NoProgress progress;
-            const NeuralMesh mesh = reconstruct(
-                soundness::target_of(shapes::box_cloud(count, {1, 2, 3}, 0, seed)), settings, progress);
-            soundness::expect_exact(mesh, settings);
-            EXPECT_EQ(mesh.report.boundary_loops, 0);
-            EXPECT_NEAR(soundness::volume_of(mesh), 6, 0.9);
-        }
+    Settings settings;
+    settings.target_vertices = 50;
+    NoProgress progress;
+    const NeuralMesh mesh =
+        reconstruct(soundness::target_of(shapes::box_cloud(100, {1, 2, 3})), settings, progress);
+    soundness::expect_exact(mesh, settings);
+    EXPECT_EQ(mesh.report.boundary_loops, 0);
+    EXPECT_NEAR(soundness::volume_of(mesh), 6, 0.9);
 }
 
 TEST(FewPoints, OfABoxGiveTheBox) {
@@ -118,34 +101,6 @@ TEST(FewPoints, OfAConeGiveTheCone) {
     const NeuralMesh mesh = reconstruct(soundness::target_of(cloud), settings, progress);
     soundness::expect_exact(mesh, settings);
     EXPECT_NEAR(soundness::volume_of(mesh), 2 * M_PI / 3, 0.02);
-}
-
-TEST(FewPoints, KeepTheirColours) {
-    Cloud cloud = frame_of_box(0);
-    TargetSpace target = soundness::target_of(cloud);
-    std::vector<Color> colors;
-    for (const vcg::Point3d& p : cloud) colors.push_back(p[2] > 1 ? Color{255, 0, 0} : Color{0, 0, 255});
-    target.set_colors(colors);
-    Settings settings;
-    settings.target_vertices = 100;
-    settings.vertex_color = kCloudColors;
-    NoProgress progress;
-    const NeuralMesh mesh = reconstruct(target, settings, progress);
-    ASSERT_EQ(mesh.colors.size(), 100U);
-    for (std::size_t i = 0; i < mesh.colors.size(); ++i) {
-        const double height = mesh.positions[i][2];
-        if (height > 0.1 && height < 2.9) continue;
-        EXPECT_GT(mesh.colors[i][height > 1 ? 0 : 2], 200) << i;
-    }
-}
-
-TEST(FewPoints, AtCornersAndEdgesMakeWellShapedFaces) {
-    for (const int between : in_tiers<int>({0, 1}, {2}))
-        for (const int turn : in_tiers<int>({0}, {1, 2}))
-            for (const int vertices : in_tiers<int>({500}, {100, 3000}))
-                expect_well_shaped(turned_by(turn * 0.7, frame_of_box(between)), vertices);
-    const Cloud corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    expect_well_shaped(corners, 500);
 }
 
 }  // namespace

@@ -81,16 +81,5 @@ TEST(GoingOn, FacesTheSideThatTheStartFaces) {
     }
 }
 
-TEST(GoingOn, MayNotHaveMoreVerticesThanTheTarget) {
-    try {
-        learn(targets::target_of(shapes::sphere_cloud(4000)), going_on(100), shapes::icosphere(3));
-        FAIL() << "learned";
-    } catch (const SettingError& error) {
-        EXPECT_NE(std::string(error.what()).find("642 vertices: raise target_vertices from 100"),
-                  std::string::npos)
-            << error.what();
-    }
-}
-
 }  // namespace
 }  // namespace neuralmesh

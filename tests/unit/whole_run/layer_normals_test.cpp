@@ -16,6 +16,7 @@ namespace neuralmesh {
 namespace {
 
 using namespace normal_clouds;
+using soundness::has_note;
 using soundness::has_warning;
 
 constexpr const char* kFollowed = "faces the side to which the normals";
@@ -29,12 +30,6 @@ NeuralMesh learn(const TargetSpace& target, int surface = kAutomatic, bool use_n
     settings.settling_signals_per_vertex = 5;
     NoProgress progress;
     return reconstruct(target, settings, progress);
-}
-
-bool has_note_with(const NeuralMesh& mesh, const std::string& words) {
-    const std::vector<std::string>& all = mesh.report.notes;
-    return std::any_of(all.begin(), all.end(),
-                       [&](const std::string& note) { return note.find(words) != std::string::npos; });
 }
 
 /// The share of the faces that face away from the origin.
@@ -60,7 +55,7 @@ TEST(LayerNormals, OrientAnOpenSurface) {
             const NeuralMesh mesh = learn(target_of(cloud, in ? inward(cloud) : outward(cloud)), surface);
             soundness::expect_sound(mesh);
             EXPECT_EQ(mesh.report.boundary_loops, 1);
-            EXPECT_TRUE(has_note_with(mesh, kFollowed));
+            EXPECT_TRUE(has_note(mesh, kFollowed));
             EXPECT_FALSE(has_warning(mesh, "normals"));
             const double out = share_facing_out(mesh);
             EXPECT_GT(in ? 1 - out : out, 0.98);
@@ -95,7 +90,7 @@ TEST(LayerNormals, OfRepeatedPointsAndOutliersComeAlong) {
     const NeuralMesh mesh = learn(target_of(cloud, normals));
     EXPECT_TRUE(has_warning(mesh, "repeat others"));
     EXPECT_GT(mesh.report.outliers, 20);
-    EXPECT_TRUE(has_note_with(mesh, kFollowed));
+    EXPECT_TRUE(has_note(mesh, kFollowed));
     EXPECT_LT(share_facing_out(mesh), 0.02);
 }
 
@@ -108,7 +103,7 @@ TEST(LayerNormals, AreNotUsedIfTheyAreWrong) {
     const NeuralMesh wrong = learn(target_of(cloud, nonsense(cloud.size())));
     EXPECT_TRUE(has_warning(wrong, "do not fit the points (1"));
     expect_same(wrong, without);
-    EXPECT_FALSE(has_note_with(wrong, kFollowed));
+    EXPECT_FALSE(has_note(wrong, kFollowed));
 }
 
 TEST(LayerNormals, OfPartsThatDisagreeAreNotUsed) {
@@ -118,7 +113,7 @@ TEST(LayerNormals, OfPartsThatDisagreeAreNotUsed) {
         if (cloud[i][0] > 0) normals[i] = opposite(normals[i]);
     const NeuralMesh mesh = learn(target_of(cloud, normals));
     EXPECT_TRUE(has_warning(mesh, "point to both sides of 1 of the 1 parts"));
-    EXPECT_FALSE(has_note_with(mesh, kFollowed));
+    EXPECT_FALSE(has_note(mesh, kFollowed));
     expect_same(mesh, learn(targets::target_of(cloud)));
 }
 
@@ -139,7 +134,7 @@ TEST(LayerNormals, OfAClosedSurfaceChangeNothing) {
     const NeuralMesh without = learn(targets::target_of(cloud));
     const NeuralMesh out = learn(target_of(cloud, outward(cloud)));
     expect_same(out, without);
-    EXPECT_TRUE(has_note_with(out, "A closed surface faces out without them"));
+    EXPECT_TRUE(has_note(out, "A closed surface faces out without them"));
     EXPECT_TRUE(out.report.warnings.empty());
     const NeuralMesh in = learn(target_of(cloud, inward(cloud)));
     expect_same(in, without);

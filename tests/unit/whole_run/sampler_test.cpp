@@ -63,18 +63,5 @@ TEST(Sampler, DrawsANewPointForEverySignal) {
     }
 }
 
-TEST(Sampler, GivesTheSameMeshForAnyNumberOfThreads) {
-    Settings settings;
-    settings.target_vertices = 400;
-    settings.settling_signals_per_vertex = 10;
-    NoProgress progress;
-    settings.threads = 1;
-    const NeuralMesh one = reconstruct(TargetSpace::drawn_by(on_torus, 10000), settings, progress);
-    settings.threads = 3;
-    const NeuralMesh three = reconstruct(TargetSpace::drawn_by(on_torus, 10000), settings, progress);
-    EXPECT_EQ(one.positions, three.positions);
-    EXPECT_EQ(one.faces, three.faces);
-}
-
 }  // namespace
 }  // namespace neuralmesh

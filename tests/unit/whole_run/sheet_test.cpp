@@ -8,7 +8,6 @@
 #include <functional>
 #include <string>
 
-#include "tests/unit/support/environment.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/reconstruct.h"
@@ -66,25 +65,23 @@ TEST(Sheets, AreClosedOnBothSidesWithEveryVertexOnThem) {
         few = !few;
         vcg::Box3d box;
         for (const vcg::Point3d& p : sheet.cloud) box.Add(p);
-        for (const int vertices : environment::in_tiers<int>({few ? 250 : 1000}, {few ? 1000 : 250})) {
-            SCOPED_TRACE(testing::Message() << sheet.name << ", " << vertices);
-            Settings settings;
-            settings.target_vertices = vertices;
-            settings.surface = kClosedSurface;
-            NoProgress progress;
-            const NeuralMesh mesh = reconstruct(soundness::target_of(sheet.cloud), settings, progress);
-            expect_exact(mesh, settings);
-            EXPECT_EQ(mesh.report.components, 1);
-            EXPECT_EQ(mesh.report.boundary_loops, 0);
-            EXPECT_EQ(mesh.report.genus, sheet.genus);
-            EXPECT_TRUE(soundness::has_warning(mesh, "closed around both of their sides"));
-            EXPECT_FALSE(soundness::has_warning(mesh, "forced"));
-            EXPECT_LT(mesh.report.rms_error, 1);
-            double farthest = 0;
-            for (const vcg::Point3d& p : mesh.positions)
-                farthest = std::max(farthest, distance(p, sheet.cloud));
-            EXPECT_LT(100 * farthest / box.Diag(), 1.5);
-        }
+        const int vertices = few ? 250 : 1000;
+        SCOPED_TRACE(testing::Message() << sheet.name << ", " << vertices);
+        Settings settings;
+        settings.target_vertices = vertices;
+        settings.surface = kClosedSurface;
+        NoProgress progress;
+        const NeuralMesh mesh = reconstruct(soundness::target_of(sheet.cloud), settings, progress);
+        expect_exact(mesh, settings);
+        EXPECT_EQ(mesh.report.components, 1);
+        EXPECT_EQ(mesh.report.boundary_loops, 0);
+        EXPECT_EQ(mesh.report.genus, sheet.genus);
+        EXPECT_TRUE(soundness::has_warning(mesh, "closed around both of their sides"));
+        EXPECT_FALSE(soundness::has_warning(mesh, "forced"));
+        EXPECT_LT(mesh.report.rms_error, 1);
+        double farthest = 0;
+        for (const vcg::Point3d& p : mesh.positions) farthest = std::max(farthest, distance(p, sheet.cloud));
+        EXPECT_LT(100 * farthest / box.Diag(), 1.5);
     }
 }
 

@@ -127,39 +127,12 @@ TEST(ShellFinished, FarClumpsOfFewPointsMakeNoComponents) {
     EXPECT_TRUE(has_warning(mesh, "450 of 20450 points were ignored as outliers"));
 }
 
-TEST(ShellFinished, AGroupOfOnePercentIsAComponent) {
-    Random random(13);
-    std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
-    for (const vcg::Point3d& p : shell_shapes::sample(shell_shapes::sphere(0.2), 300, random))
-        cloud.push_back(p + vcg::Point3d(2, 0, 0));
-    expect_closed(finished(cloud, 500), 500, 2, 0);
-}
-
 TEST(ShellFinished, ANarrowHoleOfANoisySphereIsClosedWithAWarning) {
     std::vector<vcg::Point3d> cloud = shapes::sphere_cloud(50000, 0.04);
     shell_shapes::cut_off(cloud, [](const vcg::Point3d& p) { return p[2] > 0.96; });
     const NeuralMesh mesh = finished(cloud, 500, kAutomatic);
     expect_closed(mesh, 500, 1, 0);
     EXPECT_TRUE(has_warning(mesh, "were closed. Choose surface 2 (open) to keep"));
-}
-
-TEST(ShellFinished, HalfASphereIsClosedOnRequestWithAWarning) {
-    Random random(14);
-    std::vector<vcg::Point3d> cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
-    shell_shapes::cut_off(cloud, [](const vcg::Point3d& p) { return p[2] > 0; });
-    const NeuralMesh mesh = finished(cloud, 500, kClosedSurface);
-    expect_closed(mesh, 500, 1, 0);
-    EXPECT_TRUE(has_warning(mesh, "closed"));
-}
-
-TEST(ShellFinished, APlanePatchIsClosedOnRequestWithAWarning) {
-    Random random(15);
-    std::vector<vcg::Point3d> cloud;
-    for (int i = 0; i < 10000; ++i)
-        cloud.emplace_back(static_cast<double>(random.unit()), static_cast<double>(random.unit()), 0);
-    const NeuralMesh mesh = finished(cloud, 500, kClosedSurface);
-    expect_closed(mesh, 500, 1, 0);
-    EXPECT_TRUE(has_warning(mesh, "closed"));
 }
 
 TEST(ShellFinished, ACloudTooSparseForItsShellTakesACoarserOneAndSaysSo) {
