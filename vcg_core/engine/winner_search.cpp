@@ -56,34 +56,28 @@ VertexId vertex_of(RankedVertex r) { return static_cast<VertexId>(r & 0xffffffff
 /// cache line.
 template <class Ints>
 NEURALMESH_ALWAYS_INLINE void bucket_of(const Ints& x, const Ints& y, const Ints& z,
-                                        const WinnerSearch::CellLists& lists, Ints& bucket) {
+                                        int shift, Ints& bucket) {
     const Ints hash = (x >> 2) * 0x9e3779b1u ^ (y >> 1) * 0x85ebca77u ^ (z >> 1) * 0xc2b2ae3du;
-    Ints line = (hash * 0x27d4eb2fu) >> lists.shift;
-    if (lists.beyond != 0) {
-        const Ints along = (x & lists.along_x) | (y & lists.along_y) | (z & lists.along_z);
-        // The highest bit of the difference of two numbers below 2^31: set where the cell is not beyond.
-        line += (((along - lists.first_beyond) >> 31) - 1u) & lists.beyond;
-    }
+    const Ints line = (hash * 0x27d4eb2fu) >> shift;
     bucket = line << 4 | (x & 3u) | (y & 1u) << 2 | (z & 1u) << 3;
 }
 
 /// The list heads of the 2 x 2 x 2 cells from \p low on.
-NEURALMESH_ALWAYS_INLINE void eight_buckets(FourInts low, const WinnerSearch::CellLists& lists,
-                                            EightWords& buckets) {
+NEURALMESH_ALWAYS_INLINE void eight_buckets(FourInts low, int shift, EightWords& buckets) {
     const EightWords one_x = {0, 1, 0, 1, 0, 1, 0, 1};
     const EightWords one_y = {0, 0, 1, 1, 0, 0, 1, 1};
     const EightWords one_z = {0, 0, 0, 0, 1, 1, 1, 1};
     bucket_of(one_x + static_cast<std::uint32_t>(low[0]), one_y + static_cast<std::uint32_t>(low[1]),
-              one_z + static_cast<std::uint32_t>(low[2]), lists, buckets);
+              one_z + static_cast<std::uint32_t>(low[2]), shift, buckets);
 }
 
 /// The nearest vertex in the 2 x 2 x 2 cells from \p low on. Walks the eight lists in parallel, to the end of
 /// the longest, without a branch per vertex: which cells are empty cannot be predicted.
 NEURALMESH_MULTIVERSIONED RankedVertex scan_eight_cells(const VertexRecord* slots, const VertexId* heads,
-                                                        const WinnerSearch::CellLists& lists, FourInts low,
+                                                        int shift, FourInts low,
                                                         const vcg::Point3f& s) {
     EightWords buckets;
-    eight_buckets(low, lists, buckets);
+    eight_buckets(low, shift, buckets);
     std::uint32_t b[8];
     std::memcpy(b, &buckets, sizeof b);
     EightInts ids = {heads[b[0]], heads[b[1]], heads[b[2]], heads[b[3]],
@@ -151,18 +145,10 @@ void WinnerSearch::rebuild() {
     edge_ = std::max(kCellEdge * typical_edge_length(network_), 1e-5F);
     inverse_edge_ = 1 / edge_;
     std::size_t lines = 4;
-    lists_ = CellLists();
-    lists_.shift = 30;
+    shift_ = 30;
     while (16 * lines < 4 * static_cast<std::size_t>(built_for_)) {
         lines *= 2;
-        --lists_.shift;
-    }
-    if (divided_) {
-        // Each side of the plane has half of the table.
-        ++lists_.shift;
-        lists_.beyond = static_cast<std::uint32_t>(lines / 2);
-        (axis_ == 0 ? lists_.along_x : axis_ == 1 ? lists_.along_y : lists_.along_z) = ~0u;
-        lists_.first_beyond = static_cast<std::uint32_t>((place_ + kOffset) * inverse_edge_);
+        --shift_;
     }
     heads_.assign(16 * lines, -1);
     occupied_ = CellPyramid(static_cast<std::int32_t>(2 * kOffset * inverse_edge_) + 1);
@@ -170,17 +156,10 @@ void WinnerSearch::rebuild() {
     for (const VertexId v : network_.vertices()) add(v);
 }
 
-void WinnerSearch::divide_table(int axis, float place) {
-    divided_ = true;
-    axis_ = axis;
-    place_ = std::clamp(place, -1.0F, 1.0F);
-    rebuild();
-}
-
 std::size_t WinnerSearch::bucket_of(std::int32_t x, std::int32_t y, std::int32_t z) const {
     std::uint32_t bucket = 0;
     neuralmesh::bucket_of(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                          static_cast<std::uint32_t>(z), lists_, bucket);
+                          static_cast<std::uint32_t>(z), shift_, bucket);
     return bucket;
 }
 
@@ -243,7 +222,7 @@ void WinnerSearch::prefetch_heads(const vcg::Point3f& s) const {
 
 void WinnerSearch::prefetch_vertices(const vcg::Point3f& s) const {
     EightWords buckets;
-    eight_buckets(first_of_nearest(s), lists_, buckets);
+    eight_buckets(first_of_nearest(s), shift_, buckets);
     for (int i = 0; i < 8; ++i) prefetch(network_.slots() + heads_[buckets[i]]);
 }
 
@@ -283,7 +262,7 @@ std::uint64_t WinnerSearch::scan_all(const vcg::Point3f& s) const {
 }
 
 VertexId WinnerSearch::winner(const vcg::Point3f& s) const {
-    RankedVertex best = scan_eight_cells(network_.slots(), heads_.data(), lists_, first_of_nearest(s), s);
+    RankedVertex best = scan_eight_cells(network_.slots(), heads_.data(), shift_, first_of_nearest(s), s);
     const float rounding = std::max(kRounding * edge_, kLeastRounding);
     const float sure = 0.5F * edge_ - rounding;
     if (squared_distance_of(best) < sure * sure) return vertex_of(best);

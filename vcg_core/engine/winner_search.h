@@ -31,18 +31,6 @@ namespace neuralmesh {
 /// vertex records.
 class WinnerSearch {
 public:
-    /// Which list a cell belongs to. After divide_table(), cells beyond its plane have the second half of the
-    /// table.
-    struct CellLists {
-        int shift = 0;             ///< right shift that makes a hash the number of a cache line
-        std::uint32_t beyond = 0;  ///< added to that number for a cell beyond the plane
-        /// All ones for the axis across which the plane lies, else 0.
-        std::uint32_t along_x = 0;
-        std::uint32_t along_y = 0;
-        std::uint32_t along_z = 0;
-        std::uint32_t first_beyond = 0;  ///< the first cell coordinate beyond the plane
-    };
-
     /// Keeps a reference to \p network. O(vertices).
     explicit WinnerSearch(Network& network);
 
@@ -58,37 +46,15 @@ public:
     void add(VertexId v);
     /// Call before \p v is removed from the network. O(1) expected.
     void remove(VertexId v);
-    /// A vertex whose position has moved to another cell while its list has not changed yet.
-    struct CellChange {
-        FourInts from;
-        FourInts to;
-        VertexId vertex;
-    };
-    /// Moves \p v to \p where (x, y, z, 0) in the network. If it leaves its cell, only adds that to \p
-    /// cell_changes, so different threads may move different vertices at the same time. Pass these to apply()
-    /// before the next search. O(1).
-    void move(VertexId v, Four where, std::vector<CellChange>& cell_changes) {
+    /// Moves \p v to \p where (x, y, z, 0), in the network and in the table. O(1) expected.
+    void move(VertexId v, Four where) {
         VertexRecord* slot = &network_.slots()[v];
         const FourInts from = cell_of(load_xyz(slot));
         const FourInts to = cell_of(where);
-        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0)
-            cell_changes.push_back({from, to, v});
         store_xyz(slot, where);
+        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0) relink(v, from, to);
     }
-    /// Moves vertices between lists. The changes of one vertex must come in their order. O(1) expected each.
-    void apply(const std::vector<CellChange>& cell_changes) {
-        for (const CellChange& c : cell_changes) relink(c.vertex, c.from, c.to);
-    }
-    /// Moves \p v to \p where, in the network and in the table. O(1) expected.
-    void move(VertexId v, const vcg::Point3f& where) {
-        std::vector<CellChange> cell_changes;
-        move(v, Four{where[0], where[1], where[2], 0}, cell_changes);
-        apply(cell_changes);
-    }
-    /// Gives cells on different sides of the plane x[axis] = \p place different lists, from now on. For two
-    /// threads, one on each side: in a shared list, each would read vertices that the other moves.
-    /// O(vertices).
-    void divide_table(int axis, float place);
+    void move(VertexId v, const vcg::Point3f& where) { move(v, Four{where[0], where[1], where[2], 0}); }
     /// Rebuilds the table if the number of vertices has doubled or fallen to a third. O(1), O(vertices) then.
     void rebuild_if_outgrown();
     /// Call after the network was renumbered. O(vertices).
@@ -125,10 +91,7 @@ private:
     std::vector<VertexId> heads_;
     CellPyramid occupied_;
     int out_of_range_ = 0;  ///< vertices outside the cells of the pyramid
-    CellLists lists_;
-    bool divided_ = false;
-    int axis_ = 0;       ///< see divide_table()
-    float place_ = 0;    ///< see divide_table()
+    int shift_ = 0;         ///< right shift that makes the hash of a cell the number of a cache line
     int built_for_ = 0;  ///< number of vertices at the last rebuild()
     float edge_ = 1;     ///< of a cell
     float inverse_edge_ = 1;
