@@ -274,19 +274,4 @@ BENCHMARK(part_counters)->Apply(sizes);
 BENCHMARK(part_moves)->Apply(sizes);
 BENCHMARK(part_topology)->Arg(1000)->Iterations(20)->Unit(benchmark::kMillisecond);
 
-/// Bytes per vertex that the network, the winner search and the counters allocate.
-void memory(benchmark::State& state) {
-    Network network = learned(static_cast<int>(state.range(0)));
-    const WinnerSearch search(network);
-    UtilityCounters utility(0.95, 30);
-    utility.resize(network.slot_count());
-    for (auto _ : state) benchmark::DoNotOptimize(search.bytes());
-    const double n = network.vertex_count();
-    state.counters["network_bytes_per_vertex"] = static_cast<double>(network.bytes()) / n;
-    state.counters["search_bytes_per_vertex"] = static_cast<double>(search.bytes()) / n;
-    state.counters["counters_bytes_per_vertex"] = static_cast<double>(utility.bytes()) / n + sizeof(float);
-    state.counters["learner_bytes_per_vertex"] = sizeof(std::int64_t);
-}
-BENCHMARK(memory)->Apply(sizes);
-
 }  // namespace

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "vcg_core/base/simd.h"
-#include "vcg_core/engine/cell_pyramid.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
@@ -27,15 +26,15 @@ namespace neuralmesh {
 /// share a list. That costs a few distances to vertices of other cells, which cannot win, and saves all
 /// comparisons of keys. The table is rebuilt when the number of vertices has doubled or fallen to a third.
 ///
-/// Memory: 8 to 32 bytes per vertex, and the pyramid. The links of the lists are stored in the network's
+/// Memory: 8 to 32 bytes per vertex. The links of the lists are stored in the network's
 /// vertex records.
 class WinnerSearch {
 public:
     /// Keeps a reference to \p network. O(vertices).
     explicit WinnerSearch(Network& network);
 
-    /// The vertex nearest to \p s. O(1) expected near a mesh with edges of similar length, O(log vertices)
-    /// expected far from it; O(vertices in the cell) where many crowd in one cell.
+    /// The vertex nearest to \p s. O(1) expected near a mesh with edges of similar length, O(vertices) far
+    /// from it and where many crowd in one cell.
     VertexId winner(const vcg::Point3f& s) const;
     /// Prefetch what winner(s) reads first: the heads of lists, then, once those are in the cache, the first
     /// vertex of each list.
@@ -52,15 +51,15 @@ public:
         const FourInts from = cell_of(load_xyz(slot));
         const FourInts to = cell_of(where);
         store_xyz(slot, where);
-        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0) relink(v, from, to);
+        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) == 0) return;
+        unlink(v, bucket_of(from));
+        link(v, bucket_of(to));
     }
     void move(VertexId v, const vcg::Point3f& where) { move(v, Four{where[0], where[1], where[2], 0}); }
     /// Rebuilds the table if the number of vertices has doubled or fallen to a third. O(1), O(vertices) then.
     void rebuild_if_outgrown();
     /// Call after the network was renumbered. O(vertices).
     void rebuild();
-
-    std::size_t bytes() const { return heads_.size() * sizeof(VertexId) + occupied_.bytes(); }
 
 private:
     /// Makes cell coordinates positive: the core's frame is [-0.5, 0.5]^3, start meshes reach beyond it.
@@ -78,20 +77,14 @@ private:
     std::size_t bucket_of(FourInts cell) const { return bucket_of(cell[0], cell[1], cell[2]); }
     void link(VertexId v, std::size_t bucket);
     void unlink(VertexId v, std::size_t bucket);
-    void relink(VertexId v, FourInts from, FourInts to);
-    void enter(FourInts cell);
-    void leave(FourInts cell);
-    // Each returns the nearest vertex as a RankedVertex (see the .cpp): of the cells of a box around s, by
-    // the pyramid, of all vertices.
+    // Each returns the nearest vertex as a RankedVertex (see the .cpp): of the cells of a box around s, of
+    // all vertices.
     std::uint64_t scan_box(const vcg::Point3f& s, float reach) const;
-    std::uint64_t scan_far(const vcg::Point3f& s) const;
     std::uint64_t scan_all(const vcg::Point3f& s) const;
 
     Network& network_;
     std::vector<VertexId> heads_;
-    CellPyramid occupied_;
-    int out_of_range_ = 0;  ///< vertices outside the cells of the pyramid
-    int shift_ = 0;         ///< right shift that makes the hash of a cell the number of a cache line
+    int shift_ = 0;      ///< right shift that makes the hash of a cell the number of a cache line
     int built_for_ = 0;  ///< number of vertices at the last rebuild()
     float edge_ = 1;     ///< of a cell
     float inverse_edge_ = 1;
