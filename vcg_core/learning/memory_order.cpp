@@ -3,8 +3,6 @@
 
 #include "vcg_core/learning/memory_order.h"
 
-#include <algorithm>
-
 #include "vcg_core/mesh/vertex_order.h"
 
 namespace neuralmesh {
@@ -16,21 +14,18 @@ constexpr int kLeastOrdered = 2048;  ///< vertices of a network that outgrows a 
 }  // namespace
 
 void MemoryOrder::update_while_growing() {
-    const int n = state_.network.vertex_count();
-    if (n >= kLeastOrdered && n >= ordered_vertices_ + ordered_vertices_ / 4)
-        reorder(std::min(n / 4, state_.options.grow_to - n));
+    if (state_.network.vertex_count() >= ordered_vertices_ + ordered_vertices_ / 4) reorder();
 }
 
 void MemoryOrder::finish() {
-    if (state_.network.vertex_count() >= kLeastOrdered &&
-        ordered_changes_ != state_.splits + state_.collapses)
-        reorder(0);
+    if (ordered_changes_ != state_.splits + state_.collapses) reorder();
 }
 
-void MemoryOrder::reorder(int free_ids) {
+void MemoryOrder::reorder() {
+    if (state_.network.vertex_count() < kLeastOrdered) return;
     ordered_vertices_ = state_.network.vertex_count();
     ordered_changes_ = state_.splits + state_.collapses;
-    state_.renumber(interleave_free(morton_order(state_.network), free_ids));
+    state_.renumber(morton_order(state_.network));
 }
 
 }  // namespace neuralmesh
