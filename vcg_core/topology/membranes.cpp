@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
+#include "vcg_core/base/connected_groups.h"
 #include "vcg_core/base/logarithm.h"
 
 namespace neuralmesh {
@@ -44,20 +46,10 @@ std::vector<std::vector<int>> Members::other_fans(VertexId v) const {
     std::vector<int> rest;
     for (const int f : surface_.faces_around(v))
         if (!has(f)) rest.push_back(f);
-    std::vector<std::vector<int>> fans;
-    while (!rest.empty()) {
-        std::vector<int> fan{rest.back()};
-        rest.pop_back();
-        for (std::size_t i = 0; i < fan.size(); ++i)
-            for (std::size_t k = 0; k < 3; ++k) {
-                const auto next = std::find(rest.begin(), rest.end(), face_beyond(surface_, fan[i], k));
-                if (next == rest.end()) continue;
-                fan.push_back(*next);
-                rest.erase(next);
-            }
-        fans.push_back(fan);
-    }
-    return fans;
+    return connected_groups(std::move(rest), [&](int f, int g) {
+        return face_beyond(surface_, f, 0) == g || face_beyond(surface_, f, 1) == g ||
+               face_beyond(surface_, f, 2) == g;
+    });
 }
 
 std::vector<int> Members::island(int start, std::size_t most, std::set<int>& mainland) const {
