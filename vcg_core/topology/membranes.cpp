@@ -14,10 +14,8 @@
 namespace neuralmesh {
 namespace {
 
-/// Area of the smallest membrane, in squared mean edges: about five faces.
-constexpr float kLeastArea = 2;
-/// Of one of a pair.
-constexpr float kLeastPart = 0.2F;
+/// Area of the smallest membrane, in squared mean edges.
+constexpr float kLeastArea = 0.2F;
 /// A membrane of more faces is a part of the surface where the density is misjudged.
 constexpr std::size_t kMostFaces = 2000;
 /// Most times that faces are added to make the rims clean.
@@ -186,7 +184,8 @@ bool complete(const Surface& surface, const FaceSignals& signals, Membrane& memb
 }
 
 double least_lack(const Surface& surface) {
-    return portable_log(static_cast<double>(surface.face_count())) + kTubeLack;
+    constexpr double kSure = 7;  // no accident of the sample, see FaceSignals::lack_of()
+    return portable_log(static_cast<double>(surface.face_count())) + kSure;
 }
 
 std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& signals) {
@@ -201,10 +200,9 @@ std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& 
         float area = 0;
         for (const int g : membrane.faces) area += signals.area[g];
         const double lack = signals.lack_of(membrane.faces);
-        if (area < kLeastPart * edge * edge || lack < least / 4 || !complete(surface, signals, membrane))
+        if (area < kLeastArea * edge * edge || lack < least / 4 || !complete(surface, signals, membrane))
             continue;
-        membrane.certain =
-            membrane.rims.size() > 1 ? lack >= kTubeLack : area >= kLeastArea * edge * edge && lack >= least;
+        membrane.certain = lack >= least;
         membranes.push_back(std::move(membrane));
     }
     return membranes;
