@@ -3,6 +3,8 @@
 
 #include "vcg_core/learning/memory_order.h"
 
+#include <algorithm>
+
 #include "vcg_core/mesh/vertex_order.h"
 
 namespace neuralmesh {
@@ -14,18 +16,21 @@ constexpr int kLeastOrdered = 2048;  ///< vertices of a network that outgrows a 
 }  // namespace
 
 void MemoryOrder::update_while_growing() {
-    if (state_.network.vertex_count() >= ordered_vertices_ + ordered_vertices_ / 4) reorder();
+    const int n = state_.network.vertex_count();
+    if (n >= kLeastOrdered && n >= ordered_vertices_ + ordered_vertices_ / 4)
+        reorder(std::min(n / 4, state_.options.grow_to - n));
 }
 
 void MemoryOrder::finish() {
-    if (ordered_changes_ != state_.splits + state_.collapses) reorder();
+    if (state_.network.vertex_count() >= kLeastOrdered &&
+        ordered_changes_ != state_.splits + state_.collapses)
+        reorder(0);
 }
 
-void MemoryOrder::reorder() {
-    if (state_.network.vertex_count() < kLeastOrdered) return;
+void MemoryOrder::reorder(int free_ids) {
     ordered_vertices_ = state_.network.vertex_count();
     ordered_changes_ = state_.splits + state_.collapses;
-    state_.renumber(morton_order(state_.network));
+    state_.renumber(interleave_free(morton_order(state_.network), free_ids));
 }
 
 }  // namespace neuralmesh

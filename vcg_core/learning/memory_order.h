@@ -19,14 +19,15 @@ public:
     /// Keeps a reference to \p state.
     explicit MemoryOrder(LearningState& state) : state_(state) {}
 
-    /// Renumbers whenever the network has grown by a quarter. O(n log n) then, O(1) otherwise.
+    /// Renumbers whenever the network has grown by a quarter, and leaves free ids between the vertices for
+    /// new ones. O(n log n) then, O(1) otherwise.
     void update_while_growing();
-    /// Renumbers if there were splits or collapses since the last time. Call it before a long phase without
-    /// them. O(n log n).
+    /// Renumbers, without free ids, if there were splits or collapses since the last time. Call it before a
+    /// long phase without them. O(n log n).
     void finish();
 
 private:
-    void reorder();
+    void reorder(int free_ids);
 
     LearningState& state_;
     int ordered_vertices_ = 0;           ///< when last renumbered

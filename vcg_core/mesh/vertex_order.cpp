@@ -36,4 +36,17 @@ std::vector<VertexId> morton_order(const Network& network) {
     return order;
 }
 
+std::vector<VertexId> interleave_free(const std::vector<VertexId>& ids, int count) {
+    std::vector<VertexId> result;
+    result.reserve(ids.size() + static_cast<std::size_t>(count));
+    const auto size = static_cast<std::int64_t>(ids.size());
+    std::int64_t i = 0;
+    for (const VertexId v : ids) {
+        result.push_back(v);
+        if ((i + 1) * count / size > i * count / size) result.push_back(-1);
+        ++i;
+    }
+    return result;
+}
+
 }  // namespace neuralmesh

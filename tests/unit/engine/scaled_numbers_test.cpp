@@ -66,10 +66,10 @@ TEST(ScaledNumbers, RenumberedAreTheSameUnderNewIndices) {
     numbers.resize(3);
     for (int i = 0; i < 3; ++i) numbers.add(i, i + 1);
     numbers *= 0.5;
-    numbers.renumber({2, 0, 1});
-    ASSERT_EQ(numbers.size(), 3);
-    const double expected[] = {1.5, 0.5, 1};
-    for (int i = 0; i < 3; ++i) EXPECT_DOUBLE_EQ(numbers.value(i), expected[i]);
+    numbers.renumber({2, -1, 0, 1});
+    ASSERT_EQ(numbers.size(), 4);
+    const double expected[] = {1.5, 0, 0.5, 1};
+    for (int i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(numbers.value(i), expected[i]);
 }
 
 }  // namespace
