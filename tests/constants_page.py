@@ -21,19 +21,19 @@ PAGE = "vcg_core/what_steers_the_result.md"
 INERT = [
     (r":k(\w*Chunk|\w*AtATime|Lanes|Packets|InBatch|Batch|MostChunks)$",
      "how work is divided between threads and lanes"),
-    (r"base/(thread_team|platform|parallel_for)\.|engine/slab|basic_step_batch\.cpp:"
-     r"kLeastPerThread|:kLeastOrdered$|:kLeastOutOfCache$|:k\w*Ahead$|:kPrefetchDistance$|:kTypicalSignals$|"
+    (r"base/(thread_team|platform|parallel_for)\.|engine/basic_step_batch\.cpp:"
+     r"kLeastPerThread|:kLeastOrdered$|:kLeastOutOfCache$|:k\w*Ahead$|:kPrefetchDistance$|"
      r"base/cheapest_first\.h:", "speed: the same result"),
-    (r"engine/(winner_search|cell_pyramid|tournament|scaled_numbers|eight_steps)|mesh/(face_tree|face_packets|vertex_order|"
-     r"self_crossings)|target/(nearest_points|alias_table)|shell/(clearance|lattice_rows)",
+    (r"engine/(winner_search|tournament|scaled_numbers|eight_steps)|mesh/(face_tree|face_packets|vertex_order)|"
+     r"target/(nearest_points|alias_table)|shell/(clearance|lattice_rows)",
      "a search or an order: an exact result, found faster"),
     (r"base/(logarithm|random|packed_normal|even_mesh)\.h:|:k(PiF|White|DegreesPerRadian|DeviationPerMedian|UnitBallVolume|"
      r"Ln2|Pi)$|:kWithin30Degrees$", "mathematics"),
     (r":k(None|NoVertex|NoNormal|Sentinel|FreeSlot|Nobody|Outside|Zero|End|Never|Unset|Unlimited|Far|Middle|Max)$",
      "a mark for nothing"),
-    (r":k(Tiny|Rounding|LeastRounding|FarRounding|SquaredRounding|LeastSize|Ridge|Collinear|Margin)$|"
-     r"mesh/exact_cuts|local_quadric\.cpp:kLine", "rounding, and division by nothing"),
-    (r":k(MaxValence|HighestValence|Stride|Places|WordsAround|Leaf|LeafFaces|Branch|Stack|FilterBits|MantissaBits|ExponentBias|"
+    (r":k(Tiny|Rounding|LeastRounding|SquaredRounding|LeastSize|Ridge|Collinear|Margin)$|"
+     r"mesh/self_crossings|local_quadric\.cpp:kLine", "rounding, and division by nothing"),
+    (r":k(MaxValence|HighestValence|Stride|Places|WordsAround|Leaf|LeafFaces|Branch|Stack|FilterBits|"
      r"MostBits|MaxNodesPerSide|MaxSquaredDepth|MostSignals|MostParts)$", "sizes of arrays and numbers"),
     (r":k(Prepared|Learned|ShellMade|ReportEvery)$", "shares of the progress"),
     (r"reconstruct\.cpp:kDistanceSamples|settings\.cpp:|mesh_io\.cpp:", "the report, or the range of a parameter"),

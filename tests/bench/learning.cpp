@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Signals per second of the learning loop, on one thread and on two, and bytes per vertex. The cloud is
-// 200,000 points of a bumpy torus, made here.
+// Signals per second of the learning loop, on one thread and on two. The cloud is 200,000 points of a bumpy torus, made here.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <map>
 #include <vector>
 
-#include "vcg_core/engine/winner_search.h"
 #include "vcg_core/learning/learner.h"
-#include "vcg_core/learning/utility_counter.h"
 
 namespace {
 
@@ -109,20 +105,5 @@ void growth(benchmark::State& state) {
     per_signal(state, count);
 }
 BENCHMARK(growth)->ArgsProduct({{1000, 10000, 100000}, {1, 2}})->Unit(benchmark::kMillisecond)->UseRealTime();
-
-/// Bytes per vertex that the network, the winner search and the counters allocate.
-void memory(benchmark::State& state) {
-    Network network = learned(static_cast<int>(state.range(0)));
-    const WinnerSearch search(network);
-    UtilityCounters utility(0.95, 30);
-    utility.resize(network.slot_count());
-    for (auto _ : state) benchmark::DoNotOptimize(search.bytes());
-    const double n = network.vertex_count();
-    state.counters["network_bytes_per_vertex"] = static_cast<double>(network.bytes()) / n;
-    state.counters["search_bytes_per_vertex"] = static_cast<double>(search.bytes()) / n;
-    state.counters["counters_bytes_per_vertex"] = static_cast<double>(utility.bytes()) / n + sizeof(float);
-    state.counters["learner_bytes_per_vertex"] = sizeof(std::int64_t);
-}
-BENCHMARK(memory)->Arg(1000)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -32,21 +32,18 @@ void add_to(EightVectors& v, int lane, const vcg::Point3f& d) {
 
 /// The loops over the lanes, each compiled for every instruction set.
 struct EightSteps::Kernels {
-    static constexpr int kOuter = 4;    ///< outer vertices of a star that are loaded without a branch
     static constexpr int kSkipped = 2;  ///< entries of the ring of r_i before o_1: the winner and r_(i-1)
 
-    struct OuterPoints {
-        Four points[kOuter][kLanes];
-        EightInts counts;  ///< of outer vertices
+    /// The rings of a ring vertex in all lanes, with the places of the first of their outer vertices.
+    struct OuterVertices {
+        const Ring* rings[kLanes];
+        int first[kLanes];
+        EightInts counts;
     };
 
-    NEURALMESH_ALWAYS_INLINE static int load_outer(EightSteps& p, const Network& network, int i,
-                                                   OuterPoints& outer);
-    NEURALMESH_ALWAYS_INLINE static void sum_star(const OuterPoints& outer, const EightVectors& origin,
-                                                  Star& star);
+    NEURALMESH_ALWAYS_INLINE static void load_outer(const EightSteps& p, const VertexRecord* slots,
+                                                    const OuterVertices& outer, int m, EightVectors& to);
     NEURALMESH_ALWAYS_INLINE static void gather_star(EightSteps& p, const Network& network, int i);
-    static void sum_large_star(const EightSteps& p, const VertexRecord* slots, const Ring& ring, int lane,
-                               Star& star);
     NEURALMESH_ALWAYS_INLINE static void smooth_vertex(const Star& star, const Eight& rate,
                                                        const EightVectors* from, EightVectors& to);
     static void gather_along_boundary(EightSteps& p, const Network& network, int lane);
@@ -106,83 +103,47 @@ void EightSteps::Kernels::smooth_along_boundary(EightSteps& p, float smoothing_r
     close_cycle(p.ring_now_, p.valence_);
 }
 
-/// Loads the first kOuter outer vertices of ring vertex i of every lane. \return the largest number of outer
-/// vertices of a lane.
-int EightSteps::Kernels::load_outer(EightSteps& p, const Network& network, int i, OuterPoints& outer) {
-    const VertexRecord* slots = network.slots();
-    int most = 0;
+/// Outer vertex \p m of every lane, or the last of a lane that has fewer. Without outer vertices, r_(i+1): it
+/// serves as o_1 of the area vector, not of the mean.
+void EightSteps::Kernels::load_outer(const EightSteps& p, const VertexRecord* slots,
+                                     const OuterVertices& outer, int m, EightVectors& to) {
+    Four points[kLanes];
     for (int lane = 0; lane < kLanes; ++lane) {
-        const Ring& ring = network.ring((*p.rings_[lane])[i]);
-        // The number of outer vertices cannot be predicted, so no branch depends on it: this reads kOuter
-        // entries of the padded ring, of which sum_star() ignores those past the last outer vertex.
-        const VertexId* first =
-            ring.neighbours.data() +
-            std::min(ring.find_existing(p.winners_[lane]) + kSkipped, Ring::kMaxValence - kOuter);
-        for (int m = 0; m < kOuter; ++m) outer.points[m][lane] = load_raw(&slots[first[m]]);
-        outer.counts[lane] = ring.valence - 3;
-        p.stars_[i].inner[lane] = static_cast<std::int32_t>(ring.open) - 1;
-        most = std::max(most, ring.valence - 3);
+        const Ring& ring = *outer.rings[lane];
+        const int i = outer.first[lane] + std::max(std::min(m, outer.counts[lane] - 1), 0);
+        points[lane] = load_raw(&slots[ring[i < ring.valence ? i : i - ring.valence]]);
     }
-    return most;
-}
-
-void EightSteps::Kernels::sum_star(const OuterPoints& outer, const EightVectors& origin, Star& star) {
-    convert(outer.counts + 3, star.inverse_valence);
-    star.inverse_valence = 1 / star.inverse_valence;
-    star.area = EightVectors{};
-    // Without outer vertices, points[0] is r_(i+1): it serves as o_1 of the area vector, not of the mean.
-    transpose(outer.points[0], star.first);
-    subtract(star.first, origin);
-    star.last = star.first;
-    star.sum = star.first;
-    keep_where(outer.counts > 0, star.sum);
-    for (int m = 1; m < kOuter; ++m) {
-        EightVectors o;
-        transpose(outer.points[m], o);
-        subtract(o, origin);
-        const EightInts exists = outer.counts > m;
-        choose(exists, o, star.last, o);  // a repeated point adds no area
-        add_cross(star.area, star.last, o);
-        star.last = o;
-        keep_where(exists, o);
-        add(star.sum, o);
-    }
+    transpose(points, to);
+    subtract(to, p.winner_before_);
 }
 
 void EightSteps::Kernels::gather_star(EightSteps& p, const Network& network, int i) {
-    OuterPoints outer;
-    const int most = load_outer(p, network, i, outer);
-    sum_star(outer, p.winner_before_, p.stars_[i]);
-    if (most <= kOuter) return;
-    for (int lane = 0; lane < kLanes; ++lane)
-        if (outer.counts[lane] > kOuter)
-            sum_large_star(p, network.slots(), network.ring((*p.rings_[lane])[i]), lane, p.stars_[i]);
-}
-
-/// sum_star() for one lane with more than kOuter outer vertices.
-void EightSteps::Kernels::sum_large_star(const EightSteps& p, const VertexRecord* slots, const Ring& ring,
-                                         int lane, Star& star) {
-    const vcg::Point3f origin(p.winner_before_.x[lane], p.winner_before_.y[lane], p.winner_before_.z[lane]);
-    const int first = ring.find_existing(p.winners_[lane]) + kSkipped;
-    const auto outer = [&](int m) { return slots[ring[(first + m) % ring.valence]].point() - origin; };
-    vcg::Point3f last = outer(0);
-    vcg::Point3f sum = last;
-    vcg::Point3f area(0, 0, 0);
-    for (int m = 1; m < ring.valence - 3; ++m) {
-        const vcg::Point3f o = outer(m);
-        sum += o;
-        area += last ^ o;
-        last = o;
+    Star& star = p.stars_[i];
+    OuterVertices outer;
+    int most = 1;
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const Ring& ring = network.ring((*p.rings_[lane])[i]);
+        outer.rings[lane] = &ring;
+        outer.first[lane] = ring.find_existing(p.winners_[lane]) + kSkipped;
+        outer.counts[lane] = ring.valence - 3;
+        star.inner[lane] = static_cast<std::int32_t>(ring.open) - 1;
+        most = std::max(most, ring.valence - 3);
     }
-    const auto store = [lane](EightVectors& to, const vcg::Point3f& v) {
-        to.x[lane] = v[0];
-        to.y[lane] = v[1];
-        to.z[lane] = v[2];
-    };
-    store(star.first, outer(0));
-    store(star.last, last);
-    store(star.sum, sum);
-    store(star.area, area);
+    convert(outer.counts + 3, star.inverse_valence);
+    star.inverse_valence = 1 / star.inverse_valence;
+    star.area = EightVectors{};
+    load_outer(p, network.slots(), outer, 0, star.first);
+    star.last = star.first;
+    star.sum = star.first;
+    keep_where(outer.counts > 0, star.sum);
+    for (int m = 1; m < most; ++m) {
+        EightVectors o;
+        load_outer(p, network.slots(), outer, m, o);
+        add_cross(star.area, star.last, o);  // a repeated point adds no area
+        star.last = o;
+        keep_where(outer.counts > m, o);
+        add(star.sum, o);
+    }
 }
 
 NEURALMESH_MULTIVERSIONED void EightSteps::Kernels::move_winners(EightSteps& p, const vcg::Point3f* signals,

@@ -4,12 +4,13 @@
 // An array of numbers that is multiplied by a factor in O(1), without overflow or underflow.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
-#include "vcg_core/base/bits.h"
 #include "vcg_core/base/indexed.h"
 #include "vcg_core/base/permuted.h"
 #include "vcg_core/base/platform.h"
@@ -30,21 +31,8 @@ class ScaledNumbers {
 public:
     static constexpr double kZero = -1e299;  ///< key of the number 0: below all others
 
-    /// A reference to number i, for numbers[i] += amount.
-    class Entry {
-    public:
-        Entry(ScaledNumbers& numbers, int i) : numbers_(numbers), i_(i) {}
-        /// \p amount >= 0. O(1).
-        void operator+=(double amount) const {
-            numbers_.store(i_, numbers_.unscaled(i_) + amount * numbers_.inverse_scale_);
-        }
-
-    private:
-        ScaledNumbers& numbers_;
-        int i_;
-    };
-    Entry operator[](int i) { return {*this, i}; }
-
+    /// Adds \p amount, at least 0, to number i. O(1).
+    void add(int i, double amount) { store(i, unscaled(i) + amount * inverse_scale_); }
     /// Multiplies all numbers by \p factor, in (0, 1]. Amortised O(1).
     void operator*=(double factor) {
         inverse_scale_ /= factor;
@@ -71,43 +59,23 @@ public:
     /// Number i becomes that of \p order[i], or 0 where that is -1. O(n).
     void renumber(const std::vector<std::int32_t>& order) { keys_ = permuted(keys_, order, kZero); }
     void prefetch(int i) const { prefetch_for_write(&keys_[i]); }
-    std::size_t bytes() const { return keys_.vector().size() * sizeof(double); }
 
 private:
-    static constexpr std::int64_t kExponentBias = 1023;
-    static constexpr int kMantissaBits = 52;
-
-    /// 2^exponent; 0 below the range of normal numbers.
-    static double power_of_two(std::int64_t exponent) {
-        return exponent < 1 - kExponentBias
-                   ? 0
-                   : bit_cast<double>(static_cast<std::uint64_t>(exponent + kExponentBias) << kMantissaBits);
-    }
-    /// The key of value x 2^exponent. \p value must be a normal positive number.
-    static double key_of(double value, double exponent) {
-        const auto bits = bit_cast<std::uint64_t>(value);
-        const std::int64_t own = static_cast<std::int64_t>(bits >> kMantissaBits) - kExponentBias;
-        const std::uint64_t mantissa = bits & ((std::uint64_t{1} << kMantissaBits) - 1);
-        return exponent + static_cast<double>(own) +
-               (bit_cast<double>(mantissa | static_cast<std::uint64_t>(kExponentBias) << kMantissaBits) - 1);
-    }
-    /// The largest integer not above x, for |x| < 2^62.
-    static std::int64_t floor_of(double x) {
-        const auto truncated = static_cast<std::int64_t>(x);
-        return truncated - (static_cast<double>(truncated) > x ? 1 : 0);
-    }
-
     /// Number i times inverse_scale_.
     double unscaled(int i) const {
         const double key = keys_[i];
         if (key == kZero) return 0;
-        const std::int64_t exponent = floor_of(key);
-        const double mantissa = 1 + (key - static_cast<double>(exponent));
-        return mantissa * power_of_two(exponent - static_cast<std::int64_t>(inverse_scale_exponent_));
+        constexpr double kBelowAll = -2000;  // exponents of double
+        const double exponent = std::floor(key);
+        return std::ldexp(1 + (key - exponent),
+                          static_cast<int>(std::max(exponent - inverse_scale_exponent_, kBelowAll)));
     }
     void store(int i, double unscaled) {
-        keys_[i] = unscaled >= std::numeric_limits<double>::min() ? key_of(unscaled, inverse_scale_exponent_)
-                                                                  : kZero;
+        int exponent = 0;
+        const double mantissa = 2 * std::frexp(unscaled, &exponent);
+        keys_[i] = unscaled >= std::numeric_limits<double>::min()
+                       ? inverse_scale_exponent_ + (exponent - 1) + (mantissa - 1)
+                       : kZero;
     }
 
     /// 1 / scale = inverse_scale_ x 2^inverse_scale_exponent_, inverse_scale_ in [1, 2).

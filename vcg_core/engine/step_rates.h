@@ -8,14 +8,9 @@
 
 namespace neuralmesh {
 
-/// Neighbours along a boundary are smoothed by this many times alpha_L. Chosen by open_table.py.
-constexpr float kBoundarySteps = 1;
-
 /// The rate at which the winner's two neighbours along a boundary are smoothed. If both move by d, L(v) -
 /// L(w), which moves them, falls by 2 d: 0.5 uses it up, and with more they would swing.
-inline float rate_along_boundary(float smoothing_rate) {
-    return std::min(0.5F, kBoundarySteps * smoothing_rate);
-}
+inline float rate_along_boundary(float smoothing_rate) { return std::min(0.5F, smoothing_rate); }
 
 /// By the paper's symbols.
 struct StepRates {

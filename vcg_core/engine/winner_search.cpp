@@ -22,12 +22,8 @@ constexpr float kRounding = 1e-3F;
 /// The same as a distance, which is larger in fine grids: within the frame, adding kOffset and multiplying by
 /// the inverse edge each move a border by up to 2.5e-7, and a box has two borders.
 constexpr float kLeastRounding = 1.2e-6F;
-/// Bound on the rounding far from the frame, in cells: float has fewer digits there.
-constexpr float kFarRounding = 0.1F;
-/// If a box is more cells wide than this, a search through the pyramid is faster.
-constexpr float kMostAcross = 4;
-/// With fewer vertices, a search through all of them is faster than one through the pyramid.
-constexpr int kFewVertices = 1500;
+/// Of boxes around a signal, in cells: beyond, a search through all vertices is hardly slower.
+constexpr float kMostReach = 4;
 
 /// Squared distance of the network's sentinel, or more.
 constexpr float kFar = 1e30F;
@@ -55,35 +51,28 @@ VertexId vertex_of(RankedVertex r) { return static_cast<VertexId>(r & 0xffffffff
 /// Index of the list head of a cell, or of eight cells. The heads of 4 x 2 x 2 neighbouring cells share a
 /// cache line.
 template <class Ints>
-NEURALMESH_ALWAYS_INLINE void bucket_of(const Ints& x, const Ints& y, const Ints& z,
-                                        const WinnerSearch::CellLists& lists, Ints& bucket) {
+NEURALMESH_ALWAYS_INLINE void bucket_of(const Ints& x, const Ints& y, const Ints& z, int shift,
+                                        Ints& bucket) {
     const Ints hash = (x >> 2) * 0x9e3779b1u ^ (y >> 1) * 0x85ebca77u ^ (z >> 1) * 0xc2b2ae3du;
-    Ints line = (hash * 0x27d4eb2fu) >> lists.shift;
-    if (lists.beyond != 0) {
-        const Ints along = (x & lists.along_x) | (y & lists.along_y) | (z & lists.along_z);
-        // The highest bit of the difference of two numbers below 2^31: set where the cell is not beyond.
-        line += (((along - lists.first_beyond) >> 31) - 1u) & lists.beyond;
-    }
+    const Ints line = (hash * 0x27d4eb2fu) >> shift;
     bucket = line << 4 | (x & 3u) | (y & 1u) << 2 | (z & 1u) << 3;
 }
 
 /// The list heads of the 2 x 2 x 2 cells from \p low on.
-NEURALMESH_ALWAYS_INLINE void eight_buckets(FourInts low, const WinnerSearch::CellLists& lists,
-                                            EightWords& buckets) {
+NEURALMESH_ALWAYS_INLINE void eight_buckets(FourInts low, int shift, EightWords& buckets) {
     const EightWords one_x = {0, 1, 0, 1, 0, 1, 0, 1};
     const EightWords one_y = {0, 0, 1, 1, 0, 0, 1, 1};
     const EightWords one_z = {0, 0, 0, 0, 1, 1, 1, 1};
     bucket_of(one_x + static_cast<std::uint32_t>(low[0]), one_y + static_cast<std::uint32_t>(low[1]),
-              one_z + static_cast<std::uint32_t>(low[2]), lists, buckets);
+              one_z + static_cast<std::uint32_t>(low[2]), shift, buckets);
 }
 
 /// The nearest vertex in the 2 x 2 x 2 cells from \p low on. Walks the eight lists in parallel, to the end of
 /// the longest, without a branch per vertex: which cells are empty cannot be predicted.
 NEURALMESH_MULTIVERSIONED RankedVertex scan_eight_cells(const VertexRecord* slots, const VertexId* heads,
-                                                        const WinnerSearch::CellLists& lists, FourInts low,
-                                                        const vcg::Point3f& s) {
+                                                        int shift, FourInts low, const vcg::Point3f& s) {
     EightWords buckets;
-    eight_buckets(low, lists, buckets);
+    eight_buckets(low, shift, buckets);
     std::uint32_t b[8];
     std::memcpy(b, &buckets, sizeof b);
     EightInts ids = {heads[b[0]], heads[b[1]], heads[b[2]], heads[b[3]],
@@ -151,36 +140,19 @@ void WinnerSearch::rebuild() {
     edge_ = std::max(kCellEdge * typical_edge_length(network_), 1e-5F);
     inverse_edge_ = 1 / edge_;
     std::size_t lines = 4;
-    lists_ = CellLists();
-    lists_.shift = 30;
+    shift_ = 30;
     while (16 * lines < 4 * static_cast<std::size_t>(built_for_)) {
         lines *= 2;
-        --lists_.shift;
-    }
-    if (divided_) {
-        // Each side of the plane has half of the table.
-        ++lists_.shift;
-        lists_.beyond = static_cast<std::uint32_t>(lines / 2);
-        (axis_ == 0 ? lists_.along_x : axis_ == 1 ? lists_.along_y : lists_.along_z) = ~0u;
-        lists_.first_beyond = static_cast<std::uint32_t>((place_ + kOffset) * inverse_edge_);
+        --shift_;
     }
     heads_.assign(16 * lines, -1);
-    occupied_ = CellPyramid(static_cast<std::int32_t>(2 * kOffset * inverse_edge_) + 1);
-    out_of_range_ = 0;
     for (const VertexId v : network_.vertices()) add(v);
-}
-
-void WinnerSearch::divide_table(int axis, float place) {
-    divided_ = true;
-    axis_ = axis;
-    place_ = std::clamp(place, -1.0F, 1.0F);
-    rebuild();
 }
 
 std::size_t WinnerSearch::bucket_of(std::int32_t x, std::int32_t y, std::int32_t z) const {
     std::uint32_t bucket = 0;
     neuralmesh::bucket_of(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                          static_cast<std::uint32_t>(z), lists_, bucket);
+                          static_cast<std::uint32_t>(z), shift_, bucket);
     return bucket;
 }
 
@@ -196,44 +168,9 @@ void WinnerSearch::unlink(VertexId v, std::size_t bucket) {
     *link = slots[v].link;
 }
 
-void WinnerSearch::enter(FourInts cell) {
-    if (occupied_.holds(cell)) {
-        occupied_.add(cell);
-    } else {
-        ++out_of_range_;
-    }
-}
+void WinnerSearch::add(VertexId v) { link(v, bucket_of(cell_of(load_xyz(&network_.slots()[v])))); }
 
-void WinnerSearch::leave(FourInts cell) {
-    if (occupied_.holds(cell)) {
-        occupied_.remove(cell);
-    } else {
-        --out_of_range_;
-    }
-}
-
-void WinnerSearch::add(VertexId v) {
-    const FourInts cell = cell_of(load_xyz(&network_.slots()[v]));
-    link(v, bucket_of(cell));
-    enter(cell);
-}
-
-void WinnerSearch::remove(VertexId v) {
-    const FourInts cell = cell_of(load_xyz(&network_.slots()[v]));
-    unlink(v, bucket_of(cell));
-    leave(cell);
-}
-
-void WinnerSearch::relink(VertexId v, FourInts from, FourInts to) {
-    unlink(v, bucket_of(from));
-    link(v, bucket_of(to));
-    if (occupied_.holds(from) && occupied_.holds(to)) {
-        occupied_.move(from, to);
-    } else {
-        leave(from);
-        enter(to);
-    }
-}
+void WinnerSearch::remove(VertexId v) { unlink(v, bucket_of(cell_of(load_xyz(&network_.slots()[v])))); }
 
 void WinnerSearch::prefetch_heads(const vcg::Point3f& s) const {
     const FourInts low = first_of_nearest(s);
@@ -243,7 +180,7 @@ void WinnerSearch::prefetch_heads(const vcg::Point3f& s) const {
 
 void WinnerSearch::prefetch_vertices(const vcg::Point3f& s) const {
     EightWords buckets;
-    eight_buckets(first_of_nearest(s), lists_, buckets);
+    eight_buckets(first_of_nearest(s), shift_, buckets);
     for (int i = 0; i < 8; ++i) prefetch(network_.slots() + heads_[buckets[i]]);
 }
 
@@ -260,21 +197,6 @@ std::uint64_t WinnerSearch::scan_box(const vcg::Point3f& s, float reach) const {
     return best;
 }
 
-std::uint64_t WinnerSearch::scan_far(const vcg::Point3f& s) const {
-    const VertexRecord* slots = network_.slots();
-    RankedVertex best = kNoVertex;
-    const float to_cells = inverse_edge_ * inverse_edge_;
-    occupied_.nearest({(s[0] + kOffset) * inverse_edge_, (s[1] + kOffset) * inverse_edge_,
-                       (s[2] + kOffset) * inverse_edge_},
-                      kFarRounding, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
-                          for (VertexId v = heads_[bucket_of(x, y, z)]; v >= 0; v = slots[v].link)
-                              best = std::min(best, ranked(slots[v], v, s));
-                          // Not less: a vertex at the same distance with a smaller id may follow.
-                          return squared_distance_of(best) * to_cells * (1 + kRounding * kRounding);
-                      });
-    return best;
-}
-
 std::uint64_t WinnerSearch::scan_all(const vcg::Point3f& s) const {
     const VertexRecord* slots = network_.slots();
     RankedVertex best = kNoVertex;
@@ -283,17 +205,16 @@ std::uint64_t WinnerSearch::scan_all(const vcg::Point3f& s) const {
 }
 
 VertexId WinnerSearch::winner(const vcg::Point3f& s) const {
-    RankedVertex best = scan_eight_cells(network_.slots(), heads_.data(), lists_, first_of_nearest(s), s);
+    RankedVertex best = scan_eight_cells(network_.slots(), heads_.data(), shift_, first_of_nearest(s), s);
     const float rounding = std::max(kRounding * edge_, kLeastRounding);
     const float sure = 0.5F * edge_ - rounding;
     if (squared_distance_of(best) < sure * sure) return vertex_of(best);
-    if (best == kNoVertex) best = scan_box(s, 2 * edge_);
-    if (best != kNoVertex) {
-        const float reach = std::sqrt(squared_distance_of(best)) + rounding;
-        if (2 * reach * inverse_edge_ < kMostAcross) return vertex_of(scan_box(s, reach));
+    for (float reach = 2 * edge_; reach <= kMostReach * edge_; reach *= 2) {
+        const float to_best = std::sqrt(squared_distance_of(best)) + rounding;
+        best = std::min(best, scan_box(s, std::min(reach, to_best)));
+        if (std::sqrt(squared_distance_of(best)) + rounding <= reach) return vertex_of(best);
     }
-    const bool few = network_.slot_count() < kFewVertices;
-    return vertex_of(few || out_of_range_ > 0 ? scan_all(s) : scan_far(s));
+    return vertex_of(scan_all(s));
 }
 
 }  // namespace neuralmesh

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "vcg_core/base/simd.h"
-#include "vcg_core/engine/cell_pyramid.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
@@ -27,27 +26,15 @@ namespace neuralmesh {
 /// share a list. That costs a few distances to vertices of other cells, which cannot win, and saves all
 /// comparisons of keys. The table is rebuilt when the number of vertices has doubled or fallen to a third.
 ///
-/// Memory: 8 to 32 bytes per vertex, and the pyramid. The links of the lists are stored in the network's
+/// Memory: 8 to 32 bytes per vertex. The links of the lists are stored in the network's
 /// vertex records.
 class WinnerSearch {
 public:
-    /// Which list a cell belongs to. After divide_table(), cells beyond its plane have the second half of the
-    /// table.
-    struct CellLists {
-        int shift = 0;             ///< right shift that makes a hash the number of a cache line
-        std::uint32_t beyond = 0;  ///< added to that number for a cell beyond the plane
-        /// All ones for the axis across which the plane lies, else 0.
-        std::uint32_t along_x = 0;
-        std::uint32_t along_y = 0;
-        std::uint32_t along_z = 0;
-        std::uint32_t first_beyond = 0;  ///< the first cell coordinate beyond the plane
-    };
-
     /// Keeps a reference to \p network. O(vertices).
     explicit WinnerSearch(Network& network);
 
-    /// The vertex nearest to \p s. O(1) expected near a mesh with edges of similar length, O(log vertices)
-    /// expected far from it; O(vertices in the cell) where many crowd in one cell.
+    /// The vertex nearest to \p s. O(1) expected near a mesh with edges of similar length, O(vertices) far
+    /// from it and where many crowd in one cell.
     VertexId winner(const vcg::Point3f& s) const;
     /// Prefetch what winner(s) reads first: the heads of lists, then, once those are in the cache, the first
     /// vertex of each list.
@@ -58,43 +45,21 @@ public:
     void add(VertexId v);
     /// Call before \p v is removed from the network. O(1) expected.
     void remove(VertexId v);
-    /// A vertex whose position has moved to another cell while its list has not changed yet.
-    struct CellChange {
-        FourInts from;
-        FourInts to;
-        VertexId vertex;
-    };
-    /// Moves \p v to \p where (x, y, z, 0) in the network. If it leaves its cell, only adds that to \p
-    /// cell_changes, so different threads may move different vertices at the same time. Pass these to apply()
-    /// before the next search. O(1).
-    void move(VertexId v, Four where, std::vector<CellChange>& cell_changes) {
+    /// Moves \p v to \p where (x, y, z, 0), in the network and in the table. O(1) expected.
+    void move(VertexId v, Four where) {
         VertexRecord* slot = &network_.slots()[v];
         const FourInts from = cell_of(load_xyz(slot));
         const FourInts to = cell_of(where);
-        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0)
-            cell_changes.push_back({from, to, v});
         store_xyz(slot, where);
+        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) == 0) return;
+        unlink(v, bucket_of(from));
+        link(v, bucket_of(to));
     }
-    /// Moves vertices between lists. The changes of one vertex must come in their order. O(1) expected each.
-    void apply(const std::vector<CellChange>& cell_changes) {
-        for (const CellChange& c : cell_changes) relink(c.vertex, c.from, c.to);
-    }
-    /// Moves \p v to \p where, in the network and in the table. O(1) expected.
-    void move(VertexId v, const vcg::Point3f& where) {
-        std::vector<CellChange> cell_changes;
-        move(v, Four{where[0], where[1], where[2], 0}, cell_changes);
-        apply(cell_changes);
-    }
-    /// Gives cells on different sides of the plane x[axis] = \p place different lists, from now on. For two
-    /// threads, one on each side: in a shared list, each would read vertices that the other moves.
-    /// O(vertices).
-    void divide_table(int axis, float place);
+    void move(VertexId v, const vcg::Point3f& where) { move(v, Four{where[0], where[1], where[2], 0}); }
     /// Rebuilds the table if the number of vertices has doubled or fallen to a third. O(1), O(vertices) then.
     void rebuild_if_outgrown();
     /// Call after the network was renumbered. O(vertices).
     void rebuild();
-
-    std::size_t bytes() const { return heads_.size() * sizeof(VertexId) + occupied_.bytes(); }
 
 private:
     /// Makes cell coordinates positive: the core's frame is [-0.5, 0.5]^3, start meshes reach beyond it.
@@ -112,23 +77,14 @@ private:
     std::size_t bucket_of(FourInts cell) const { return bucket_of(cell[0], cell[1], cell[2]); }
     void link(VertexId v, std::size_t bucket);
     void unlink(VertexId v, std::size_t bucket);
-    void relink(VertexId v, FourInts from, FourInts to);
-    void enter(FourInts cell);
-    void leave(FourInts cell);
-    // Each returns the nearest vertex as a RankedVertex (see the .cpp): of the cells of a box around s, by
-    // the pyramid, of all vertices.
+    // Each returns the nearest vertex as a RankedVertex (see the .cpp): of the cells of a box around s, of
+    // all vertices.
     std::uint64_t scan_box(const vcg::Point3f& s, float reach) const;
-    std::uint64_t scan_far(const vcg::Point3f& s) const;
     std::uint64_t scan_all(const vcg::Point3f& s) const;
 
     Network& network_;
     std::vector<VertexId> heads_;
-    CellPyramid occupied_;
-    int out_of_range_ = 0;  ///< vertices outside the cells of the pyramid
-    CellLists lists_;
-    bool divided_ = false;
-    int axis_ = 0;       ///< see divide_table()
-    float place_ = 0;    ///< see divide_table()
+    int shift_ = 0;      ///< right shift that makes the hash of a cell the number of a cache line
     int built_for_ = 0;  ///< number of vertices at the last rebuild()
     float edge_ = 1;     ///< of a cell
     float inverse_edge_ = 1;

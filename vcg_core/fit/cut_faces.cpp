@@ -10,8 +10,6 @@
 #include <set>
 #include <utility>
 
-#include "vcg_core/mesh/exact_cuts.h"
-
 namespace neuralmesh {
 
 namespace {
@@ -198,7 +196,6 @@ int remove_cut_faces(Network& network, Removal most, std::vector<SelfCrossing>& 
                                               Removal::inner_faces};
     const int most_faces = network.face_count() / kKeptPerGone;
     Surface surface(network);
-    drop_apparent(surface, crossings);
     int removed = 0;
     for (std::size_t level = 0; level < kInOrder.size() && kInOrder[level] <= most && !crossings.empty();) {
         const int now = remove_once(network, crossings, kInOrder[level], most_faces - removed);
@@ -207,7 +204,6 @@ int remove_cut_faces(Network& network, Removal most, std::vector<SelfCrossing>& 
         if (now == 0) continue;
         const Surface before = std::exchange(surface, Surface(network));
         crossings = update_self_crossings(surface, before, crossings, team);
-        drop_apparent(surface, crossings);
     }
     return removed;
 }

@@ -28,8 +28,7 @@ enum class Removal {
 /// of the faces go: a surface that needs more is tangled beyond repair. Vertices without faces go, too.
 ///
 /// \param most what may be removed
-/// \param[in,out] crossings the self-crossings of the network, sorted; afterwards without apparent ones, see
-/// drop_apparent()
+/// \param[in,out] crossings the self-crossings of the network, sorted
 /// \return the number of faces removed. The result does not depend on the number of threads.
 /// Cost: that of update_self_crossings() per pass; every pass but the last of each kind removes faces.
 int remove_cut_faces(Network& network, Removal most, std::vector<SelfCrossing>& crossings, ThreadTeam& team);

@@ -20,8 +20,7 @@ std::optional<std::vector<SelfCrossing>> make_sound(Network& network, PerVertex<
     const int vertices = network.vertex_count();
     // What keeps the topology goes before the boundary draws back, which moves vertices away from the points.
     std::vector<SelfCrossing> cuts = *left;
-    const int removed = remove_cut_faces(network, Removal::boundary_faces, cuts, team);
-    if (removed == 0 && cuts.empty()) return left;  // all of them are apparent
+    remove_cut_faces(network, Removal::boundary_faces, cuts, team);
     if (!cuts.empty()) {
         cuts = *untangle(network, kThorough, team, unasked);
         remove_cut_faces(network, Removal::inner_faces, cuts, team);

@@ -24,18 +24,8 @@ namespace neuralmesh {
 namespace {
 
 constexpr int kMostInBatch = 512;      ///< signals whose data stay in the cache
-constexpr int kTypicalSignals = 4096;  ///< enough to divide the signals between two slabs to about 1 %
 constexpr int kPrefetchDistance = 8;   ///< signals between the prefetch and the use of a winner's counters
 constexpr int kReportEvery = 1000;     ///< signals between two looks at the progress and at the stop criteria
-
-/// A sample of signals by which slabs are cut. It has its own generator, so that the signals of the learning
-/// do not depend on the number of threads.
-std::vector<vcg::Point3f> typical_signals(const TargetSpace& target, int threads) {
-    std::vector<vcg::Point3f> drawn;
-    Random random(1);
-    for (int i = 0; threads != 1 && i < kTypicalSignals; ++i) drawn.push_back(target.sample(random));
-    return drawn;
-}
 
 Network checked(Network start, int grow_to) {
     if (start.vertex_count() > grow_to)
@@ -54,8 +44,8 @@ Learner::Learner(const TargetSpace& target, const LearnerOptions& options, Netwo
       mean_delta_(options.normalization_window),
       schedule_(options, state_.network.vertex_count()),
       stream_(target, options.random_seed, BasicStepBatch::kMostSignals),
-      batch_(options.threads, typical_signals(target, options.threads)),
-      memory_order_(state_, batch_),
+      batch_(options.threads),
+      memory_order_(state_),
       topology_random_(stream_seed(options.random_seed, Stream::topology)) {}
 
 StopReason Learner::run(int landing_signals, Progress& progress) {
@@ -199,7 +189,6 @@ bool Learner::learn_topology(bool last, Progress& progress) {
             changes += state_.exchange_faces(gone, {}) ? 1 : 0;
         mends_notches_ = !state_.to_the_letter() && network().boundary_loop_count() > 0;
     }
-    if (changes > 0) batch_.reassign_slabs();
     topology_changes_ += changes;
     return goes_on;
 }

@@ -31,7 +31,6 @@ void MemoryOrder::reorder(int free_ids) {
     ordered_vertices_ = state_.network.vertex_count();
     ordered_changes_ = state_.splits + state_.collapses;
     state_.renumber(interleave_free(morton_order(state_.network), free_ids));
-    batch_.reassign_slabs();
 }
 
 }  // namespace neuralmesh

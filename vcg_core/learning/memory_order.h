@@ -6,7 +6,6 @@
 
 #include <cstdint>
 
-#include "vcg_core/engine/basic_step_batch.h"
 #include "vcg_core/learning/learning_state.h"
 
 namespace neuralmesh {
@@ -17,8 +16,8 @@ namespace neuralmesh {
 /// the cache and keep their order.
 class MemoryOrder {
 public:
-    /// Keeps references to the arguments.
-    MemoryOrder(LearningState& state, BasicStepBatch& batch) : state_(state), batch_(batch) {}
+    /// Keeps a reference to \p state.
+    explicit MemoryOrder(LearningState& state) : state_(state) {}
 
     /// Renumbers whenever the network has grown by a quarter, and leaves free ids between the vertices for
     /// new ones. O(n log n) then, O(1) otherwise.
@@ -31,7 +30,6 @@ private:
     void reorder(int free_ids);
 
     LearningState& state_;
-    BasicStepBatch& batch_;
     int ordered_vertices_ = 0;           ///< when last renumbered
     std::int64_t ordered_changes_ = -1;  ///< splits and collapses when last renumbered
 };

@@ -12,8 +12,8 @@ void UtilityCounters::resize(int slots) {
 }
 
 void UtilityCounters::win(VertexId w, double amount) {
-    counters_[w] += amount;  // eq 4: the winner's counter ...
-    counters_ *= alpha_nc_;  // eq 4: ... and the decay of all counters
+    counters_.add(w, amount);  // eq 4: the winner's counter ...
+    counters_ *= alpha_nc_;    // eq 4: ... and the decay of all counters
     if (++wins_[w] >= maturity_) tournament_.set(w, counters_.key(w));
 }
 
@@ -42,10 +42,6 @@ void UtilityCounters::waive_maturity() {
     maturity_ = 0;
     for (VertexId v = 0; v < counters_.size(); ++v)
         if (counters_.key(v) != ScaledNumbers::kZero) tournament_.set(v, counters_.key(v));
-}
-
-std::size_t UtilityCounters::bytes() const {
-    return counters_.bytes() + wins_.vector().size() * sizeof(std::int32_t) + tournament_.bytes();
 }
 
 double squared_mean_edge(const Network& network, VertexId v) {

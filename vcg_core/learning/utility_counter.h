@@ -55,7 +55,6 @@ public:
     void renumber(const std::vector<VertexId>& order);
     /// Makes one win sufficient for highest(), from now on and for all vertices. O(n).
     void waive_maturity();
-    std::size_t bytes() const;
     /// The mature vertex with the highest counter, the smallest id among equals; -1 if none is mature.
     /// O(log n).
     VertexId highest() const { return tournament_.highest(); }

@@ -23,7 +23,6 @@ public:
     /// Removes and returns the nearest id in the word of \p id, else one from the nearest word within
     /// kWordsAround, else the smallest. Amortised O(1). \pre count() > 0
     std::int32_t take(std::int32_t id);
-    std::size_t bytes() const { return words_.size() * sizeof(std::uint64_t); }
 
 private:
     bool holds_any(std::size_t word) const { return word < words_.size() && words_[word] != 0; }

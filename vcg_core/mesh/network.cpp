@@ -125,7 +125,6 @@ VertexId Network::split(VertexId v, int first, int count, const vcg::Point3f& wh
     std::copy(at(rv, first), at(rv, first + count), at(ru, 0));
     ru.valence = static_cast<std::uint8_t>(count);
     ru.open = (takes_start || takes_end) ? 1 : 0;
-    ru.tag = rv.tag;
     const VertexId e2 = ru[0];
     const VertexId e1 = ru[count - 1];
     insert(ru, takes_end ? 0 : count, v);

@@ -55,8 +55,6 @@ public:
     bool adjacent(VertexId a, VertexId b) const { return ring(a).find(b) >= 0; }
     vcg::Point3f position(VertexId v) const { return slots()[v].point(); }
     void set_position(VertexId v, const vcg::Point3f& p);
-    /// Sets Ring::tag, 0 to 65535. A vertex created by split() inherits the tag of its parent.
-    void set_tag(VertexId v, int tag) { ring_of(v).tag = static_cast<std::uint16_t>(tag); }
     /// The vertex slots. slots()[-1] is a sentinel: infinitely far, and the end of every list of links.
     VertexRecord* slots() { return slots_.data() + 1; }
     const VertexRecord* slots() const { return slots_.data() + 1; }
@@ -65,11 +63,6 @@ public:
     void set_viewer(const std::optional<vcg::Point3f>& viewer) { viewer_ = viewer; }
     /// Reserves memory for that many vertices.
     void reserve(int vertices);
-    /// Memory in use, without reserved capacity.
-    std::size_t bytes() const {
-        return rings_.size() * sizeof(Ring) + slots_.size() * sizeof(VertexRecord) +
-               free_.size() * sizeof(VertexId) + gaps_.bytes();
-    }
 
     /// Vertex split, the inverse of a half-edge collapse into \p v. The new vertex, at \p where, takes the
     /// fan of \p count neighbours of v from ring position \p first on (cyclically if the ring is closed). v

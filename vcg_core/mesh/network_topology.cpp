@@ -106,7 +106,6 @@ bool Network::rings_after(const std::vector<Triangle>& gone, const std::vector<T
     for (const auto& [v, at] : links) {
         Ring after{};
         if (!at.empty() && (!chain(at, after) || after.valence < after.min_valence())) return false;
-        after.tag = ring(v).tag;
         changed.emplace_back(v, after);
     }
     return true;

@@ -3,10 +3,10 @@
 
 #include "vcg_core/mesh/pinched_vertices.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <utility>
 
+#include "vcg_core/base/connected_groups.h"
 #include "vcg_core/mesh/ring.h"
 
 namespace neuralmesh {
@@ -42,20 +42,7 @@ std::vector<std::vector<int>> fans_of(const IndexedMesh<float>& mesh, std::vecto
     const auto share_an_edge = [&neighbour](int a, int b) {
         return neighbour(a, 1) == neighbour(b, 2) || neighbour(a, 2) == neighbour(b, 1);
     };
-    std::vector<std::vector<int>> fans;
-    while (!corners.empty()) {
-        std::vector<int> fan{corners.front()};
-        corners.erase(corners.begin());
-        for (std::size_t k = 0; k < fan.size(); ++k) {
-            const int member = fan[k];
-            const auto rest = std::stable_partition(corners.begin(), corners.end(),
-                                                    [&](int other) { return !share_an_edge(member, other); });
-            fan.insert(fan.end(), rest, corners.end());
-            corners.erase(rest, corners.end());
-        }
-        fans.push_back(std::move(fan));
-    }
-    return fans;
+    return connected_groups(std::move(corners), share_an_edge);
 }
 
 }  // namespace

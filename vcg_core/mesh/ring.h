@@ -34,7 +34,6 @@ struct alignas(64) Ring {
     std::array<VertexId, kMaxValence> neighbours;
     std::uint8_t valence;  ///< number of neighbours; 0 in a free slot
     std::uint8_t open;     ///< 1 for a boundary vertex, else 0
-    std::uint16_t tag;     ///< free for the owner of the network; the mesh does not use it
 
     VertexId operator[](int i) const { return neighbours[static_cast<std::size_t>(i)]; }
     VertexId& operator[](int i) { return neighbours[static_cast<std::size_t>(i)]; }

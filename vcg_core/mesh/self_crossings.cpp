@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A bounding-volume hierarchy gives the pairs of faces, vcglib's triangle-triangle test judges them.
+// A bounding-volume hierarchy gives the pairs of faces.
 #include "vcg_core/mesh/self_crossings.h"
-
-#include <vcg/space/intersection/triangle_triangle3.h>
 
 #include <algorithm>
 #include <array>
@@ -20,51 +18,53 @@ namespace {
 
 constexpr int kCrossingChunk = 128;
 
-/// Six times the signed volume of the tetrahedron a b c d.
-float volume(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
-    return area_vector(a, b, c).dot(d - a);
-}
+// In double, in which the signs of volumes of float corners are as good as exact.
+using Corners = std::array<Eigen::Vector3d, 3>;
 
-/// vcglib's test multiplies up to nine lengths, which underflows in float for edges of about 2e-5. If one of
-/// the two faces is smaller than this, both are moved to the origin and scaled up for the test.
-constexpr float kSmall = 0x1p-10F;
+double largest(const Eigen::Vector3d& v) { return v.cwiseAbs().maxCoeff(); }
 
-float extent(const Vector3& a, const Vector3& b, const Vector3& c) {
-    return (b - a).cwiseAbs().cwiseMax((c - a).cwiseAbs()).maxCoeff();
-}
-
-/// For faces without a common corner. Both must have an area.
-bool intersect(const Surface& surface, int f, int g) {
-    std::array<Vector3, 6> corners;
-    for (int k = 0; k < 3; ++k) {
-        corners[static_cast<std::size_t>(k)] = surface.corner(f, k);
-        corners[static_cast<std::size_t>(k + 3)] = surface.corner(g, k);
+/// The heights of the corners of \p s over the plane of \p t, times a positive number; 0 where rounding could
+/// have made the sign, as of faces that lie apart in one tilted plane.
+std::array<double, 3> heights(const Corners& s, const Corners& t) {
+    constexpr double kRounding = 1e-14;
+    const Eigen::Vector3d a = t[1] - t[0], b = t[2] - t[0], normal = a.cross(b);
+    const double rounding = kRounding * largest(a) * largest(b);
+    std::array<double, 3> found;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Eigen::Vector3d c = s[k] - t[0];
+        const double height = normal.dot(c);
+        found[k] = std::abs(height) > rounding * largest(c) ? height : 0;
     }
-    if (std::min(extent(corners[0], corners[1], corners[2]), extent(corners[3], corners[4], corners[5])) <
-        kSmall) {
-        const Vector3 shift = corners[0];
-        float largest = 0;
-        for (Vector3& c : corners) {
-            c -= shift;
-            largest = std::max(largest, c.cwiseAbs().maxCoeff());
-        }
-        // A power of two, which keeps all digits.
-        for (Vector3& c : corners) c *= std::ldexp(1.0F, -std::ilogb(largest));
-    }
-    const auto corner = [&](std::size_t k) { return to_vcg(corners[k]); };
-    return vcg::NoDivTriTriIsect(corner(0), corner(1), corner(2), corner(3), corner(4), corner(5));
+    return found;
 }
 
-/// The faces of a surface with their area vectors, which each of them needs for several others.
+/// Whether the line through \p p and \p q, which crosses the plane of the triangle \p t, meets t.
+bool meets(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Corners& t) {
+    const Eigen::Vector3d along = q - p, a = t[0] - p, b = t[1] - p, c = t[2] - p;
+    const double u = along.dot(a.cross(b)), v = along.dot(b.cross(c)), w = along.dot(c.cross(a));
+    return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+}
+
+/// Whether an edge of \p s goes through \p t. \param common the corner of s that is one of t, too, and whose
+/// edges do not count; 3 if there is none
+bool pierces(const Corners& s, const Corners& t, std::size_t common) {
+    const std::array<double, 3> height = heights(s, t);
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (common < 3 && common != k) continue;
+        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+        // The product of the two could underflow, so compare the signs.
+        const bool opposite = (height[i] < 0 && height[j] > 0) || (height[i] > 0 && height[j] < 0);
+        if (opposite && meets(s[i], s[j], t)) return true;
+    }
+    return false;
+}
+
 class Faces {
 public:
-    Faces(const Surface& surface, ThreadTeam& team) : surface_(surface), area_vectors_(surface.face_count()) {
-        parallel_for(surface.face_count(), kCrossingChunk, team,
-                     [&](int f) { area_vectors_[f] = area_vector(surface, f); });
-    }
+    explicit Faces(const Surface& surface) : surface_(surface) {}
 
     /// A face without area cuts nothing; where many vertices coincide there are many of them.
-    bool has_area(int f) const { return area_vectors_[f] != Vector3(0, 0, 0); }
+    bool has_area(int f) const { return area_vector(surface_, f) != Vector3(0, 0, 0); }
 
     /// Appends the crossing of the faces \p f and \p g, if they cross.
     void append_crossing(int f, int g, std::vector<SelfCrossing>& crossings) const {
@@ -78,45 +78,29 @@ public:
     }
 
 private:
+    Corners corners_of(int f) const {
+        return {surface_.corner(f, 0).cast<double>(), surface_.corner(f, 1).cast<double>(),
+                surface_.corner(f, 2).cast<double>()};
+    }
+
     bool cut_each_other(int f, int g) const {
         const Triangle& s = surface_.faces[f];
         const Triangle& t = surface_.faces[g];
         int common = 0;
-        int in_s = 0;
-        int in_t = 0;
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j)
-                if (s[static_cast<std::size_t>(i)] == t[static_cast<std::size_t>(j)]) {
+        std::size_t in_s = 3, in_t = 3;
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t j = 0; j < 3; ++j)
+                if (s[i] == t[j]) {
                     ++common;
                     in_s = i;
                     in_t = j;
                 }
         if (common > 1) return false;
-        if (common == 1)
-            return opposite_edge_goes_through(f, in_s, g) || opposite_edge_goes_through(g, in_t, f);
-        return intersect(surface_, f, g);
-    }
-
-    /// Whether the edge opposite to corner \p k of face \p f goes through face \p g, rather than along its
-    /// plane. Without tolerances, so the answer does not depend on the scale.
-    bool opposite_edge_goes_through(int f, int k, int g) const {
-        const Vector3& p = surface_.corner(f, (k + 1) % 3);
-        const Vector3& q = surface_.corner(f, (k + 2) % 3);
-        const Vector3& a = surface_.corner(g, 0);
-        const float at_p = area_vectors_[g].dot(p - a);
-        const float at_q = area_vectors_[g].dot(q - a);
-        // The product of the two could underflow, so compare the signs.
-        if (!((at_p < 0 && at_q > 0) || (at_p > 0 && at_q < 0))) return false;
-        const Vector3& b = surface_.corner(g, 1);
-        const Vector3& c = surface_.corner(g, 2);
-        const float u = volume(p, q, a, b);
-        const float v = volume(p, q, b, c);
-        const float w = volume(p, q, c, a);
-        return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
+        const Corners of_f = corners_of(f), of_g = corners_of(g);
+        return pierces(of_f, of_g, in_s) || pierces(of_g, of_f, in_t);
     }
 
     const Surface& surface_;
-    PerFace<Vector3> area_vectors_;
 };
 
 /// Whether \p surface has the face, in either orientation.
@@ -152,7 +136,7 @@ private:
 
 std::vector<SelfCrossing> self_crossings(const Surface& surface, ThreadTeam& team,
                                          std::int64_t* tested_pairs) {
-    const Faces faces(surface, team);
+    const Faces faces(surface);
     std::vector<int> with_area;
     for (int f = 0; f < surface.face_count(); ++f)
         if (faces.has_area(f)) with_area.push_back(f);
@@ -176,7 +160,7 @@ std::vector<SelfCrossing> self_crossings(const Surface& surface, ThreadTeam& tea
 std::vector<SelfCrossing> update_self_crossings(const Surface& surface, const Surface& before,
                                                 const std::vector<SelfCrossing>& known, ThreadTeam& team) {
     const CommonFaces common(surface, before);
-    const Faces faces(surface, team);
+    const Faces faces(surface);
     PerFace<char> is_changed(surface.face_count(), 0);
     const auto examine = [&](int f, std::vector<int>& changed) {
         if (common.contain(surface.faces[f])) return;

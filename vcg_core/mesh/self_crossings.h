@@ -17,9 +17,8 @@ namespace neuralmesh {
 /// first. Unlike face numbers, corners identify a pair across changes of the connectivity elsewhere.
 using SelfCrossing = std::array<VertexId, 6>;
 
-/// All pairs of faces of \p surface that cut each other, sorted: faces without a common corner that have a
-/// point in common, and faces with one common corner where the opposite edge of one goes through the other
-/// (vcglib's definition, without its scale-dependent tolerances). Faces with a common edge never count, nor
+/// All pairs of faces of \p surface that cut each other, sorted: an edge of one goes through the other, of
+/// faces with one common corner the edge opposite to it. Faces with a common edge never count, nor
 /// do faces without area. The result does not depend on the number of threads. O(faces log faces + pairs of
 /// faces whose boxes touch; a smooth surface has about six such pairs per face).
 /// \param tested_pairs if not null, receives the number of these pairs

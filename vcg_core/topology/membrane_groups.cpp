@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
+
+#include "vcg_core/base/connected_groups.h"
 
 namespace neuralmesh {
 namespace {
@@ -19,21 +22,9 @@ std::vector<std::vector<int>> connected(const Surface& surface, const std::vecto
     std::vector<int> free;
     for (int i = 0; i < static_cast<int>(membranes.size()); ++i)
         if (at(membranes, i).certain) free.push_back(i);
-    std::vector<std::vector<int>> groups;
-    while (!free.empty()) {
-        std::vector<int> group{free.front()};
-        free.erase(free.begin());
-        for (std::size_t i = 0; i < group.size(); ++i) {
-            const Membrane& from = at(membranes, group[i]);
-            const auto first_near = std::stable_partition(free.begin(), free.end(), [&](int other) {
-                return !near_each_other(surface, from, at(membranes, other), edge);
-            });
-            group.insert(group.end(), first_near, free.end());
-            free.erase(first_near, free.end());
-        }
-        groups.push_back(std::move(group));
-    }
-    return groups;
+    return connected_groups(std::move(free), [&](int a, int b) {
+        return near_each_other(surface, at(membranes, a), at(membranes, b), edge);
+    });
 }
 
 }  // namespace

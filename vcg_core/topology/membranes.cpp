@@ -6,16 +6,16 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
+#include "vcg_core/base/connected_groups.h"
 #include "vcg_core/base/logarithm.h"
 
 namespace neuralmesh {
 namespace {
 
-/// Area of the smallest membrane, in squared mean edges: about five faces.
-constexpr float kLeastArea = 2;
-/// Of one of a pair.
-constexpr float kLeastPart = 0.2F;
+/// Area of the smallest membrane, in squared mean edges.
+constexpr float kLeastArea = 0.2F;
 /// A membrane of more faces is a part of the surface where the density is misjudged.
 constexpr std::size_t kMostFaces = 2000;
 /// Most times that faces are added to make the rims clean.
@@ -44,20 +44,10 @@ std::vector<std::vector<int>> Members::other_fans(VertexId v) const {
     std::vector<int> rest;
     for (const int f : surface_.faces_around(v))
         if (!has(f)) rest.push_back(f);
-    std::vector<std::vector<int>> fans;
-    while (!rest.empty()) {
-        std::vector<int> fan{rest.back()};
-        rest.pop_back();
-        for (std::size_t i = 0; i < fan.size(); ++i)
-            for (std::size_t k = 0; k < 3; ++k) {
-                const auto next = std::find(rest.begin(), rest.end(), face_beyond(surface_, fan[i], k));
-                if (next == rest.end()) continue;
-                fan.push_back(*next);
-                rest.erase(next);
-            }
-        fans.push_back(fan);
-    }
-    return fans;
+    return connected_groups(std::move(rest), [&](int f, int g) {
+        return face_beyond(surface_, f, 0) == g || face_beyond(surface_, f, 1) == g ||
+               face_beyond(surface_, f, 2) == g;
+    });
 }
 
 std::vector<int> Members::island(int start, std::size_t most, std::set<int>& mainland) const {
@@ -194,7 +184,8 @@ bool complete(const Surface& surface, const FaceSignals& signals, Membrane& memb
 }
 
 double least_lack(const Surface& surface) {
-    return portable_log(static_cast<double>(surface.face_count())) + kTubeLack;
+    constexpr double kSure = 7;  // no accident of the sample, see FaceSignals::lack_of()
+    return portable_log(static_cast<double>(surface.face_count())) + kSure;
 }
 
 std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& signals) {
@@ -209,10 +200,9 @@ std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& 
         float area = 0;
         for (const int g : membrane.faces) area += signals.area[g];
         const double lack = signals.lack_of(membrane.faces);
-        if (area < kLeastPart * edge * edge || lack < least / 4 || !complete(surface, signals, membrane))
+        if (area < kLeastArea * edge * edge || lack < least / 4 || !complete(surface, signals, membrane))
             continue;
-        membrane.certain =
-            membrane.rims.size() > 1 ? lack >= kTubeLack : area >= kLeastArea * edge * edge && lack >= least;
+        membrane.certain = lack >= least;
         membranes.push_back(std::move(membrane));
     }
     return membranes;

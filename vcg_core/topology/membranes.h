@@ -24,16 +24,11 @@ struct Membrane {
 /// The face beyond an edge of \p face, the one from corner \p edge to the next; -1 on a boundary. O(valence)
 int face_beyond(const Surface& surface, int face, std::size_t edge);
 
-/// How much a tube has to lack to be no accident of the sample; see FaceSignals::lack_of(). Faces without
-/// signals seldom lie around a tube by chance.
-constexpr double kTubeLack = 7;
-
-/// How much a membrane with one rim has to lack, ln(faces) + kTubeLack: it may lie anywhere on the surface.
+/// How much a membrane has to lack to be certain, ln(faces) + 7: it may lie anywhere on the surface.
 double least_lack(const Surface& surface);
 
 /// The membranes of a closed surface: faces that lack support and share edges. A membrane is certain if it
-/// lacks least_lack() and its area is that of several faces, or if it is a tube, with more than one rim, and
-/// lacks kTubeLack. Those that lack a quarter of the former are found. Faces that would hang on it by a
+/// lacks least_lack(). Those that lack a quarter of that are found. Faces that would hang on it by a
 /// corner only, or as an island inside, are part of it, so that the surface stays a manifold without it;
 /// membranes that become too large by that are left out. O(faces log faces)
 std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& signals);

@@ -293,12 +293,19 @@ bool Edges::has(VertexId a, VertexId b) const {
     return false;
 }
 
-std::vector<Triangle> closing_patch(const Rim& rim, const PerVertex<Vector3>& positions, const Edges& edges) {
-    if (rim.size() > static_cast<std::size_t>(kLongestRim)) return {};
+std::vector<Triangle> closing_patches(const std::vector<Rim>& rims, const PerVertex<Vector3>& positions,
+                                      const Edges& edges) {
     const Lengths lengths(positions, edges);
-    const auto at = [&](int i) { return rim[static_cast<std::size_t>(i)]; };
-    const auto diagonal = [&](int i, int j) { return lengths.new_edge(at(i), at(j)); };
-    return with_vertices(least_triangulation(size_of(rim), diagonal), rim);
+    std::vector<Triangle> all;
+    for (const Rim& rim : rims) {
+        if (rim.size() > static_cast<std::size_t>(kLongestRim)) return {};
+        const auto at = [&](int i) { return rim[static_cast<std::size_t>(i)]; };
+        const auto diagonal = [&](int i, int j) { return lengths.new_edge(at(i), at(j)); };
+        const std::vector<Triangle> faces = with_vertices(least_triangulation(size_of(rim), diagonal), rim);
+        if (faces.empty()) return {};
+        all.insert(all.end(), faces.begin(), faces.end());
+    }
+    return all;
 }
 
 std::vector<Triangle> joining_patch(const std::vector<Rim>& rims, const PerVertex<Vector3>& positions,

@@ -30,10 +30,11 @@ private:
     const PerFace<char>& left_out_;
 };
 
-/// Faces between the vertices of \p rim that close the hole with the least sum of squared edges, by dynamic
-/// programming (Barequet and Sharir, "Filling Gaps in the Boundary of a Polyhedron", 1995). None if every
-/// choice needs an edge that exists, or the rim is longer than kLongestRim. O(n^3)
-std::vector<Triangle> closing_patch(const Rim& rim, const PerVertex<Vector3>& positions, const Edges& edges);
+/// Faces between the vertices of each of \p rims that close its hole with the least sum of squared edges, by
+/// dynamic programming (Barequet and Sharir, "Filling Gaps in the Boundary of a Polyhedron", 1995). None if
+/// for one every choice needs an edge that exists, or it is longer than kLongestRim. O(n^3)
+std::vector<Triangle> closing_patches(const std::vector<Rim>& rims, const PerVertex<Vector3>& positions,
+                                      const Edges& edges);
 
 /// Faces between two and more \p rims, a sphere with as many holes, again with the least sum of squared edges
 /// as far as it looks. Between two rims, faces by turns along one and the other: of rims of more than 24

@@ -16,7 +16,6 @@
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/mesh/face_tree.h"
 #include "vcg_core/topology/membrane_groups.h"
-#include "vcg_core/topology/rim_parts.h"
 #include "vcg_core/topology/surroundings.h"
 
 namespace neuralmesh {
@@ -128,11 +127,9 @@ Reconnection Search::best(const std::vector<Membrane>& membranes) const {
     found.gain = std::numeric_limits<float>::lowest();
     std::vector<int> faces;
     std::vector<Rim> rims;
-    std::vector<std::size_t> membrane_of;
-    for (std::size_t m = 0; m < membranes.size(); ++m) {
-        faces.insert(faces.end(), membranes[m].faces.begin(), membranes[m].faces.end());
-        rims.insert(rims.end(), membranes[m].rims.begin(), membranes[m].rims.end());
-        membrane_of.resize(rims.size(), m);
+    for (const Membrane& membrane : membranes) {
+        faces.insert(faces.end(), membrane.faces.begin(), membrane.faces.end());
+        rims.insert(rims.end(), membrane.rims.begin(), membrane.rims.end());
     }
     visits_ += static_cast<std::int64_t>(faces.size());
     if (rims.size() > (membranes.size() > 2 ? kMostOfGroup : kMostRims)) return found;
@@ -143,11 +140,11 @@ Reconnection Search::best(const std::vector<Membrane>& membranes) const {
     }
     const Edges edges(network_, surface_, out);
     std::optional<const Surroundings> around;  // for many membranes no patch can be made
-    const int euler = euler_characteristic(found.gone, rims);
-    for (const RimParts& parts : partitions(rims.size())) {
-        if (!connect_all(parts, membrane_of)) continue;
-        if (!handles_ && euler_characteristic(parts) < euler) continue;
-        std::vector<Triangle> added = patches_of(parts, rims, surface_.positions, edges);
+    const bool several = membranes.size() > 1;
+    for (const bool joined : {false, true}) {
+        if (joined ? rims.size() < 2 || (several && !handles_) : several) continue;
+        std::vector<Triangle> added = joined ? joining_patch(rims, surface_.positions, edges)
+                                             : closing_patches(rims, surface_.positions, edges);
         if (added.empty() || !network_.can_exchange_faces(found.gone, added)) continue;
         if (!around) visits_ += around.emplace(surface_, tree_, support_, faces, edge_).face_count();
         const float gain = around->gain(added);

@@ -14,20 +14,13 @@
 namespace neuralmesh {
 namespace {
 
-/// A network and its batches of Basic Steps on the given number of threads. As vertices move, they cross the
-/// borders of their slabs.
+/// A network and its batches of Basic Steps on the given number of threads.
 struct BatchRun {
     BatchRun(const TargetSpace& target, int threads)
-        : network(start(target)), search(network), steps(threads, typical(target)) {}
+        : network(start(target)), search(network), steps(threads) {}
 
     static Network start(const TargetSpace& target) {
         return targets::network_in_frame(target, shapes::torus_grid(40, 24));
-    }
-    static std::vector<vcg::Point3f> typical(const TargetSpace& target) {
-        Random random(9);
-        std::vector<vcg::Point3f> drawn;
-        for (int i = 0; i < 300; ++i) drawn.push_back(target.sample(random));
-        return drawn;
     }
 
     Network network;
@@ -58,7 +51,7 @@ TEST(BasicStepBatch, GivesTheSameBytesForAnyNumberOfThreads) {
     const StepRates rates{0.06F, 0.05F, 5};
     std::vector<vcg::Point3f> drawn(1000);
     for (int batch = 0; batch < 100; ++batch) {
-        // Many signals for few vertices: most vertices are moved by steps of several slabs.
+        // Many signals for few vertices: most vertices are moved by steps of several threads.
         const int count = 240 + static_cast<int>(random.below(760));
         for (int i = 0; i < count; ++i) drawn[static_cast<std::size_t>(i)] = target.sample(random);
         const auto v = static_cast<VertexId>(random.below(900));

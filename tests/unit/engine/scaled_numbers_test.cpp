@@ -24,7 +24,7 @@ TEST(ScaledNumbers, AreTheNumbersMultipliedOneByOne) {
         for (int step = 0; step < 3000; ++step) {
             const std::uint32_t i = random.below(kCount);
             const double amount = static_cast<double>(random.unit());
-            scaled[static_cast<int>(i)] += amount;
+            scaled.add(static_cast<int>(i), amount);
             scaled *= factor;
             plain[i] += amount;
             for (double& number : plain) number *= factor;
@@ -39,7 +39,7 @@ TEST(ScaledNumbers, HaveKeysInTheirOrderFarBelowTheRangeOfDouble) {
     ScaledNumbers numbers;
     numbers.resize(300);
     for (int i = 0; i < 299; ++i) {
-        numbers[i] += 1;
+        numbers.add(i, 1);
         for (int j = 0; j < 40; ++j) numbers *= 0.5;
     }
     EXPECT_EQ(numbers.value(0), 0) << "2^-11960";
@@ -51,7 +51,7 @@ TEST(ScaledNumbers, HaveKeysInTheirOrderFarBelowTheRangeOfDouble) {
 TEST(ScaledNumbers, KeepTheSumWhenOneIsDivided) {
     ScaledNumbers numbers;
     numbers.resize(2);
-    numbers[0] += 8;
+    numbers.add(0, 8);
     numbers *= 0.95;
     numbers.divide(0, 1, 0.75);
     EXPECT_NEAR(numbers.value(0), 8 * 0.95 * 0.75, 1e-14);
@@ -64,7 +64,7 @@ TEST(ScaledNumbers, KeepTheSumWhenOneIsDivided) {
 TEST(ScaledNumbers, RenumberedAreTheSameUnderNewIndices) {
     ScaledNumbers numbers;
     numbers.resize(3);
-    for (int i = 0; i < 3; ++i) numbers[i] += i + 1;
+    for (int i = 0; i < 3; ++i) numbers.add(i, i + 1);
     numbers *= 0.5;
     numbers.renumber({2, -1, 0, 1});
     ASSERT_EQ(numbers.size(), 4);

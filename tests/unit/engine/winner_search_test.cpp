@@ -249,41 +249,5 @@ TEST(WinnerSearch, IsLinearSearchFarFromTheMesh) {
     }
 }
 
-TEST(WinnerSearch, IsLinearSearchWithADividedTable) {
-    for (const int axis : {0, 1, 2})
-        for (const float place : {-5.0F, 0.02F, std::numeric_limits<float>::infinity()}) {
-            Network network = in_frame(shapes::torus_grid(24, 16));
-            WinnerSearch search(network);
-            Random random(6);
-            search.divide_table(axis, place);
-            expect_exact(network, search, random, 200);
-            for (int i = 0; i < 800; ++i) {
-                split_somewhere(network, search, random);
-                const VertexId v = random_vertex(network, random);
-                search.move(v, network.position(v) + random_point(random, 0.1F));
-            }
-            expect_exact(network, search, random, 200);
-        }
-}
-
-TEST(WinnerSearch, IsExactAfterDeferredCellChanges) {
-    Network network = in_frame(shapes::torus_grid(24, 16));
-    WinnerSearch search(network);
-    Random random(5);
-    for (int round = 0; round < 30; ++round) {
-        // Two lists, as two threads make them. All changes of a vertex are in one list.
-        std::vector<WinnerSearch::CellChange> cell_changes[2];
-        for (int i = 0; i < 300; ++i) {
-            const VertexId v = random_vertex(network, random);
-            const vcg::Point3f p = network.position(v) + random_point(random, 0.05F);
-            search.move(v, Four{p[0], p[1], p[2], 0}, cell_changes[v % 2]);
-        }
-        EXPECT_GT(cell_changes[0].size(), 20U);
-        search.apply(cell_changes[1]);
-        search.apply(cell_changes[0]);
-        expect_exact(network, search, random, 60);
-    }
-}
-
 }  // namespace
 }  // namespace neuralmesh

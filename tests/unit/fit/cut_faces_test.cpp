@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "tests/unit/support/crumpled.h"
-#include "vcg_core/fit/sources.h"
 #include "vcg_core/fit/sound_start.h"
-#include "vcg_core/mesh/exact_cuts.h"
+#include "vcg_core/fit/sources.h"
+#include "vcg_core/mesh/self_crossings.h"
 
 namespace neuralmesh {
 namespace {
@@ -31,12 +31,6 @@ Network standing_on_sheet(const Shape& standing, double depth) {
     return referee::network_of(shape);
 }
 
-std::vector<SelfCrossing> true_crossings(const Network& network) {
-    std::vector<SelfCrossing> all = crossings(Surface(network), 1);
-    drop_apparent(Surface(network), all);
-    return all;
-}
-
 std::vector<SelfCrossing> removed_from(Network& network, Removal most, int threads = 1) {
     ThreadTeam team(threads);
     std::vector<SelfCrossing> left = crossings(Surface(network), threads);
@@ -44,13 +38,13 @@ std::vector<SelfCrossing> removed_from(Network& network, Removal most, int threa
     const int removed = remove_cut_faces(network, most, left, team);
     EXPECT_EQ(removed, faces - network.face_count());
     EXPECT_EQ(network.validate(), "");
-    EXPECT_EQ(left, true_crossings(network)) << "the plain search of the whole surface";
+    EXPECT_EQ(left, crossings(Surface(network), 1)) << "the plain search of the whole surface";
     return left;
 }
 
 TEST(CutFaces, ABoundaryThatPiercesASheetDrawsBack) {
     Network network = standing_on_sheet(shapes::grid(8, 8), 0.05);
-    ASSERT_FALSE(true_crossings(network).empty());
+    ASSERT_FALSE(crossings(Surface(network), 1).empty());
     EXPECT_TRUE(removed_from(network, Removal::boundary_faces).empty());
     EXPECT_EQ(network.component_count(), 2);
     EXPECT_EQ(network.boundary_loop_count(), 2);
@@ -75,7 +69,7 @@ TEST(CutFaces, AFoldInsideIsCollapsedAndKeepsTheTopology) {
     Network network = referee::network_of(shapes::grid(9, 9), 0.005);
     const VertexId middle = 40;
     network.set_position(middle, network.position(middle) + vcg::Point3f(0.3F, 0.02F, 0));
-    ASSERT_FALSE(true_crossings(network).empty());
+    ASSERT_FALSE(crossings(Surface(network), 1).empty());
     EXPECT_FALSE(removed_from(network, Removal::boundary_faces).empty());
     EXPECT_TRUE(removed_from(network, Removal::folds).empty());
     EXPECT_EQ(network.boundary_loop_count(), 1);
@@ -108,7 +102,7 @@ TEST(SoundStart, KeepsTheNumberOfVerticesAndTellsWhereTheyComeFrom) {
         PerVertex<VertexId> origins = own_sources(network);
         const std::vector<SelfCrossing> left = *make_sound(network, origins, team, progress);
         EXPECT_EQ(left, crossings(Surface(network), 1));
-        EXPECT_TRUE(true_crossings(network).empty());
+        EXPECT_TRUE(crossings(Surface(network), 1).empty());
         EXPECT_EQ(network.validate(), "");
         EXPECT_EQ(network.vertex_count(), before.vertex_count());
         EXPECT_EQ(network.component_count(), 2);

@@ -72,13 +72,6 @@ TEST(Network, OpenRingsRunFromBoundaryToBoundary) {
     }
 }
 
-TEST(Network, ANewVertexInheritsTheTagOfItsParent) {
-    Network network = network_of(shapes::torus_grid(6, 5));
-    network.set_tag(7, 3);
-    EXPECT_EQ(network.ring(network.split(7, 0, 4, network.position(7))).tag, 3);
-    EXPECT_EQ(network.ring(network.split(8, 0, 4, network.position(8))).tag, 0);
-}
-
 /// Ids in random order.
 std::vector<VertexId> shuffled_ids(int count, Random& random) {
     std::vector<VertexId> ids(static_cast<std::size_t>(count));

@@ -65,6 +65,14 @@ TEST(Crossings, AreThoseThatVcglibFinds) {
     }
 }
 
+TEST(Crossings, FacesApartInATiltedPlaneHaveNone) {
+    for (const double tilt : {0.01, 0.1, 0.3, 0.7}) {
+        shapes::Shape sheet = shapes::grid(12, 12);
+        for (vcg::Point3d& p : sheet.positions) p += vcg::Point3d(0.013, tilt * p[0] + 0.021, 0.3 * p[1]);
+        EXPECT_TRUE(crossings(Surface(referee::network_of(sheet)), 1).empty()) << tilt;
+    }
+}
+
 TEST(Crossings, AreTheSameForAnyNumberOfThreads) {
     const Surface surface(crumpled_sphere(0.3));
     const std::vector<SelfCrossing> one = crossings(surface, 1);

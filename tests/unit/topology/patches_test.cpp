@@ -67,7 +67,8 @@ TEST(Patches, CloseRimsWithTheLeastEdges) {
         const Scene scene(shapes::tube(around, 4), 0.1);
         Network closed = scene.network;
         for (const Rim& rim : scene.rims()) {
-            const std::vector<Triangle> patch = closing_patch(rim, scene.surface.positions, scene.edges());
+            const std::vector<Triangle> patch =
+                closing_patches({rim}, scene.surface.positions, scene.edges());
             ASSERT_EQ(patch.size(), rim.size() - 2);
             EXPECT_NEAR(inner_edges(scene, patch), least_sum(scene, rim, 0, rim.size() - 1), 1e-4);
             ASSERT_TRUE(closed.can_exchange_faces({}, patch));
@@ -145,7 +146,7 @@ TEST(Patches, NeedNoEdgeThatExists) {
     const Scene scene(shapes::fan(2));
     const auto rims = scene.rims();
     ASSERT_EQ(rims.size(), 1U);
-    const std::vector<Triangle> patch = closing_patch(rims[0], scene.surface.positions, scene.edges());
+    const std::vector<Triangle> patch = closing_patches({rims[0]}, scene.surface.positions, scene.edges());
     Network closed = scene.network;
     ASSERT_TRUE(closed.can_exchange_faces({}, patch));
     closed.exchange_faces({}, patch);
@@ -174,7 +175,7 @@ TEST(Patches, JoinLongRimsByTheShortestEdges) {
 TEST(Patches, AreRefusedForLongRimsAndRimsThatTouch) {
     const Scene scene(shapes::tube(kLongestRim + 1, 3));
     const auto rims = scene.rims();
-    EXPECT_TRUE(closing_patch(rims[0], scene.surface.positions, scene.edges()).empty());
+    EXPECT_TRUE(closing_patches({rims[0]}, scene.surface.positions, scene.edges()).empty());
     EXPECT_TRUE(joining_patch({rims[0], rims[1]}, scene.surface.positions, scene.edges()).empty());
     EXPECT_TRUE(joining_patch({rims[0], rims[0]}, scene.surface.positions, scene.edges()).empty());
     const Rim three(rims[0].begin(), rims[0].begin() + 3);

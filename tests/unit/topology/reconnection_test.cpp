@@ -46,7 +46,7 @@ Network swept(const TargetSpace& target, const std::vector<Hoop>& hoops, int aro
     for (const Rim& rim : boundary_loops(network.slot_count(), network.faces())) {
         const Surface surface(network);
         const PerFace<char> none(surface.face_count(), 0);
-        network.exchange_faces({}, closing_patch(rim, surface.positions, {network, surface, none}));
+        network.exchange_faces({}, closing_patches({rim}, surface.positions, {network, surface, none}));
     }
     return network;
 }

@@ -86,7 +86,8 @@ void expect_the_plain_gain(bool deep) {
         PerFace<char> out(surface.face_count(), 0);
         std::vector<Triangle> patched;
         for (const int f : membrane.faces) out[f] = 1;
-        const auto patch = closing_patch(membrane.rims.front(), surface.positions, {network, surface, out});
+        const auto patch =
+            closing_patches({membrane.rims.front()}, surface.positions, {network, surface, out});
         ASSERT_GT(patch.size(), 8U);
         for (int f = 0; f < surface.face_count(); ++f)
             if (out[f] == 0) patched.push_back(surface.faces[f]);

@@ -13,7 +13,7 @@
 #include "tests/unit/support/crumpled.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
-#include "vcg_core/mesh/exact_cuts.h"
+#include "vcg_core/mesh/self_crossings.h"
 #include "vcg_core/reconstruct.h"
 
 namespace neuralmesh {
@@ -28,14 +28,8 @@ Network network_of(const NeuralMesh& mesh) {
     return referee::network_of(shape);
 }
 
-/// The pairs of faces of \p mesh that go through each other. On exact planes some seem to, by the rounding of
-/// their corners.
-std::vector<SelfCrossing> cuts_of(const NeuralMesh& mesh) {
-    const Surface surface(network_of(mesh));
-    std::vector<SelfCrossing> found = crossings(surface, 1);
-    drop_apparent(surface, found);
-    return found;
-}
+/// The pairs of faces of \p mesh that go through each other.
+std::vector<SelfCrossing> cuts_of(const NeuralMesh& mesh) { return crossings(Surface(network_of(mesh)), 1); }
 
 /// A random point of the surface of the box around the origin with the given \p edges, or nothing: of a side
 /// of the area \p largest always a point, of smaller ones as much more seldom.
