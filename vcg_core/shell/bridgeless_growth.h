@@ -21,9 +21,8 @@ namespace neuralmesh {
 /// that persist to \p level. (Chazal and Oudot 2008: the topology of a surface is what survives of one offset
 /// in a larger one.) Parts that come close keep a gap one node wide; cavities are filled. O(nodes + 14 x
 /// nodes added).
-/// \return the change of the solid's Euler characteristic (level_topology.h)
-int grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
-                         NodeSet& solid);
+void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
+                          NodeSet& solid);
 
 /// The level to which the solid at \p level is grown: that of twice its radius, at most Region::kMaxLevel.
 /// Level 0 is grown to level 2.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Nodes join the solid in order of their clearance. Their lower links tell how that changes components and
-// the Euler characteristic, which gives the handles: it is components minus handles plus cavities.
+// Nodes join the solid in order of their clearance. The neighbours of each that have joined before, its lower
+// link, tell how that changes components and the Euler characteristic, by 1 - that of the link (Banchoff
+// 1967). It gives the handles: it is components minus handles plus cavities.
 #include "vcg_core/shell/level_topology.h"
 
 #include <cstddef>
@@ -10,21 +11,12 @@
 #include <numeric>
 #include <vector>
 
+#include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/base/platform.h"
 #include "vcg_core/shell/node_link.h"
 
 namespace neuralmesh {
 namespace {
-
-/// For every level the change of the Euler characteristic when the solid grows to it; \p levels of them.
-PerLevel<int> euler_changes(const PerNode<SquaredRadius>& clearance, const PerNode<std::uint16_t>& links,
-                            int levels) {
-    const LinkTopology& topology = LinkTopology::table();
-    PerLevel<int> changes(levels, 0);
-    for (NodeId i = 0; i < clearance.size(); ++i)
-        if (clearance[i] < levels) changes[clearance[i]] += 1 - topology.euler_characteristic(links[i]);
-    return changes;
-}
 
 /// The nodes of all levels, those of level l from first[l] to first[l + 1] in rising order.
 struct NodesByLevel {
@@ -45,67 +37,43 @@ NodesByLevel nodes_by_level(const PerNode<SquaredRadius>& clearance, int levels)
     return result;
 }
 
-/// Disjoint sets of nodes by union-find, with the number of points in each.
-class CountedSets {
-public:
-    /// Each node is a set of its own.
-    explicit CountedSets(const PerNode<std::uint32_t>& counts) : parent_(counts.size()), points_(counts) {
-        std::iota(parent_.begin(), parent_.end(), 0);
-    }
-
-    long long points(NodeId root) const { return points_[root]; }
-    NodeId find(NodeId i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    /// Unites the sets with roots \p a and \p b. \p a is the root of the union.
-    void join(NodeId a, NodeId b) {
-        parent_[b] = a;
-        points_[a] += points_[b];
-    }
-
-private:
-    PerNode<NodeId> parent_;
-    PerNode<std::uint32_t> points_;
-};
-
 /// Components and specks of a solid that grows node by node.
 class ComponentCount {
 public:
     ComponentCount(const Lattice& lattice, const PerNode<std::uint32_t>& counts, long long min_points)
-        : neighbours_(lattice), sets_(counts), min_points_(min_points) {}
+        : neighbours_(lattice), sets_(counts.size()), points_(counts), min_points_(min_points) {}
 
     /// \param link the neighbours of node \p i in the solid
     void add(NodeId i, NeighbourSet link) {
         count(i, 1);
         if (link == 0) return;
-        const NodeId root = sets_.find(neighbours_.at(i, lowest_bit(link)));
-        join(i, root);
+        join(i, neighbours_.at(i, lowest_bit(link)));
         if (link_topology_.is_connected(link)) return;  // all in one set
-        for (link &= link - 1; link != 0; link &= link - 1)
-            join(sets_.find(neighbours_.at(i, lowest_bit(link))), root);
+        for (link &= link - 1; link != 0; link &= link - 1) join(i, neighbours_.at(i, lowest_bit(link)));
     }
     /// All but the genus.
     const LevelTopology& topology() const { return topology_; }
 
 private:
-    /// Unites two sets, if they are two. \p root becomes the root of both.
-    void join(NodeId other, NodeId root) {
-        if (other == root) return;
-        count(root, -1);
-        count(other, -1);
-        sets_.join(root, other);
-        count(root, 1);
+    void join(NodeId a, NodeId b) {
+        a = sets_.find(a);
+        b = sets_.find(b);
+        if (!sets_.join(a, b)) return;
+        count(a, -1);
+        count(b, -1);
+        points_[sets_.find(a)] = points_[a] + points_[b];
+        count(sets_.find(a), 1);
     }
     void count(NodeId root, int sign) {
-        const long long points = sets_.points(root);
+        const long long points = points_[root];
         (points >= min_points_ ? topology_.components : topology_.specks) += sign;
         if (points < min_points_) topology_.speck_points += sign * points;
     }
 
     Neighbours neighbours_;
     const LinkTopology& link_topology_ = LinkTopology::table();
-    CountedSets sets_;
+    DisjointSets sets_;
+    PerNode<std::uint32_t> points_;  ///< by root
     long long min_points_;
     LevelTopology topology_;
 };
@@ -116,18 +84,21 @@ PerLevel<LevelTopology> topology_of_levels(const Lattice& lattice, const PerNode
                                            const PerNode<std::uint32_t>& counts, int max_radius,
                                            long long min_points, const std::vector<NodeId>& hollows) {
     const int levels = max_radius * max_radius + 1;  // a clearance of this much is outside at every level
-    const PerNode<std::uint16_t> links = lower_links(lattice, clearance);
-    const PerLevel<int> changes = euler_changes(clearance, links, levels);
     const NodesByLevel order = nodes_by_level(clearance, levels);
+    const Neighbours neighbours(lattice);
+    const LinkTopology& links = LinkTopology::table();
     ComponentCount components(lattice, counts, min_points);
     PerLevel<LevelTopology> result(levels);
     int euler = 0;
     for (int l = 0; l < levels; ++l) {
         for (int k = order.first[l]; k < order.first[l + 1]; ++k) {
             const NodeId i = order.nodes[static_cast<std::size_t>(k)];
-            components.add(i, links[i]);
+            const NeighbourSet link = neighbours_in(neighbours, i, neighbours.places(i), [&](NodeId j) {
+                return clearance[j] < l || (clearance[j] == l && j < i);
+            });
+            components.add(i, link);
+            euler += 1 - links.euler_characteristic(link);
         }
-        euler += changes[l];
         result[l] = components.topology();
         for (const NodeId i : hollows) result[l].cavities += clearance[i] > l ? 1 : 0;
         result[l].genus = result[l].surfaces() + result[l].specks - euler;

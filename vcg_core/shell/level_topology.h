@@ -22,8 +22,6 @@ struct LevelTopology {
 
     /// Components of the solid's surface: its outer ones, and one around each cavity.
     int surfaces() const { return components + cavities; }
-    /// Of the solid.
-    int euler_characteristic() const { return surfaces() + specks - genus; }
 };
 
 /// One value for every level, from 0 to max_radius^2.

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The table of sets of neighbours against a search for components and a count of simplices; lower links
-// against a look at each neighbour.
+// The table of sets of neighbours against a search for components and a count of simplices.
 #include "vcg_core/shell/node_link.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "tests/unit/support/small_lattice.h"
@@ -94,19 +92,6 @@ TEST(NodeLink, EulerCharacteristicsAreThoseOfTheSimplices) {
         differ += LinkTopology::table().euler_characteristic(set) != euler ? 1 : 0;
     }
     EXPECT_EQ(differ, 0);
-}
-
-TEST(NodeLink, LowerLinksHoldWhatComesBefore) {
-    const Lattice lattice = small_lattice();
-    const Neighbours neighbours(lattice);
-    Random random(1);
-    PerNode<std::int16_t> values(lattice.size());
-    for (std::int16_t& value : values) value = static_cast<std::int16_t>(random.below(4));
-    const PerNode<std::uint16_t> links = lower_links(lattice, values);
-    for (NodeId i = 0; i < lattice.size(); ++i)
-        ASSERT_EQ(links[i], set_of(neighbours, i, [&](NodeId j) {
-                      return std::pair(values[j], j) < std::pair(values[i], i);
-                  }));
 }
 
 }  // namespace
