@@ -11,7 +11,6 @@
 #include <cstdint>
 
 #include "vcg_core/base/parallel_for.h"
-#include "vcg_core/shell/node_groups.h"
 #include "vcg_core/shell/node_link.h"
 
 namespace neuralmesh {

@@ -10,8 +10,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "vcg_core/shell/lattice_rows.h"
-
 namespace neuralmesh {
 namespace {
 
@@ -132,12 +130,13 @@ PerNode<SquaredRadius> clearances(const Lattice& lattice, const PerNode<SquaredR
         if (out[i] == kUnknown) wait(i, far, false);
     });
     const Neighbours neighbours(lattice);
-    const auto is_unknown = [&](NodeId i) { return out[i] == kUnknown; };
     for (int level = far; level > 0; --level) {
         std::vector<NodeId>& front = waiting[level];
         for (std::size_t k = 0; k < front.size(); ++k) {
             const bool in = out[front[k]] == kInside;
-            for (const NodeId j : neighbours.of(front[k], is_unknown)) wait(j, level, in);
+            neighbours.for_each(front[k], [&](NodeId j, int) {
+                if (out[j] == kUnknown) wait(j, level, in);
+            });
         }
         std::vector<NodeId>().swap(front);
     }
@@ -159,6 +158,19 @@ SealedSpaces enclosed_spaces(const Lattice& lattice, const PerNode<SquaredRadius
         for (const NodeId i : space) result.inside[i] = 1;
         result.nodes += static_cast<long long>(space.size());
         result.widest_opening = std::max(result.widest_opening, opening);
+    });
+    return result;
+}
+
+NodeSet solid_of(const Lattice& lattice, const PerNode<SquaredRadius>& clearance,
+                 const PerNode<std::uint32_t>& counts, int level, long long min_points) {
+    NodeSet result(lattice.size(), 0);
+    const auto solid = [&](NodeId i) { return clearance[i] <= level; };
+    for_each_component(lattice, solid, [&](const std::vector<NodeId>& component) {
+        long long points = 0;
+        for (const NodeId i : component) points += counts[i];
+        if (points < min_points) return;
+        for (const NodeId i : component) result[i] = 1;
     });
     return result;
 }

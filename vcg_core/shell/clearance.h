@@ -50,4 +50,8 @@ SealedSpaces enclosed_spaces(const Lattice& lattice, const PerNode<SquaredRadius
                              const PerNode<SquaredRadius>& clearance, double width_ratio,
                              int min_squared_depth);
 
+/// The components of {clearance <= level} that hold at least \p min_points points. O(nodes).
+NodeSet solid_of(const Lattice& lattice, const PerNode<SquaredRadius>& clearance,
+                 const PerNode<std::uint32_t>& counts, int level, long long min_points);
+
 }  // namespace neuralmesh

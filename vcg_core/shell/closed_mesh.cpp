@@ -10,7 +10,6 @@
 
 #include "vcg_core/shell/bridgeless_growth.h"
 #include "vcg_core/shell/marching_tetrahedra.h"
-#include "vcg_core/shell/node_groups.h"
 
 namespace neuralmesh {
 namespace {

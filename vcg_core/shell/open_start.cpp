@@ -67,14 +67,6 @@ constexpr int kVerticesOfSheet = 3;
 /// them, so more small parts than that would leave none for the others.
 constexpr double kLeastPartVertices = 0.3;
 
-void check(const OpenStartOptions& o) {
-    if (o.wanted_vertices < 4 || o.target_vertices < 4 || o.samples < 4 ||
-        !(o.component_share >= 0 && o.component_share < 1))
-        throw SettingError(
-            "The options of the open start mesh are out of range: at least 4 vertices and 4 samples are "
-            "needed, and a component share in [0, 1).");
-}
-
 /// The points that a part needs, and a part that is a sheet of surface.
 struct Enough {
     long long points, on_sheet;
@@ -265,18 +257,14 @@ void fill_small_holes(Sheet& sheet, const OpenStartOptions& options, OpenStart& 
         const double most = options.close_holes_up_to >= 0 ? std::max(options.close_holes_up_to, gap)
                                                            : static_cast<double>(kGapRadii * radius);
         const double diameter = diameter_of(loop, mesh.positions);
-        if (diameter <= most && filler.fill(loop)) {
-            result.widest_filled = std::max(result.widest_filled, diameter);
-        } else if (!filler.fill(loop, kCrackRadii * radius)) {
-            left.push_back(&loop);
-            // Half a radius of surface, on both sides, is beyond the last vertices.
-            widest = std::max(widest, diameter - static_cast<double>(radius));
-        }
+        if ((diameter <= most && filler.fill(loop)) || filler.fill(loop, kCrackRadii * radius)) continue;
+        left.push_back(&loop);
+        // Half a radius of surface, on both sides, is beyond the last vertices.
+        widest = std::max(widest, diameter - static_cast<double>(radius));
     }
     result.widest_loop = widest / diagonal_of(mesh.positions);
     if (result.widest_loop > options.closed_up_to) return;
-    for (const auto* loop : left)
-        if (filler.fill(*loop)) result.widest_filled = std::max(result.widest_filled, widest);
+    for (const auto* loop : left) filler.fill(*loop);
 }
 
 IndexedMesh<float> indexed(const Network& network) {
@@ -356,7 +344,6 @@ void write_mesh(const Network& network, OpenStart& result) {
 
 OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options, Random& random,
                      Progress& progress, Surveys* given) {
-    check(options);
     progress(0.0, "Start mesh: surveying the cloud");
     const StartPoints start_points(target, options.samples, random);
     const std::vector<Point3f>& points = start_points.all();

@@ -78,8 +78,7 @@ struct OpenStart {
     int faced_by_normals = 0;  ///< components with a boundary that face the side of the target's normals
     /// of the smallest sphere around the widest hole, as share of the mesh's diagonal
     double widest_loop = 0;
-    double radius = 0;         ///< on which the points are a surface: where they are sparse, or noisy
-    double widest_filled = 0;  ///< diameter of the widest hole that was filled
+    double radius = 0;  ///< on which the points are a surface: where they are sparse, or noisy
     /// More of the points whose surroundings show a surface were left out than chance and clutter account
     /// for: the mesh is not theirs. So are the narrow sides of a thin slab.
     bool misses_surface = false;

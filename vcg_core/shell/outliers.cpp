@@ -7,8 +7,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "vcg_core/shell/node_groups.h"
-
 namespace neuralmesh {
 namespace {
 

@@ -8,7 +8,6 @@
 
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/shell/hollows.h"
-#include "vcg_core/shell/lattice_rows.h"
 
 namespace neuralmesh {
 namespace {

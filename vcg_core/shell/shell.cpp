@@ -35,9 +35,6 @@ namespace {
 using vcg::Box3f;
 using vcg::Point3f;
 
-constexpr int kMinMeshVertices = 4;
-// Lattice::size() has to fit into an int: 1024^3 nodes do.
-constexpr int kMaxNodesPerSide = 1024;
 // Enough for a component or handle to keep its shape.
 constexpr int kVerticesPerFeature = 8;
 /// The points do not tell where more vertices of a start mesh are.
@@ -70,14 +67,6 @@ constexpr double kWalled = 0.35;
 // A warning is due from here on, in steps of the first lattice and of the chosen one. Gaps between points are
 // narrower.
 constexpr double kCoarseRadius = 5, kWideOpening = 4;
-
-void check(const ShellOptions& o) {
-    if (o.max_vertices < kMinMeshVertices || o.target_vertices < kMinMeshVertices || !(o.max_nodes >= 1000) ||
-        o.max_nodes_per_side < 16 || o.max_nodes_per_side > kMaxNodesPerSide || !(o.points_per_node >= 1) ||
-        !(o.component_share >= 0 && o.component_share < 1) || o.samples < 4)
-        throw SettingError(
-            "An option of the start mesh is out of range. It needs at least 4 vertices, 1000 lattice nodes, 16 to 1024 nodes per side, 1 point per node and 4 samples, and a component share in [0, 1).");
-}
 
 double area_around(const Network& network, VertexId v) {
     const Ring& ring = network.ring(v);
@@ -255,7 +244,6 @@ struct Shell::Examined {
 
 Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress,
              Surveys* surveys) {
-    check(options);
     progress(0.0, "Start mesh: measuring the density of the cloud");
     auto examined = std::make_unique<Examined>(target, options, random);
     const std::vector<Point3f>& points = examined->start_points.all();
@@ -300,11 +288,6 @@ StartMesh Shell::mesh(Progress& progress) const {
     if (!outliers.empty()) result.warnings.push_back(outliers);
     progress(1.0, "Start mesh: done");
     return result;
-}
-
-StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Random& random,
-                   Progress& progress) {
-    return Shell(target, options, random, progress).mesh(progress);
 }
 
 }  // namespace neuralmesh

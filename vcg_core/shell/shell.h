@@ -103,14 +103,17 @@ struct StartMesh : IndexedMesh<float>, Enclosure {
     std::vector<std::string> warnings;  ///< full sentences for the log
 };
 
-/// shell_of() in two steps. Whether the cloud encloses space is known after the first; if it is open, the
-/// mesh, which may take as long, is not needed.
+/// The shell of a target, in two steps. Whether the cloud encloses space is known after the first; if it is
+/// open, the mesh, which may take as long, is not needed.
+///
+/// Equal targets, options and states of the random numbers give equal meshes on every machine. The surfaces
+/// of hollows are components, seen from within. Time: about 0.2 s, 0.1 s more per million points, and up to 3
+/// s where parts nearly touch. Memory: about 30 bytes per lattice node.
 class Shell {
 public:
     /// Examines the lattices and keeps them, and a reference to \p target. Draws from \p random only if the
     /// target has faces. \p progress gets fractions up to 0.7 of both steps; its answer to stop is ignored.
     /// \param surveys of the points of a target without faces; nullptr: made here
-    /// \throws SettingError if an option is out of range
     Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress,
           Surveys* surveys = nullptr);
     ~Shell();
@@ -118,22 +121,12 @@ public:
     Shell& operator=(const Shell&) = delete;
 
     const Enclosure& enclosure() const;
-    /// The mesh; see shell_of(). \throws InputError if no part of the cloud holds enough points
+    /// The mesh. \throws InputError if no part of the cloud holds enough points
     StartMesh mesh(Progress& progress) const;
 
 private:
     struct Examined;
     std::unique_ptr<const Examined> examined_;
 };
-
-/// The shell of \p target. Equal targets, options and states of \p random give equal meshes on every machine;
-/// random is used only if the target has faces. The surfaces of hollows are components, seen from within.
-///
-/// \p progress is called with fractions from 0 to 1 of this step; its answer to stop is ignored. Time: about
-/// 0.2 s, 0.1 s more per million points, and up to 3 s where parts nearly touch. Memory: about 30 bytes per
-/// lattice node.
-/// \throws SettingError if an option is out of range, InputError if no part of the cloud holds enough points
-StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Random& random,
-                   Progress& progress);
 
 }  // namespace neuralmesh

@@ -65,7 +65,7 @@ int run(int argc, char** argv) {
     const TargetSpace target = target_of_ply(argv[1], settings);
     NoProgress no_progress;
     Random random(1);
-    const StartMesh shell = shell_of(target, ShellOptions(), random, no_progress);
+    const StartMesh shell = Shell(target, ShellOptions(), random, no_progress).mesh(no_progress);
     Learner learner(target, learner_options_from(settings), Network(shell.positions, shell.faces));
     Trace trace(learner);
     learner.run(kSignalsToLand, trace);

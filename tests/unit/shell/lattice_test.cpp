@@ -88,24 +88,6 @@ TEST(Lattice, AdjacencyIsThatOfTheFreudenthalSubdivision) {
     }
 }
 
-TEST(Lattice, ListsTheNeighboursThatAreMembers) {
-    const Lattice lattice = small_lattice();
-    const Neighbours neighbours(lattice);
-    const PerNode<std::uint32_t> members = random_counts(lattice, 7, 2);
-    const auto is_member = [&](NodeId i) { return members[i] != 0; };
-    for (NodeId i = 0; i < lattice.size(); ++i) {
-        std::vector<NodeId> expected, all;
-        neighbours.for_each(i, [&](NodeId j, int) {
-            all.push_back(j);
-            if (is_member(j)) expected.push_back(j);
-        });
-        const NodeList some = neighbours.of(i, is_member);
-        ASSERT_EQ(std::vector<NodeId>(some.begin(), some.end()), expected) << i;
-        const NodeList every = neighbours.of(i, [](NodeId) { return true; });
-        ASSERT_EQ(std::vector<NodeId>(every.begin(), every.end()), all) << i;
-    }
-}
-
 /// Labels by repeated minima: every member takes the smallest label among its neighbours.
 PerNode<NodeId> labels_of(const Lattice& lattice, const PerNode<std::uint32_t>& members) {
     const Neighbours neighbours(lattice);

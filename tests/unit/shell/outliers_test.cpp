@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "tests/unit/support/shapes.h"
-#include "vcg_core/shell/node_groups.h"
 
 namespace neuralmesh {
 namespace {

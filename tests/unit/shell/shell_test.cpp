@@ -23,7 +23,7 @@ StartMesh shell(const std::vector<vcg::Point3d>& cloud, const ShellOptions& opti
     const TargetSpace target = targets::target_of(cloud);
     Random random(1);
     NoProgress progress;
-    return shell_of(target, options, random, progress);
+    return Shell(target, options, random, progress).mesh(progress);
 }
 
 StartMesh shell_of_samples(const shell_shapes::Shape& shape, std::size_t count, double noise = 0) {
@@ -234,7 +234,7 @@ TEST(Shell, MeshAsTarget) {
     NoProgress progress;
     ShellOptions options;
     options.samples = 30000;
-    expect_topology(shell_of(target, options, random, progress), 1, 1);
+    expect_topology(Shell(target, options, random, progress).mesh(progress), 1, 1);
 }
 
 /// Spheres of the given radii about one centre, with \p count points on all.
@@ -278,14 +278,6 @@ TEST(Shell, LayersThatDoNotMeetEncloseNoHollow) {
     std::vector<vcg::Point3d> dirty = spheres({1}, 50000);
     for (const vcg::Point3d& p : spheres({0.5}, 300)) dirty.push_back(p);
     EXPECT_EQ(shell(dirty).components, 1);
-}
-
-TEST(Shell, BadOptionsAreRefused) {
-    Random random(2);
-    const auto cloud = shell_shapes::sample(shell_shapes::sphere(1), 100, random);
-    ShellOptions options;
-    options.max_vertices = 3;
-    EXPECT_THROW(shell(cloud, options), SettingError);
 }
 
 }  // namespace
