@@ -53,7 +53,7 @@ MEASURED = re.compile(r"_table|of the error|times the error|error of|shell_topol
 SUBJECTS = {
     "noise": r"[nN]oise|variance|\bcalm\b|[dD]eviation",
     "points per vertex": r"points_per_vertex|\bper_vertex\(|(?<!Signals)(?<!Wins)PerVertex\b|PerCarried|PerLearned|PrecisePoints"
-                         r"|FewestToFill|points_per_node|PointsPer(Part|Node)",
+                         r"|FewestToFill|PointsPer(Part|Node)",
     "vertices asked for": r"(target|final|wanted|fewest)_vertices|most_wanted|\bcarried\b|grow_to|reduce_to|VerticesToHold"
                           r"|DenseFrom|ByVolumeFrom",
 }

@@ -19,6 +19,13 @@ using vcg::Point3f;
 
 // tests/experiments/tools/shell_topology shows what a change of these figures does.
 
+/// Of the first lattice. A node costs about 30 bytes and 0.3 microseconds. Where parts nearly touch, a
+/// further lattice has up to eight times as many nodes, and a node takes 9 bytes more for each of at most
+/// eight threads.
+constexpr double kMaxNodes = 5.0e5;
+constexpr int kMaxNodesPerSide = 256;
+/// The lattice is as fine as possible with this many points per occupied node on average.
+constexpr double kPointsPerNode = 1.1;
 constexpr std::size_t kMaxLattices = 5;
 constexpr float kCoarser = 1.4F;  // step of a lattice over that of the next finer one
 // The survey ends at this share of the votes: for plain solids, for grown ones before a finer lattice is
@@ -35,10 +42,10 @@ constexpr float kMinStepsPerSide = 8;  // a coarser lattice shows no shape
 
 /// The step of the finest lattice that the limits allow: at most \p max_nodes nodes, and at least \p
 /// points_per_node points per occupied node, so that most nodes of the surface hold points.
-float step_for(const std::vector<Point3f>& points, const Box3f& box, int max_nodes_per_side, double max_nodes,
+float step_for(const std::vector<Point3f>& points, const Box3f& box, double max_nodes,
                double points_per_node) {
     const float side = longest_side(box);
-    float step = side / static_cast<float>(max_nodes_per_side - 2 * Region::kMargin);
+    float step = side / static_cast<float>(kMaxNodesPerSide - 2 * Region::kMargin);
     while (static_cast<double>(Lattice(box, step, Region::kMargin).size()) > max_nodes)
         step *= kNextStepForSize;
     while (step < side / kMinStepsPerSide) {
@@ -61,15 +68,9 @@ std::vector<TopologyAt> plain_topologies(const Region& region) {
 class Surveyor {
 public:
     Surveyor(const std::vector<Point3f>& points, const std::vector<LayerPlace>& places, const Box3f& box,
-             const ShellOptions& options, Progress& progress)
-        : points_(points),
-          places_(places),
-          box_(box),
-          options_(options),
-          progress_(progress),
-          team_(thread_count(options.threads)) {
-        survey_.step =
-            step_for(points, box, options.max_nodes_per_side, options.max_nodes, options.points_per_node);
+             int threads, Progress& progress)
+        : points_(points), places_(places), box_(box), progress_(progress), team_(thread_count(threads)) {
+        survey_.step = step_for(points, box, kMaxNodes, kPointsPerNode);
     }
 
     void examine_plain();
@@ -80,16 +81,13 @@ public:
     LatticeSurvey take();
 
 private:
-    Region region_at(float step) const {
-        return examine(points_, box_, step, options_.component_share, ShellOptions::kSpeckPoints, places_);
-    }
+    Region region_at(float step) const { return examine(points_, box_, step, places_); }
     void report() { progress_(0, "Start mesh: counting components and handles"); }
     void count_votes(bool grown);
 
     const std::vector<Point3f>& points_;
     const std::vector<LayerPlace>& places_;
     const Box3f& box_;
-    const ShellOptions& options_;
     Progress& progress_;
     ThreadTeam team_;
     LatticeSurvey survey_;
@@ -123,8 +121,7 @@ void Surveyor::grow() {
 }
 
 void Surveyor::examine_finer() {
-    const float step = step_for(points_, box_, options_.max_nodes_per_side, kFineNodes * options_.max_nodes,
-                                kFinePointsPerNode * options_.points_per_node);
+    const float step = step_for(points_, box_, kFineNodes * kMaxNodes, kFinePointsPerNode * kPointsPerNode);
     if (step * kCoarser > survey_.step || skips("finer_lattice")) return;
     report();
     survey_.regions.insert(survey_.regions.begin(), region_at(step));
@@ -157,8 +154,8 @@ LatticeSurvey Surveyor::take() {
 }  // namespace
 
 LatticeSurvey survey_lattices(const std::vector<Point3f>& points, const std::vector<LayerPlace>& places,
-                              const Box3f& box, const ShellOptions& options, Progress& progress) {
-    Surveyor surveyor(points, places, box, options, progress);
+                              const Box3f& box, int threads, Progress& progress) {
+    Surveyor surveyor(points, places, box, threads, progress);
     surveyor.examine_plain();
     if (surveyor.confidence() >= kPlainConfidence || skips("bridgeless_growth")) return surveyor.take();
     surveyor.grow();

@@ -11,7 +11,6 @@
 
 #include "vcg_core/base/progress.h"
 #include "vcg_core/shell/region.h"
-#include "vcg_core/shell/shell.h"
 #include "vcg_core/shell/topology_vote.h"
 
 namespace neuralmesh {
@@ -35,8 +34,9 @@ struct LatticeSurvey {
 /// 3. a finer lattice, for surfaces close to each other;
 /// 4. coarser lattices, for clouds with noise and gaps.
 /// If no lattice has a topology, the choice is the largest ball on the coarsest one. Uses
-/// options.threads threads. \p places tell hollows (hollows.h). The result does not depend on the threads.
+/// \p threads threads, 0: one per core. \p places tell hollows (hollows.h). The result does not depend on the
+/// threads.
 LatticeSurvey survey_lattices(const std::vector<vcg::Point3f>& points, const std::vector<LayerPlace>& places,
-                              const vcg::Box3f& box, const ShellOptions& options, Progress& progress);
+                              const vcg::Box3f& box, int threads, Progress& progress);
 
 }  // namespace neuralmesh

@@ -58,7 +58,10 @@ constexpr int kNeighbours = 12;
 /// Points belong to a vertex that is not farther than so many of its radii.
 constexpr float kBelongs = 3;
 
-/// A part with fewer points than options.component_share counts if it is a sheet: of at least so many points
+/// A part counts with this share of the points, and so many of them.
+constexpr double kPartShare = 0.01;
+constexpr long long kPointsOfPart = 20;
+/// A part with fewer points counts if it is a sheet: of at least so many points
 /// and vertices. In a single view of 20,000 points a strip beside an occluded place has some hundred, and
 /// islands seen by two views have 50; clumps of outliers have no vertices.
 constexpr int kPointsOfSheet = 40;
@@ -74,10 +77,9 @@ struct Enough {
 
 Enough enough_points(std::size_t points, const OpenStartOptions& options) {
     const auto all = static_cast<double>(points);
-    const auto share = static_cast<long long>(options.component_share * all);
+    const auto share = static_cast<long long>(kPartShare * all);
     const auto carrying = static_cast<long long>(kLeastPartVertices * all / options.target_vertices);
-    return {std::max<long long>(OpenStartOptions::kLeastPoints, share),
-            std::max<long long>(kPointsOfSheet, carrying)};
+    return {std::max(kPointsOfPart, share), std::max<long long>(kPointsOfSheet, carrying)};
 }
 
 int wanted_vertices(std::size_t points, const OpenStartOptions& options) {

@@ -46,9 +46,6 @@ struct OpenStartOptions {
     double closed_up_to = 0;
     /// Outliers get no component, but are to be learned.
     bool learn_outliers = false;
-    /// A component counts with this share of the points and at least kLeastPoints of them. A sheet of surface
-    /// counts with fewer, if the mesh has vertices for it.
-    double component_share = 0.01;
     /// Parts with a boundary face the side to which most normals of the target point, if it has any, instead
     /// of facing out where they are convex.
     bool use_normals = false;
@@ -57,7 +54,6 @@ struct OpenStartOptions {
     /// 0: one per core. The mesh does not depend on it.
     int threads = 0;
 
-    static constexpr int kLeastPoints = 20;
     /// Fewer points do not tell where a vertex of the start mesh belongs.
     static constexpr int kPointsPerVertex = 4;
     /// Fewer points show no boundary.

@@ -49,12 +49,10 @@ struct Region {
 /// are a single layer. Then large hollows are sealed, too, if their opening is at most 0.8 times as wide as
 /// they are (a head scanned down to the neck).
 ///
-/// A component holds at least \p component_share of the points and at least \p min_component_points, or a
-/// quarter of the points if that is less.
+/// A component holds at least 1 % of the points and at least 20, or a quarter of the points if that is less.
 ///
 /// Hollows, told from the sealed spaces by \p places (hollows.h), are outside as well. O(nodes + points).
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step,
-               double component_share, long long min_component_points,
                const std::vector<LayerPlace>& places = {});
 
 /// True if the solid at \p level is in pieces because the radius is smaller than the distance between points:

@@ -256,7 +256,7 @@ Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& ran
     if (surveys == nullptr) surveys = &made.emplace(points, options.threads);
     const std::vector<LayerPlace> places = layer_places(surveys->points(), team);
     PartOf counting(progress, 0.2, 0.7);
-    examined->survey = survey_lattices(points, places, box, options, counting);
+    examined->survey = survey_lattices(points, places, box, options.threads, counting);
     examined->enclosure = enclosure_of(examined->survey, places, *surveys);
     examined_ = std::move(examined);
 }

@@ -19,7 +19,7 @@
 //    of more vertices tells the two sides of a wall apart (WallSides).
 //
 // Outliers make no component. An isolated group of points makes one if it holds at least 1 % of the points
-// (component_share) and at least kSpeckPoints: of 200,000 points, a group of 1,999 is outliers. Single points
+// and at least 20 (region.cpp): of 200,000 points, a group of 1,999 is outliers. Single points
 // deep inside are outliers, too. The start mesh leaves outliers out, and a warning says how many they are.
 #pragma once
 
@@ -41,8 +41,7 @@ class Surveys;
 /// .048 on where a part is open or a thin wall. Chosen by open_table.py.
 inline constexpr double kMostSheet = 0.04;
 
-/// Limits of cost, and what counts as a component. tests/experiments/tools/shell_topology shows what a change
-/// of the defaults does.
+/// Limits of cost.
 struct ShellOptions {
     /// The start mesh has min(max_vertices, target_vertices / 4) vertices, but at least 8 per component and 8
     /// per handle, and more if the topology needs them.
@@ -51,15 +50,6 @@ struct ShellOptions {
     /// Where walls or gaps are narrower than its edges, the start mesh gets shorter ones: in all up to this
     /// many vertices, and one for every eight points, if the surface encloses space. 0: none.
     int most_vertices = 0;
-    /// Upper limit of the nodes of the first lattice. A node costs about 30 bytes and 0.3 microseconds. Where
-    /// parts nearly touch, a further lattice has up to eight times as many nodes, and a node takes 9 bytes
-    /// more for each of at most eight threads.
-    double max_nodes = 5.0e5;
-    int max_nodes_per_side = 256;
-    /// The lattice is as fine as possible with this many points per occupied node on average.
-    double points_per_node = 1.1;
-    /// A component holds at least this share of the points, and kSpeckPoints.
-    double component_share = 0.01;
     /// Outliers get no component, but are to be learned.
     bool learn_outliers = false;
     /// Points drawn from a target with faces.
@@ -67,7 +57,6 @@ struct ShellOptions {
     /// 0: one per core. The mesh does not depend on it.
     int threads = 0;
 
-    static constexpr int kSpeckPoints = 20;
     /// If outliers are a larger share of the cloud, they are learned: then they are not rare errors.
     static constexpr double kMaxOutlierShare = 0.1;
 };

@@ -55,7 +55,7 @@ private:
     static Region with(const std::vector<Point3f>& others, std::vector<Point3f>& points) {
         append(points, others);
         const vcg::Box3f box(Point3f(-1, -1, -1), Point3f(1, 1, 1));
-        return examine(points, box, 0.04F, 0.01, 20);
+        return examine(points, box, 0.04F);
     }
 };
 

@@ -29,7 +29,7 @@ std::vector<Point3f> square(int count) {
 }
 
 Region region_of(const std::vector<Point3f>& points, float step) {
-    return examine(points, vcg::Box3f(Point3f(-1, -1, -1), Point3f(1, 1, 1)), step, 0.01, 20);
+    return examine(points, vcg::Box3f(Point3f(-1, -1, -1), Point3f(1, 1, 1)), step);
 }
 
 TEST(Region, PointsAreCountedAtTheirNodes) {
@@ -55,8 +55,7 @@ TEST(Region, ASphereEnclosesSpace) {
 
 TEST(Region, KnowsTheShareOfTheSurfaceThatEnclosesNothing) {
     const auto share = [](const std::vector<Point3f>& points) {
-        return sheet_share(
-            examine(points, vcg::Box3f(Point3f(-1, -1, -1), Point3f(5, 1, 1)), 0.05F, 0.01, 20));
+        return sheet_share(examine(points, vcg::Box3f(Point3f(-1, -1, -1), Point3f(5, 1, 1)), 0.05F));
     };
     std::vector<Point3f> points = sphere(20000);
     EXPECT_LT(share(points), 0.001);
