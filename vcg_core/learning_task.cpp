@@ -77,19 +77,30 @@ bool leave_out(LearningTask& task, const std::vector<std::uint8_t>& out) {
     return true;
 }
 
-/// The surveys of the points to learn, made anew after some were left out.
+/// Points that start meshes are made from, if the target has faces.
+constexpr int kDrawn = 200000;
+
+/// The points to learn and their surveys, made anew after some were left out; of a target with faces, points
+/// drawn from them.
 class Survey {
 public:
-    explicit Survey(int threads) : threads_(threads) {}
-    Surveys& of(const std::vector<vcg::Point3f>& points) {
+    explicit Survey(const Settings& settings)
+        : threads_(settings.threads), random_(stream_seed(settings.random_seed, Stream::shell)) {}
+    const std::vector<vcg::Point3f>& points_of(const TargetSpace& target) {
+        if (!target.has_faces()) return target.positions();
+        while (drawn_.size() < kDrawn) drawn_.push_back(target.sample(random_));
+        return drawn_;
+    }
+    Surveys& of(const TargetSpace& target) {
+        const std::vector<vcg::Point3f>& points = points_of(target);
         if (!surveys_ || surveys_->points().cloud.size() != points.size()) surveys_.emplace(points, threads_);
         return *surveys_;
     }
-    /// Of a target without faces, whose points are its surface; else nothing.
-    Surveys* of(const TargetSpace& target) { return target.has_faces() ? nullptr : &of(target.positions()); }
 
 private:
     int threads_;
+    Random random_;
+    std::vector<vcg::Point3f> drawn_;
     std::optional<Surveys> surveys_;
 };
 
@@ -100,14 +111,13 @@ Shell make_shell(const TargetSpace& target, const Settings& settings, Survey& su
     const int most_wanted = std::min(settings.target_vertices, kMostStartVertices / kMostPerFinal);
     options.most_vertices = settings.redistributes_vertices() ? kMostPerFinal * most_wanted : 0;
     options.threads = settings.threads;
-    options.learn_outliers = !settings.remove_outliers;
-    Random random(stream_seed(settings.random_seed, Stream::shell));
-    return Shell(target, options, random, progress, survey.of(target));
+    options.learn_outliers = !settings.remove_outliers || target.is_exact();
+    return Shell(survey.points_of(target), survey.of(target), options, progress);
 }
 
 void remove_outliers(LearningTask& task, Survey& survey, int threads, Progress& progress) {
     const std::vector<std::uint8_t> out =
-        find_outliers(survey.of(task.target().positions()).points(), threads,
+        find_outliers(survey.of(task.target()).points(), threads,
                       [&progress] { progress(0, "Start mesh: looking for outliers"); });
     if (out.empty()) return;
     const auto count = static_cast<std::size_t>(std::count(out.begin(), out.end(), 1));
@@ -137,7 +147,7 @@ LearningTask points_to_learn(const TargetSpace& given, const Settings& settings,
 void measure_noise(LearningTask& task, Survey& survey, const Settings& settings) {
     const std::vector<vcg::Point3f>& points = task.target().positions();
     const int vertices = settings.target_vertices;
-    const SurfaceSurvey& surface = survey.of(points).surface();
+    const SurfaceSurvey& surface = survey.of(task.target()).surface();
     task.noise = surface.noise_in_edges(static_cast<double>(points.size()) / vertices);
     // Closed surfaces are learned from even samples mostly, which one number describes. With the noise of
     // each place feline would have 1.15 times the error at .1 % of the diagonal (50,000 points, 2,000
@@ -150,7 +160,7 @@ void measure_noise(LearningTask& task, Survey& survey, const Settings& settings)
 /// Whether the points have normals that are to be used; a warning, if theirs cannot.
 bool normals_serve(LearningTask& task, Survey& survey, const Settings& settings) {
     if (!settings.use_normals || !task.target().has_normals()) return false;
-    const std::string why_not = why_normals_do_not_serve(task.target(), survey.of(task.target().positions()));
+    const std::string why_not = why_normals_do_not_serve(task.target(), survey.of(task.target()));
     if (!why_not.empty()) task.warnings.push_back(why_not);
     return why_not.empty();
 }
@@ -158,7 +168,7 @@ bool normals_serve(LearningTask& task, Survey& survey, const Settings& settings)
 /// Gives the points weights by which signals are even over the surface.
 void weigh_points(LearningTask& task, Survey& survey) {
     if (skips("even_sampling")) return;
-    std::optional<TargetSpace> even = task.target().evenly(survey.of(task.target().positions()).points());
+    std::optional<TargetSpace> even = task.target().evenly(survey.of(task.target()).points());
     if (even) task.cleaned = std::move(even);
 }
 
@@ -180,13 +190,13 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, S
     options.wanted_vertices = std::clamp(static_cast<int>(kStartShare * grown), 4, kMostStartVertices);
     options.target_vertices = settings.target_vertices;
     options.close_holes_up_to = settings.close_holes_up_to / target.frame().diagonal;
-    options.learn_outliers = !settings.remove_outliers;
+    options.learn_outliers = !settings.remove_outliers || target.is_exact();
     if (settings.surface != kOpenSurface && settings.close_holes_up_to < 0)
         options.closed_up_to = widest_closed(target);
     options.use_normals = settings.use_normals;
     Random random(stream_seed(settings.random_seed, Stream::shell));
     options.threads = settings.threads;
-    return open_start(target, options, random, progress, survey.of(target));
+    return open_start(target, survey.points_of(target), survey.of(target), options, random, progress);
 }
 
 /// What becomes of walls whose sides cannot be told apart.
@@ -379,7 +389,7 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
 }  // namespace
 
 LearningTask points_to_learn(const TargetSpace& given, const Settings& settings) {
-    Survey survey(settings.threads);
+    Survey survey(settings);
     NoProgress progress;
     return points_to_learn(given, settings, survey, progress);
 }
@@ -388,7 +398,7 @@ LearningTask prepare(const TargetSpace& given, const Settings& settings, const I
                      Progress& progress) {
     progress(0, "Start mesh: looking for outliers");
     refuse_rounding(given, settings.target_vertices);
-    Survey survey(settings.threads);
+    Survey survey(settings);
     LearningTask task = points_to_learn(given, settings, survey, progress);
     progress(0, "Start mesh: examining the points");
     Settings trusted = settings;

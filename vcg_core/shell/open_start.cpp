@@ -25,7 +25,6 @@
 #include "vcg_core/shell/point_triangulation.h"
 #include "vcg_core/shell/sensor_place.h"
 #include "vcg_core/shell/short_handles.h"
-#include "vcg_core/shell/start_points.h"
 #include "vcg_core/shell/viewpoint.h"
 
 namespace neuralmesh {
@@ -344,15 +343,11 @@ void write_mesh(const Network& network, OpenStart& result) {
 
 }  // namespace
 
-OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options, Random& random,
-                     Progress& progress, Surveys* given) {
+OpenStart open_start(const TargetSpace& target, const std::vector<Point3f>& points, Surveys& surveys,
+                     const OpenStartOptions& options, Random& random, Progress& progress) {
     progress(0.0, "Start mesh: surveying the cloud");
-    const StartPoints start_points(target, options.samples, random);
-    const std::vector<Point3f>& points = start_points.all();
     check_enough_points(points.size());
     ThreadTeam team(thread_count(options.threads));
-    Surveys own(points, options.threads);
-    Surveys& surveys = given != nullptr ? *given : own;
     const SurfaceSurvey& surface = surveys.surface();
     check_for_surface(surface);
 
@@ -380,7 +375,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     result.fewest_vertices = fewest_vertices(std::move(network), options.target_vertices);
     result.radius = std::max(surface.sparse_radius(), surface.usual_radius());
     result.layers = surface.layers();
-    set_outliers(std::move(out), options.learn_outliers || target.is_exact(), result);
+    set_outliers(std::move(out), options.learn_outliers, result);
     warn_of_cuts(target, sheet.contradictions, result);
     progress(1.0, "Start mesh: done");
     return result;

@@ -49,8 +49,6 @@ struct OpenStartOptions {
     /// Parts with a boundary face the side to which most normals of the target point, if it has any, instead
     /// of facing out where they are convex.
     bool use_normals = false;
-    /// Points drawn from a target that is a mesh.
-    int samples = 100000;
     /// 0: one per core. The mesh does not depend on it.
     int threads = 0;
 
@@ -86,12 +84,10 @@ struct OpenStart {
     std::vector<std::string> warnings;  ///< full sentences
 };
 
-/// The open start mesh of \p target. The same target, options and state of \p random give the same mesh
-/// everywhere. \p progress gets fractions from 0 to 1; a
-/// wish to stop is not answered (0.3 s for 100,000 points).
-/// \param given of the points of a target without faces; nullptr: made here
-/// \throws NoSurfaceError; InputError if there are too few points
-OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options, Random& random,
-                     Progress& progress, Surveys* given = nullptr);
+/// The open start mesh of \p target, from \p points of it, of which \p surveys are. Equal arguments give
+/// equal meshes everywhere. \p progress gets fractions from 0 to 1; a wish to stop is not answered (0.3 s for
+/// 100,000 points). \throws NoSurfaceError; InputError if there are too few points
+OpenStart open_start(const TargetSpace& target, const std::vector<vcg::Point3f>& points, Surveys& surveys,
+                     const OpenStartOptions& options, Random& random, Progress& progress);
 
 }  // namespace neuralmesh

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -17,6 +16,7 @@
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/even_mesh.h"
 #include "vcg_core/base/text.h"
+#include "vcg_core/base/thread_team.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/simplify.h"
 #include "vcg_core/mesh/triangle.h"
@@ -25,9 +25,8 @@
 #include "vcg_core/shell/local_width.h"
 #include "vcg_core/shell/outliers.h"
 #include "vcg_core/shell/region.h"
-#include "vcg_core/shell/start_points.h"
-#include "vcg_core/target/noise_by_place.h"
 #include "vcg_core/target/opposite_layers.h"
+#include "vcg_core/target/surface_survey.h"
 
 namespace neuralmesh {
 namespace {
@@ -196,14 +195,13 @@ Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace
     return result;
 }
 
-void set_outliers(const TargetSpace& target, const std::vector<Point3f>& points, const Region& region,
-                  const ClosedMesh& closed, bool learn_outliers, StartMesh& result) {
+void set_outliers(const std::vector<Point3f>& points, const Region& region, const ClosedMesh& closed,
+                  bool learn_outliers, StartMesh& result) {
     if (skips("lattice_outliers")) return;
     result.outliers = outliers_of(points, region, closed.solid, closed.level);
     result.ignored_points = std::count(result.outliers.begin(), result.outliers.end(), 1);
     const double most = ShellOptions::kMaxOutlierShare * static_cast<double>(points.size());
-    if (learn_outliers || target.is_exact() || static_cast<double>(result.ignored_points) > most)
-        result.outliers.clear();
+    if (learn_outliers || static_cast<double>(result.ignored_points) > most) result.outliers.clear();
 }
 
 void warn_of_uncertain_topology(const LatticeSurvey& survey, StartMesh& result) {
@@ -232,33 +230,24 @@ void warn_of_open_surface(StartMesh& result) {
 }  // namespace
 
 struct Shell::Examined {
-    const TargetSpace& target;
+    const std::vector<Point3f>& points;
     const ShellOptions options;
-    const StartPoints start_points;
     LatticeSurvey survey;
     Enclosure enclosure;
-
-    Examined(const TargetSpace& of, const ShellOptions& chosen, Random& random)
-        : target(of), options(chosen), start_points(of, chosen.samples, random) {}
 };
 
-Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress,
-             Surveys* surveys) {
+Shell::Shell(const std::vector<Point3f>& points, Surveys& surveys, const ShellOptions& options,
+             Progress& progress) {
     progress(0.0, "Start mesh: measuring the density of the cloud");
-    auto examined = std::make_unique<Examined>(target, options, random);
-    const std::vector<Point3f>& points = examined->start_points.all();
     Box3f box;
     for (const Point3f& p : points) box.Add(p);
-
     progress(0.2, "Start mesh: counting components and handles");
     ThreadTeam team(thread_count(options.threads));
-    std::optional<Surveys> made;
-    if (surveys == nullptr) surveys = &made.emplace(points, options.threads);
-    const std::vector<LayerPlace> places = layer_places(surveys->points(), team);
+    const std::vector<LayerPlace> places = layer_places(surveys.points(), team);
     PartOf counting(progress, 0.2, 0.7);
-    examined->survey = survey_lattices(points, places, box, options.threads, counting);
-    examined->enclosure = enclosure_of(examined->survey, places, *surveys);
-    examined_ = std::move(examined);
+    LatticeSurvey survey = survey_lattices(points, places, box, options.threads, counting);
+    const Enclosure enclosure = enclosure_of(survey, places, surveys);
+    examined_.reset(new Examined{points, options, std::move(survey), enclosure});
 }
 
 Shell::~Shell() = default;
@@ -267,7 +256,7 @@ const Enclosure& Shell::enclosure() const { return examined_->enclosure; }
 
 StartMesh Shell::mesh(Progress& progress) const {
     progress(0.7, "Start mesh: building the mesh");
-    const std::vector<Point3f>& points = examined_->start_points.all();
+    const std::vector<Point3f>& points = examined_->points;
     const LatticeSurvey& survey = examined_->survey;
     const Region& region = survey.chosen_region();
     ClosedMesh closed = closed_mesh(region, survey.vote);
@@ -279,7 +268,7 @@ StartMesh Shell::mesh(Progress& progress) const {
     set_mesh(closed, region, points.size(), examined_->options, progress, result);
     progress(0.9, "Start mesh: measuring it");
     set_figures(survey, closed.level, result);
-    set_outliers(examined_->target, points, region, closed, examined_->options.learn_outliers, result);
+    set_outliers(points, region, closed, examined_->options.learn_outliers, result);
     warn_of_uncertain_topology(survey, result);
     warn_of_open_surface(result);
     const std::string outliers =

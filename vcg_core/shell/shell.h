@@ -23,15 +23,15 @@
 // deep inside are outliers, too. The start mesh leaves outliers out, and a warning says how many they are.
 #pragma once
 
+#include <vcg/space/point3.h>
+
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "vcg_core/base/progress.h"
-#include "vcg_core/base/random.h"
 #include "vcg_core/mesh/indexed_mesh.h"
-#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 
@@ -52,8 +52,6 @@ struct ShellOptions {
     int most_vertices = 0;
     /// Outliers get no component, but are to be learned.
     bool learn_outliers = false;
-    /// Points drawn from a target with faces.
-    int samples = 200000;
     /// 0: one per core. The mesh does not depend on it.
     int threads = 0;
 
@@ -86,25 +84,24 @@ struct StartMesh : IndexedMesh<float>, Enclosure {
     double radius = 0;             ///< of the ball; the mesh lies about this far outside the points
     double resolution = 0;         ///< distance of the lattice nodes
     long long ignored_points = 0;  ///< outliers: the mesh leaves them out
-    /// 1 for each outlier of the cloud. Empty if all points are to be learned: there are no outliers, they
-    /// exceed kMaxOutlierShare, or the target has faces.
+    /// 1 for each outlier of the cloud. Empty if all points are to be learned: there are no outliers, or
+    /// they exceed kMaxOutlierShare.
     std::vector<std::uint8_t> outliers;
     std::vector<std::string> warnings;  ///< full sentences for the log
 };
 
-/// The shell of a target, in two steps. Whether the cloud encloses space is known after the first; if it is
+/// The shell of points, in two steps. Whether the cloud encloses space is known after the first; if it is
 /// open, the mesh, which may take as long, is not needed.
 ///
-/// Equal targets, options and states of the random numbers give equal meshes on every machine. The surfaces
+/// Equal points and options give equal meshes on every machine. The surfaces
 /// of hollows are components, seen from within. Time: about 0.2 s, 0.1 s more per million points, and up to 3
 /// s where parts nearly touch. Memory: about 30 bytes per lattice node.
 class Shell {
 public:
-    /// Examines the lattices and keeps them, and a reference to \p target. Draws from \p random only if the
-    /// target has faces. \p progress gets fractions up to 0.7 of both steps; its answer to stop is ignored.
-    /// \param surveys of the points of a target without faces; nullptr: made here
-    Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress,
-          Surveys* surveys = nullptr);
+    /// Examines the lattices and keeps them, and a reference to \p points, of which \p surveys are. \p
+    /// progress gets fractions up to 0.7 of both steps; its answer to stop is ignored.
+    Shell(const std::vector<vcg::Point3f>& points, Surveys& surveys, const ShellOptions& options,
+          Progress& progress);
     ~Shell();
     Shell(const Shell&) = delete;
     Shell& operator=(const Shell&) = delete;

@@ -11,6 +11,7 @@
 #include "vcg_core/learn_and_fit.h"
 #include "vcg_core/learning/learner.h"
 #include "vcg_core/shell/shell.h"
+#include "vcg_core/target/surface_survey.h"
 
 namespace {
 
@@ -64,8 +65,8 @@ int run(int argc, char** argv) {
     settings.check();
     const TargetSpace target = target_of_ply(argv[1], settings);
     NoProgress no_progress;
-    Random random(1);
-    const StartMesh shell = Shell(target, ShellOptions(), random, no_progress).mesh(no_progress);
+    Surveys surveys(target.positions(), settings.threads);
+    const StartMesh shell = Shell(target.positions(), surveys, ShellOptions(), no_progress).mesh(no_progress);
     Learner learner(target, learner_options_from(settings), Network(shell.positions, shell.faces));
     Trace trace(learner);
     learner.run(kSignalsToLand, trace);

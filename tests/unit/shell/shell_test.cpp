@@ -15,15 +15,16 @@
 #include "tests/unit/support/shell_shapes.h"
 #include "tests/unit/support/targets.h"
 #include "vcg_core/mesh/network.h"
+#include "vcg_core/target/surface_survey.h"
 
 namespace neuralmesh {
 namespace {
 
 StartMesh shell(const std::vector<vcg::Point3d>& cloud, const ShellOptions& options = {}) {
     const TargetSpace target = targets::target_of(cloud);
-    Random random(1);
+    Surveys surveys(target.positions(), options.threads);
     NoProgress progress;
-    return Shell(target, options, random, progress).mesh(progress);
+    return Shell(target.positions(), surveys, options, progress).mesh(progress);
 }
 
 StartMesh shell_of_samples(const shell_shapes::Shape& shape, std::size_t count, double noise = 0) {
@@ -223,18 +224,6 @@ TEST(Shell, SparseCloudSameBytesForAnyNumberOfThreads) {
     alone.threads = 1;
     together.threads = 3;
     expect_same_bytes(shell(cloud, alone), shell(cloud, together));
-}
-
-TEST(Shell, MeshAsTarget) {
-    const shell_shapes::Shape torus = shell_shapes::torus(1, 0.3);
-    const TargetSpace target = TargetSpace::triangles(torus.faces.size(), [&](std::size_t i, int k) {
-        return torus.positions[static_cast<std::size_t>(torus.faces[i][static_cast<std::size_t>(k)])];
-    });
-    Random random(1);
-    NoProgress progress;
-    ShellOptions options;
-    options.samples = 30000;
-    expect_topology(Shell(target, options, random, progress).mesh(progress), 1, 1);
 }
 
 /// Spheres of the given radii about one centre, with \p count points on all.
