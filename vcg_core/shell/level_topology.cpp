@@ -8,7 +8,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 #include "vcg_core/base/disjoint_sets.h"
@@ -17,25 +16,6 @@
 
 namespace neuralmesh {
 namespace {
-
-/// The nodes of all levels, those of level l from first[l] to first[l + 1] in rising order.
-struct NodesByLevel {
-    std::vector<NodeId> nodes;
-    PerLevel<int> first;
-};
-
-/// A counting sort of the nodes with clearance < levels.
-NodesByLevel nodes_by_level(const PerNode<SquaredRadius>& clearance, int levels) {
-    NodesByLevel result{{}, PerLevel<int>(levels + 2, 0)};
-    for (const SquaredRadius c : clearance) ++result.first[c + 1];
-    std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
-    Indexed<NodeId> nodes(result.first[levels]);
-    PerLevel<int> place = result.first;
-    for (NodeId i = 0; i < clearance.size(); ++i)
-        if (clearance[i] < levels) nodes[place[clearance[i]]++] = i;
-    result.nodes = std::move(nodes.vector());
-    return result;
-}
 
 /// Components and specks of a solid that grows node by node.
 class ComponentCount {
@@ -84,15 +64,16 @@ PerLevel<LevelTopology> topology_of_levels(const Lattice& lattice, const PerNode
                                            const PerNode<std::uint32_t>& counts, int max_radius,
                                            long long min_points, const std::vector<NodeId>& hollows) {
     const int levels = max_radius * max_radius + 1;  // a clearance of this much is outside at every level
-    const NodesByLevel order = nodes_by_level(clearance, levels);
+    PerLevel<std::vector<NodeId>> nodes(levels);
+    for (NodeId i = 0; i < clearance.size(); ++i)
+        if (clearance[i] < levels) nodes[clearance[i]].push_back(i);
     const Neighbours neighbours(lattice);
     const LinkTopology& links = LinkTopology::table();
     ComponentCount components(lattice, counts, min_points);
     PerLevel<LevelTopology> result(levels);
     int euler = 0;
     for (int l = 0; l < levels; ++l) {
-        for (int k = order.first[l]; k < order.first[l + 1]; ++k) {
-            const NodeId i = order.nodes[static_cast<std::size_t>(k)];
+        for (const NodeId i : nodes[l]) {
             const NeighbourSet link = neighbours_in(neighbours, i, neighbours.places(i), [&](NodeId j) {
                 return clearance[j] < l || (clearance[j] == l && j < i);
             });
