@@ -192,7 +192,7 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, S
     options.close_holes_up_to = settings.close_holes_up_to / target.frame().diagonal;
     options.learn_outliers = !settings.remove_outliers || target.is_exact();
     if (settings.surface != kOpenSurface && settings.close_holes_up_to < 0)
-        options.closed_up_to = widest_closed(target);
+        options.closed_up_to = kWidestClosed;
     options.use_normals = settings.use_normals;
     Random random(stream_seed(settings.random_seed, Stream::shell));
     options.threads = settings.threads;
@@ -236,8 +236,8 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& she
         warn_of_thin_walls(task, start.layers, shell.encloses_space ? kSidesMayCross : kOneSheetClosed);
         const bool whole = !start.misses_surface && !loses_more(start, shell);
         const bool open = automatic && start.loops > 0 && !start.layers.two && whole &&
-                          (target.has_faces() || may_be_open(shell, target, settings, start.radius)) &&
-                          (settings.close_holes_up_to >= 0 || start.widest_loop > widest_closed(target));
+                          may_be_open(shell, target, settings, start.radius) &&
+                          (settings.close_holes_up_to >= 0 || start.widest_loop > kWidestClosed);
         const bool fits = vertices_needed(start, settings) <= settings.target_vertices;
         if ((open && (fits || !shell.encloses_space)) || (fits && encloses_more(start, shell))) return start;
     } catch (const NoSurfaceError&) {
@@ -274,7 +274,7 @@ void begin_tetrahedron(LearningTask& task, const Settings& settings) {
     task.topology_rules.from_tetrahedron = true;
     if (settings.surface == kClosedSurface) return;
     const double asked = settings.close_holes_up_to / task.target().frame().diagonal;
-    const double chosen = settings.surface == kOpenSurface ? 0 : widest_closed(task.target());
+    const double chosen = settings.surface == kOpenSurface ? 0 : kWidestClosed;
     task.topology_rules.opens_from = static_cast<float>(asked >= 0 ? asked : chosen);
 }
 

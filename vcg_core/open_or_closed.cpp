@@ -5,15 +5,10 @@
 
 #include <algorithm>
 
-#include "vcg_core/shell/face_boundary.h"
-
 namespace neuralmesh {
 
 namespace {
 
-/// Openings of closed models (places without points on large faces, cavities) are narrower than this share of
-/// the diagonal, those of scans and cut models wider. Chosen by open_table.py.
-constexpr double kWidestClosed = 0.066;
 /// Sparse and noisy points leave openings, and places that enclose nothing, in closed surfaces, too: openings
 /// as wide as 2.3 radii and a sheet share of 4.4 times the radius were found with 500 to 15,000 points of
 /// five closed models. Of the same models cut by a plane one of the two is above these bounds.
@@ -21,14 +16,9 @@ constexpr double kOpeningRadii = 3, kSheetRadii = 5;
 
 }  // namespace
 
-double widest_closed(const TargetSpace& target) {
-    return target.has_faces() ? kWidestClosed / 2 : kWidestClosed;
-}
-
 bool may_be_open(const Enclosure& shell, const TargetSpace& target, const Settings& settings, double radius) {
     const bool chosen = settings.close_holes_up_to >= 0;
     const double asked = settings.close_holes_up_to / target.frame().diagonal;
-    if (target.has_faces()) return widest_face_boundary(target) > (chosen ? asked : kWidestClosed);
     const double widest = chosen ? asked : std::max(kWidestClosed, kOpeningRadii * radius);
     if (shell.walled) return false;
     return !shell.encloses_space || 2 * shell.widest_opening > widest ||

@@ -11,12 +11,13 @@
 
 namespace neuralmesh {
 
-/// The widest hole of the open start mesh that is closed. That of a layer with faces opens what is wider in
-/// its faces; points drawn from them leave narrower holes.
-double widest_closed(const TargetSpace& target);
+/// The widest hole of the open start mesh that is closed. Openings of closed models (places without points on
+/// large faces, cavities) are narrower than this share of the diagonal, those of scans and cut models wider.
+/// Chosen by open_table.py.
+inline constexpr double kWidestClosed = 0.066;
 
 /// Whether the cloud may be open: the shell closed wide openings, or a part of it has no space inside, and is
-/// no thin wall. A layer with faces is open where they end.
+/// no thin wall.
 /// \param radius on which the points are a surface, 0 if it is not known yet
 bool may_be_open(const Enclosure& shell, const TargetSpace& target, const Settings& settings, double radius);
 
