@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 #include "vcg_core/base/ablation.h"
@@ -41,8 +40,6 @@ constexpr double kStartShare = 0.5;
 constexpr double kShellMade = 0.6;  // of the progress
 /// More points tell the surface, and learning gives better shaped faces than those of their hull.
 constexpr std::size_t kFewPoints = 128;
-/// The sides of walls thicker than this, in spacings of the points, are told apart (opposite_layers.h).
-constexpr double kToldSpacings = 4;
 
 /// The start mesh of the paper, in the middle of the cloud, which is the origin of the core's frame; or a
 /// large one, whose corners lie outside of most clouds. A small one that begins between handles reaches their
@@ -199,23 +196,9 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, S
     return open_start(target, survey.points_of(target), survey.of(target), options, random, progress);
 }
 
-/// What becomes of walls whose sides cannot be told apart.
-constexpr const char* kSidesMayCross = "The sides of the mesh may cross there.";
-constexpr const char* kOneSheetClosed = "They were learned as one sheet, closed around both sides.";
-constexpr const char* kOneSheet = "They were learned as one sheet.";
-
-/// Warns if the points lie on the two sides of walls too thin to tell the sides apart.
 void warn_of_thin_walls(LearningTask& task, const LayerFigures& layers, const char* outcome) {
-    if (!layers.two || layers.thickness > kToldSpacings * layers.spacing) return;
-    const double diagonal = task.target().frame().diagonal;
-    std::ostringstream text = stream_with(2);
-    text
-        << "The points lie on the two sides of walls about " << layers.thickness * diagonal
-        << " thick, which cannot be told apart: the points of each side are about "
-        << layers.spacing * diagonal << " from each other. " << outcome
-        << " For both sides take points a quarter of the thickness from each other; for one, the points of one "
-           "side only.";
-    task.warnings.push_back(text.str());
+    const std::string text = warning_of_thin_walls(layers, task.target().frame().diagonal, outcome);
+    if (!text.empty()) task.warnings.push_back(text);
 }
 
 /// Of those of a start mesh, an OpenStart or a StartMesh; the fit, if there is one, reduces it.
@@ -233,7 +216,10 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& she
     const bool automatic = settings.surface == kAutomatic;
     try {
         OpenStart start = make_open_start(target, settings, survey, progress);
-        warn_of_thin_walls(task, start.layers, shell.encloses_space ? kSidesMayCross : kOneSheetClosed);
+        warn_of_thin_walls(task, start.layers,
+                           shell.encloses_space
+                               ? "The sides of the mesh may cross there."
+                               : "They were learned as one sheet, closed around both sides.");
         const bool whole = !start.misses_surface && !loses_more(start, shell);
         const bool open = automatic && start.loops > 0 && !start.layers.two && whole &&
                           may_be_open(shell, target, settings, start.radius) &&
@@ -260,8 +246,7 @@ void begin_open(LearningTask& task, OpenStart start, const Settings& settings) {
         task.warnings.push_back(
             "The points enclose no space, or openings too wide to close: the surface ends "
             "where they end. Choose surface 1 to close it.");
-    std::vector<vcg::Point3f> viewer;
-    if (start.viewer) viewer.push_back(*start.viewer);
+    std::vector<vcg::Point3f> viewer(start.viewer ? 1 : 0, start.viewer.value_or(vcg::Point3f()));
     remove_groups_without_component(task, start.outliers, {&start.positions, &viewer});
     task.parts_faced_by_normals = start.faced_by_normals;
     task.network = Network(start.positions, start.faces);
@@ -379,7 +364,7 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
     }
     if (settings.surface == kOpenSurface) {
         OpenStart start = make_open_start(task.target(), settings, survey, progress);
-        warn_of_thin_walls(task, start.layers, kOneSheet);
+        warn_of_thin_walls(task, start.layers, "They were learned as one sheet.");
         begin_open(task, std::move(start), settings);
         return;
     }

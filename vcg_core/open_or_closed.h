@@ -4,6 +4,8 @@
 // Whether the surface of a cloud is open or closed, by what its shell and its open start mesh say.
 #pragma once
 
+#include <string>
+
 #include "vcg_core/settings.h"
 #include "vcg_core/shell/open_start.h"
 #include "vcg_core/shell/shell.h"
@@ -29,5 +31,9 @@ bool encloses_more(const OpenStart& start, const Enclosure& shell);
 /// which nothing is enclosed are covered on both sides, which is half as bad. Views that do not quite meet
 /// look like clutter to the one, and like a sheet to the other.
 bool loses_more(const OpenStart& start, const Enclosure& shell);
+
+/// A sentence if most points lie on the two sides of walls too thin to tell the sides apart; else empty.
+/// \param diagonal of the frame \param outcome what became of them, a sentence
+std::string warning_of_thin_walls(const LayerFigures& layers, double diagonal, const char* outcome);
 
 }  // namespace neuralmesh
