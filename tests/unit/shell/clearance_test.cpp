@@ -61,33 +61,7 @@ TEST(Clearance, IsTheFixedPointOfRelaxation) {
                 squared_distances(lattice, random_counts(lattice, seed, one_in), kLargestRadius);
             const PerNode<SquaredRadius> relaxed = relaxed_clearances(lattice, distances);
             EXPECT_EQ(clearances(lattice, distances, kLargestRadius, {}), relaxed) << one_in;
-            // The same node by node, as with an inside: of a node that no path crosses.
-            NodeSet inside(lattice.size(), 0);
-            PerNode<SquaredRadius> closed = distances;
-            closed[lattice.index(6, 6, 6)] = 0;
-            inside[lattice.index(6, 6, 6)] = 1;
-            EXPECT_EQ(clearances(lattice, closed, kLargestRadius, inside),
-                      relaxed_clearances(lattice, closed));
         }
-}
-
-/// A corridor that turns back at both ends: paths along it run to and fro in all three directions.
-TEST(Clearance, FollowsACorridorToItsEnd) {
-    const Lattice lattice(vcg::Box3f(vcg::Point3f(0, 0, 0), vcg::Point3f(12, 12, 12)), 1.0F, 0);
-    PerNode<SquaredRadius> distances(lattice.size(), 0);
-    for_each_node(lattice, [&](int x, int y, int z) {
-        const bool floor = z % 2 == 1, wall = y % 2 == 1;
-        const bool stairs = x == (y % 4 == 1 ? 11 : 1) && !floor;
-        const bool hatch = x == 6 && y == (z % 4 == 1 ? 10 : 2);
-        const bool inner = x > 0 && y > 0 && z > 0 && x < 12 && y < 12 && z < 12;
-        const bool room = inner && !floor && !wall;
-        if (room || (inner && wall && stairs) || (inner && floor && hatch))
-            distances[lattice.index(x, y, z)] = static_cast<SquaredRadius>(4 + (x + y) % 3);
-    });
-    distances[lattice.index(6, 0, 2)] = distances[lattice.index(6, 1, 2)] = 5;  // the door
-    const PerNode<SquaredRadius> found = clearances(lattice, distances, kLargestRadius, {});
-    EXPECT_EQ(found, relaxed_clearances(lattice, distances));
-    EXPECT_GT(found[lattice.index(6, 10, 10)], 0);
 }
 
 /// The surface of a cube of 17 x 17 x 17 nodes with a hole of 3 x 3 nodes in its lid.
