@@ -170,13 +170,6 @@ TEST(OpenStart, RefusesWhatIsNoSurface) {
     EXPECT_NE(refusal(shapes::plane_cloud(99)).find("too few"), std::string::npos);
 }
 
-TEST(OpenStart, RepeatsItself) {
-    const Cloud cloud = open_shapes::cases()[0].cloud;
-    const OpenStart first = start_of(cloud), second = start_of(cloud);
-    EXPECT_EQ(first.faces, second.faces);
-    EXPECT_TRUE(first.positions == second.positions);
-}
-
 TEST(OpenStart, KeepsASmallSheetButNoClump) {
     // Half a sphere, and apart from it .7 % of the points: on a small square, or in a ball.
     Cloud half =

@@ -210,12 +210,6 @@ void expect_same_bytes(const StartMesh& a, const StartMesh& b) {
     EXPECT_EQ(a.faces, b.faces);
 }
 
-TEST(Shell, SameCloudSameBytes) {
-    Random random(2);
-    const auto cloud = shell_shapes::sample(shell_shapes::torus(1, 0.4), 20000, random);
-    expect_same_bytes(shell(cloud), shell(cloud));
-}
-
 /// Only where parts nearly touch, as the points of a sparse cloud do, does the shell use threads.
 TEST(Shell, SparseCloudSameBytesForAnyNumberOfThreads) {
     Random random(16);
