@@ -57,28 +57,16 @@ constexpr int kNeighbours = 12;
 /// Points belong to a vertex that is not farther than so many of its radii.
 constexpr float kBelongs = 3;
 
-/// A part counts with this share of the points, and so many of them.
-constexpr double kPartShare = 0.01;
-constexpr long long kPointsOfPart = 20;
-/// A part with fewer points counts if it is a sheet: of at least so many points
-/// and vertices. In a single view of 20,000 points a strip beside an occluded place has some hundred, and
-/// islands seen by two views have 50; clumps of outliers have no vertices.
-constexpr int kPointsOfSheet = 40;
-constexpr int kVerticesOfSheet = 3;
-/// The least share of the points that such a part may have, times the vertices asked for. It takes three of
-/// them, so more small parts than that would leave none for the others.
+/// The points that a part has at least. In a single view of 20,000 points a strip beside an occluded place
+/// has some hundred, and islands seen by two views have 50; clumps of outliers have no faces.
+constexpr int kPointsOfPart = 40;
+/// Their least share of all points, times the vertices asked for. A part takes three of them, so more small
+/// parts than that would leave none for the others.
 constexpr double kLeastPartVertices = 0.3;
 
-/// The points that a part needs, and a part that is a sheet of surface.
-struct Enough {
-    long long points, on_sheet;
-};
-
-Enough enough_points(std::size_t points, const OpenStartOptions& options) {
-    const auto all = static_cast<double>(points);
-    const auto share = static_cast<long long>(kPartShare * all);
-    const auto carrying = static_cast<long long>(kLeastPartVertices * all / options.target_vertices);
-    return {std::max(kPointsOfPart, share), std::max<long long>(kPointsOfSheet, carrying)};
+long long points_of_part(std::size_t points, const OpenStartOptions& options) {
+    const double carrying = kLeastPartVertices * static_cast<double>(points) / options.target_vertices;
+    return std::max<long long>(kPointsOfPart, static_cast<long long>(carrying));
 }
 
 int wanted_vertices(std::size_t points, const OpenStartOptions& options) {
@@ -186,20 +174,16 @@ std::vector<int> vertices_of_points(Surveys& surveys, const Sheet& sheet, Thread
     return vertices;
 }
 
-/// Drops the parts of \p sheet that have too few points. \return 1 for each point of \p cloud, in the order
-/// given, that belongs to nothing that is kept
-std::vector<std::uint8_t> drop_small_parts(Surveys& surveys, const Enough& enough, ThreadTeam& team,
+/// Drops the parts of \p sheet that have fewer than \p least points. \return 1 for each point of \p cloud, in
+/// the order given, that belongs to nothing that is kept
+std::vector<std::uint8_t> drop_small_parts(Surveys& surveys, long long least, ThreadTeam& team,
                                            Sheet& sheet) {
     const Parts parts = parts_of(sheet.mesh);
     const std::vector<int> vertices = vertices_of_points(surveys, sheet, team);
-    std::vector<long long> points(at(parts.count), 0), size(at(parts.count), 0);
+    std::vector<long long> points(at(parts.count), 0);
     for (const int v : vertices)
         if (v >= 0) ++points[at(parts.of[v])];
-    for (const int part : parts.of) ++size[at(part)];
-    const auto counts = [&](int part) {
-        return points[at(part)] >= enough.points ||
-               (points[at(part)] >= enough.on_sheet && size[at(part)] >= kVerticesOfSheet);
-    };
+    const auto counts = [&](int part) { return points[at(part)] >= least; };
     std::vector<Triangle>& faces = sheet.mesh.faces;
     faces.erase(std::remove_if(faces.begin(), faces.end(),
                                [&](const Triangle& f) { return !counts(parts.of[f[0]]); }),
@@ -359,8 +343,8 @@ OpenStart open_start(const TargetSpace& target, const std::vector<Point3f>& poin
     progress(0.6, "Start mesh: building an open mesh");
     Sheet sheet = sheet_of(std::move(consolidated), target.frame().inside({0, 0, 0}),
                            sensor_place(surveys.points().cloud, surface.places()), team);
-    const Enough enough = enough_points(points.size(), options);
-    std::vector<std::uint8_t> out = drop_small_parts(surveys, enough, team, sheet);
+    std::vector<std::uint8_t> out =
+        drop_small_parts(surveys, points_of_part(points.size(), options), team, sheet);
     check_for_part(!sheet.mesh.faces.empty());
     OpenStart result;
     result.misses_surface = misses_surface(surveys, out);
