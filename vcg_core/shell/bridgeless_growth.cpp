@@ -22,7 +22,15 @@ constexpr int kGrownLevelOfOccupied = 2;
 /// Dense for small radii, where gaps between points and narrow handles appear and vanish.
 constexpr std::array<int, 8> kGrownFromLevels = {0, 1, 2, 3, 4, 6, 9, 16};
 
+// Pieces that join within this squared radius, and hold this share of the points, are fragments.
+constexpr int kJoiningLevel = 4 * 4;
+constexpr double kFragmentShare = 0.05;
+
 constexpr std::uint8_t kInSolid = 1;
+
+Solid solid_at(const Region& region, int level) {
+    return solid_of(region.lattice, region.clearance, region.counts, level, region.min_points);
+}
 
 /// Adds the components of the nodes left out of \p solid that touch no node with clearance > level.
 /// \p left_out holds all nodes of clearance <= level that were outside before growth.
@@ -86,23 +94,28 @@ int grown_level(int level) {
 }
 
 NodeSet grown_solid(const Region& region, int level) {
-    NodeSet solid = solid_of(region.lattice, region.clearance, region.counts, level, region.min_points);
+    NodeSet solid = solid_at(region, level).nodes;
     grow_without_bridges(region.lattice, region.clearance, grown_level(level), solid);
     return solid;
 }
 
 std::vector<TopologyAt> grown_topologies(const Region& region, ThreadTeam& team) {
-    std::vector<TopologyAt> result;
-    for (const int level : kGrownFromLevels) {
-        const LevelTopology& plain = region.topologies[level];
-        if (is_fragmented(region, level) || (level == 0 && plain.specks > 0)) continue;
-        result.push_back({level, plain.components + region.topologies[grown_level(level)].cavities, 0});
-    }
-    for_chunks(result.size(), 1, team, [&](std::size_t i, std::size_t, std::size_t) {
-        result[i].genus =
-            result[i].components - euler_characteristic(region.lattice, grown_solid(region, result[i].level));
+    const long long joined = solid_at(region, kJoiningLevel).points_in_specks;
+    const double fragments = kFragmentShare * static_cast<double>(region.total_points);
+    const int levels = static_cast<int>(kGrownFromLevels.size());
+    return parallel_collect<TopologyAt>(levels, 1, team, [&](int i, std::vector<TopologyAt>& found) {
+        const int level = kGrownFromLevels[at(i)];
+        Solid solid = solid_at(region, level);
+        if (solid.components == 0 || static_cast<double>(solid.points_in_specks - joined) > fragments ||
+            (level == 0 && solid.points_in_specks > 0))
+            return;
+        grow_without_bridges(region.lattice, region.clearance, grown_level(level), solid.nodes);
+        const auto cavities = std::count_if(region.hollows.begin(), region.hollows.end(), [&](NodeId node) {
+            return region.clearance[node] > grown_level(level);
+        });
+        const int surfaces = solid.components + static_cast<int>(cavities);
+        found.push_back({level, surfaces, surfaces - euler_characteristic(region.lattice, solid.nodes)});
     });
-    return result;
 }
 
 }  // namespace neuralmesh

@@ -100,15 +100,19 @@ SealedSpaces enclosed_spaces(const Lattice& lattice, const PerNode<SquaredRadius
     return result;
 }
 
-NodeSet solid_of(const Lattice& lattice, const PerNode<SquaredRadius>& clearance,
-                 const PerNode<std::uint32_t>& counts, int level, long long min_points) {
-    NodeSet result(lattice.size(), 0);
+Solid solid_of(const Lattice& lattice, const PerNode<SquaredRadius>& clearance,
+               const PerNode<std::uint32_t>& counts, int level, long long min_points) {
+    Solid result{NodeSet(lattice.size(), 0)};
     const auto solid = [&](NodeId i) { return clearance[i] <= level; };
     for_each_component(lattice, solid, [&](const std::vector<NodeId>& component) {
         long long points = 0;
         for (const NodeId i : component) points += counts[i];
-        if (points < min_points) return;
-        for (const NodeId i : component) result[i] = 1;
+        if (points < min_points) {
+            result.points_in_specks += points;
+            return;
+        }
+        ++result.components;
+        for (const NodeId i : component) result.nodes[i] = 1;
     });
     return result;
 }

@@ -3,7 +3,6 @@
 
 #include "vcg_core/shell/lattice_survey.h"
 
-#include <cstddef>
 #include <utility>
 
 #include "vcg_core/base/ablation.h"
@@ -26,11 +25,10 @@ constexpr double kMaxNodes = 5.0e5;
 constexpr int kMaxNodesPerSide = 256;
 /// The lattice is as fine as possible with this many points per occupied node on average.
 constexpr double kPointsPerNode = 1.1;
-constexpr std::size_t kMaxLattices = 5;
+constexpr int kCoarserLattices = 4;
 constexpr float kCoarser = 1.4F;  // step of a lattice over that of the next finer one
-// The survey ends at this share of the votes: for plain solids, for grown ones before a finer lattice is
-// examined, and for grown ones before coarser lattices are.
-constexpr double kPlainConfidence = 0.9, kFineConfidence = 0.75;
+// At this share of the votes no finer lattice is examined.
+constexpr double kFineConfidence = 0.75;
 // The finer lattice may have this many times the nodes, but needs this many times the points per node: it is
 // for dense clouds.
 constexpr double kFineNodes = 8, kFinePointsPerNode = 2;
@@ -56,112 +54,34 @@ float step_for(const std::vector<Point3f>& points, const Box3f& box, double max_
     return step;
 }
 
-/// Of all levels with a solid. Level 0 is left out: the points alone are rarely connected.
-std::vector<TopologyAt> plain_topologies(const Region& region) {
-    std::vector<TopologyAt> result;
-    for (int level = 1; level < region.topologies.size(); ++level)
-        if (!is_fragmented(region, level))
-            result.push_back({level, region.topologies[level].surfaces(), region.topologies[level].genus});
-    return result;
-}
-
-class Surveyor {
-public:
-    Surveyor(const std::vector<Point3f>& points, const std::vector<LayerPlace>& places, const Box3f& box,
-             int threads, Progress& progress)
-        : points_(points), places_(places), box_(box), progress_(progress), team_(thread_count(threads)) {
-        survey_.step = step_for(points, box, kMaxNodes, kPointsPerNode);
-    }
-
-    void examine_plain();
-    void grow();
-    void examine_finer();
-    void examine_coarser();
-    double confidence() const { return survey_.vote.confidence; }
-    LatticeSurvey take();
-
-private:
-    Region region_at(float step) const { return examine(points_, box_, step, places_); }
-    void report() { progress_(0, "Start mesh: counting components and handles"); }
-    void count_votes(bool grown);
-
-    const std::vector<Point3f>& points_;
-    const std::vector<LayerPlace>& places_;
-    const Box3f& box_;
-    Progress& progress_;
-    ThreadTeam team_;
-    LatticeSurvey survey_;
-};
-
-void Surveyor::count_votes(bool grown) {
-    std::vector<double> steps;
-    for (const Region& region : survey_.regions) steps.push_back(static_cast<double>(region.lattice.step));
-    survey_.vote = persistent_topology(survey_.topologies, steps);
-    survey_.vote.grown = grown;
-}
-
-void Surveyor::examine_plain() {
-    survey_.regions.assign(2, Region(Lattice(box_, longest_side(box_), 0)));
-    for_chunks(2, 1, team_, [&](std::size_t i, std::size_t, std::size_t) {
-        survey_.regions[i] = region_at(i == 0 ? survey_.step : kCoarser * survey_.step);
-    });
-    for (const Region& region : survey_.regions) {
-        report();
-        survey_.topologies.push_back(plain_topologies(region));
-    }
-    count_votes(false);
-}
-
-void Surveyor::grow() {
-    for (std::size_t i = 0; i < survey_.regions.size(); ++i) {
-        report();
-        survey_.topologies[i] = grown_topologies(survey_.regions[i], team_);
-    }
-    count_votes(true);
-}
-
-void Surveyor::examine_finer() {
-    const float step = step_for(points_, box_, kFineNodes * kMaxNodes, kFinePointsPerNode * kPointsPerNode);
-    if (step * kCoarser > survey_.step || skips("finer_lattice")) return;
-    report();
-    survey_.regions.insert(survey_.regions.begin(), region_at(step));
-    report();
-    survey_.topologies.insert(survey_.topologies.begin(), grown_topologies(survey_.regions.front(), team_));
-    count_votes(true);
-}
-
-void Surveyor::examine_coarser() {
-    for (float step = survey_.step * kCoarser * kCoarser;
-         confidence() < kLowConfidence && survey_.regions.size() < kMaxLattices && !skips("coarser_lattices");
-         step *= kCoarser) {
-        report();
-        survey_.regions.push_back(region_at(step));
-        survey_.topologies.push_back(grown_topologies(survey_.regions.back(), team_));
-        count_votes(true);
-    }
-}
-
-LatticeSurvey Surveyor::take() {
-    TopologyVote& vote = survey_.vote;
-    if (!vote.found) {
-        vote.lattice = static_cast<int>(survey_.regions.size()) - 1;
-        vote.levels = {Region::kMaxLevel};
-        vote.grown = false;
-    }
-    return std::move(survey_);
-}
-
 }  // namespace
 
 LatticeSurvey survey_lattices(const std::vector<Point3f>& points, const std::vector<LayerPlace>& places,
                               const Box3f& box, int threads, Progress& progress) {
-    Surveyor surveyor(points, places, box, threads, progress);
-    surveyor.examine_plain();
-    if (surveyor.confidence() >= kPlainConfidence || skips("bridgeless_growth")) return surveyor.take();
-    surveyor.grow();
-    if (surveyor.confidence() < kFineConfidence) surveyor.examine_finer();
-    surveyor.examine_coarser();
-    return surveyor.take();
+    ThreadTeam team(thread_count(threads));
+    const auto survey_at = [&](float step) {
+        progress(0, "Start mesh: counting components and handles");
+        LatticeSurvey survey{examine(points, box, step, places), {}, step};
+        survey.vote = persistent_topology(grown_topologies(survey.region, team));
+        if (!survey.vote.found) survey.vote.level = Region::kMaxLevel;
+        return survey;
+    };
+    const float first = step_for(points, box, kMaxNodes, kPointsPerNode);
+    LatticeSurvey best = survey_at(first);
+    const auto take_clearer = [&](float step) {
+        LatticeSurvey other = survey_at(step);
+        if (other.vote.confidence > best.vote.confidence || !best.vote.found) best = std::move(other);
+    };
+    if (best.vote.confidence < kFineConfidence && !skips("finer_lattice")) {
+        const float finer =
+            step_for(points, box, kFineNodes * kMaxNodes, kFinePointsPerNode * kPointsPerNode);
+        if (finer * kCoarser < first) take_clearer(finer);
+    }
+    float step = first;
+    for (int i = 0; i < kCoarserLattices && best.vote.confidence < kLowConfidence; ++i)
+        if (!skips("coarser_lattices")) take_clearer(step *= kCoarser);
+    best.step = first;
+    return best;
 }
 
 }  // namespace neuralmesh

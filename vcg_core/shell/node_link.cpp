@@ -57,4 +57,17 @@ const LinkTopology& LinkTopology::table() {
     return table;
 }
 
+int euler_characteristic(const Lattice& lattice, const NodeSet& solid) {
+    const LinkTopology& topology = LinkTopology::table();
+    const Neighbours neighbours(lattice);
+    const auto in_solid = [&](NodeId i) { return solid[i] != 0; };
+    int sum = 0;
+    for (NodeId i = 0; i < solid.size(); ++i) {
+        if (!in_solid(i)) continue;
+        const NeighbourSet before = neighbours.places(i) & kSmallerIds;
+        sum += 1 - topology.euler_characteristic(neighbours_in(neighbours, i, before, in_solid));
+    }
+    return sum;
+}
+
 }  // namespace neuralmesh

@@ -42,4 +42,8 @@ private:
     std::vector<std::int8_t> euler_;
 };
 
+/// Euler characteristic of the simplices all of whose nodes are in \p solid: components - handles + cavities.
+/// Each node adds 1 - that of its neighbours with smaller ids in the solid (Banchoff 1967). O(nodes).
+int euler_characteristic(const Lattice& lattice, const NodeSet& solid);
+
 }  // namespace neuralmesh

@@ -23,10 +23,6 @@ constexpr int kSingleLayerSquaredDepth = 4 * 4;
 constexpr double kCoarseSteps = 40;
 constexpr int kCoarseMaxRadius = 18;
 
-// Pieces that join within this squared radius, and hold this share of the points, are fragments.
-constexpr int kJoiningLevel = 4 * 4;
-constexpr double kFragmentShare = 0.05;
-
 /// A component holds at least this share of the points, and so many of them.
 constexpr double kComponentShare = 0.01;
 constexpr long long kSpeckPoints = 20;
@@ -124,13 +120,6 @@ long long points_of_component(long long total) {
 
 }  // namespace
 
-bool is_fragmented(const Region& region, int level) {
-    const LevelTopology& here = region.topologies[level];
-    const LevelTopology& joined = region.topologies[std::max(level, kJoiningLevel)];
-    const double joining = static_cast<double>(here.speck_points - joined.speck_points);
-    return here.components == 0 || joining > kFragmentShare * static_cast<double>(region.total_points);
-}
-
 double sheet_share(const Region& region) {
     PerNode<std::uint32_t> enclosed(region.lattice.size(), 0);
     if (region.encloses_space)
@@ -172,8 +161,6 @@ Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, f
     seal(points, box, places, region);
     region.total_points = static_cast<long long>(points.size());
     region.min_points = points_of_component(region.total_points);
-    region.topologies = topology_of_levels(region.lattice, region.clearance, region.counts,
-                                           Region::kMaxRadius, region.min_points, region.hollows);
     return region;
 }
 

@@ -180,15 +180,15 @@ void set_mesh(ClosedMesh& closed, const Region& region, std::size_t points, cons
 /// Sets the figures that the lattice and the vote give.
 void set_figures(const LatticeSurvey& survey, int level, StartMesh& result) {
     result.confidence = survey.vote.confidence;
-    result.resolution = static_cast<double>(survey.chosen_region().lattice.step);
+    result.resolution = static_cast<double>(survey.region.lattice.step);
     result.radius = result.resolution * std::sqrt(static_cast<double>(level));
 }
 
 Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace>& places, Surveys& surveys) {
     Enclosure result;
-    result.encloses_space = survey.chosen_region().encloses_space;
-    result.sheet_share = sheet_share(survey.regions.front());
-    result.widest_opening = survey.chosen_region().widest_opening;
+    result.encloses_space = survey.region.encloses_space;
+    result.sheet_share = sheet_share(survey.region);
+    result.widest_opening = survey.region.widest_opening;
     // Where the lattice shows no space, the points may lie on the two sides of walls too thin for it.
     const bool unclear = (!result.encloses_space || result.sheet_share > kMostSheet) && !skips("walled");
     result.walled = unclear && share_on_thin_walls(places, surveys) > kWalled;
@@ -206,7 +206,7 @@ void set_outliers(const std::vector<Point3f>& points, const Region& region, cons
 }
 
 void warn_of_uncertain_topology(const LatticeSurvey& survey, StartMesh& result) {
-    const bool coarser = survey.chosen_region().lattice.step > survey.step ||
+    const bool coarser = survey.region.lattice.step > survey.step ||
                          result.radius > kCoarseRadius * static_cast<double>(survey.step);
     if (coarser)
         result.warnings.push_back(
@@ -259,7 +259,7 @@ StartMesh Shell::mesh(Progress& progress) const {
     progress(0.7, "Start mesh: building the mesh");
     const std::vector<Point3f>& points = examined_->points;
     const LatticeSurvey& survey = examined_->survey;
-    const Region& region = survey.chosen_region();
+    const Region& region = survey.region;
     ClosedMesh closed = closed_mesh(region, survey.vote);
     if (closed.network.vertex_count() == 0)
         throw InputError(

@@ -9,18 +9,17 @@
 //    outside without the ball touching a point. Spaces much wider than their opening are sealed: they are
 //    the inside of a surface with gaps between its points (clearance.h, region.h). Those that a wall
 //    separates from the outside are hollows, and not of the solid (hollows.h).
-// 3. Components and handles are counted at all radii (level_topology.h), on two lattices. The topology that
-//    persists over the largest range of radii is chosen (topology_vote.h).
-// 4. If the vote is unclear, the solids are grown without bridging gaps, on more lattices. This tells
-//    handles from gaps between points and from parts that nearly touch (bridgeless_growth.h,
-//    lattice_survey.h).
+// 3. From several radii on the solid is grown to twice the radius without bridging gaps, which tells
+//    handles from gaps between points and from parts that nearly touch (bridgeless_growth.h). The topology
+//    that persists over the largest range of radii is chosen (topology_vote.h).
+// 4. If the vote is unclear, finer and coarser lattices are asked (lattice_survey.h).
 // 5. Marching tetrahedra turn the chosen solid into a mesh (closed_mesh.h). Half-edge collapses, which keep
 //    the topology, reduce it (simplify.h), less where walls and gaps are narrow (local_width.h). There a mesh
 //    of more vertices tells the two sides of a wall apart (WallSides).
 //
 // Outliers make no component. An isolated group of points makes one if it holds at least 1 % of the points
-// and at least 20 (region.cpp): of 200,000 points, a group of 1,999 is outliers. Single points
-// deep inside are outliers, too. The start mesh leaves outliers out, and a warning says how many they are.
+// and at least 20 (region.cpp): of 200,000 points, a group of 1,999 is outliers. Single points deep inside
+// are outliers, too. The start mesh leaves outliers out, and a warning says how many they are.
 #pragma once
 
 #include <vcg/space/point3.h>

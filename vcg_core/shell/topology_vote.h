@@ -8,7 +8,7 @@
 
 namespace neuralmesh {
 
-/// The topology of one solid: that of a level, or the one grown from there (bridgeless_growth.h).
+/// The topology of the solid grown from a level (bridgeless_growth.h).
 struct TopologyAt {
     int level = 0;
     int components = 0;
@@ -20,18 +20,14 @@ struct TopologyVote {
     bool found = false;  ///< false: there were no topologies to vote on
     int components = 0;
     int genus = 0;
-    double confidence = 0;    ///< share of the votes, in [0, 1]
-    bool grown = false;       ///< true: the topologies are those of grown solids
-    int lattice = 0;          ///< index of the lattice of the range
-    std::vector<int> levels;  ///< of the range, rising; only those of at most twice the smallest radius
+    double confidence = 0;  ///< share of the votes, in [0, 1]
+    int level = 0;          ///< the first of the range
 };
 
-/// Votes on the topologies found on several lattices, where topologies[i], by rising level, are those of the
-/// lattice with node distance steps[i]; the finest lattice comes first. The radii from a to b over which the
-/// topology of one lattice stays the same give it 1/a - 1/b votes, divided among the lattices that cover
-/// the same radii. This rewards persistence relative to the radius and, of two equally persistent topologies,
-/// prefers the one at smaller radii: large balls only close handles and gaps. O(levels).
-TopologyVote persistent_topology(const std::vector<std::vector<TopologyAt>>& topologies,
-                                 const std::vector<double>& steps);
+/// Votes on the topologies found on a lattice, by rising level. The radii from a to b over which the topology
+/// stays the same give it 1/a - 1/b votes. This rewards persistence relative to the radius and, of two
+/// equally persistent topologies, prefers the one at smaller radii: large balls only close handles and gaps.
+/// O(levels).
+TopologyVote persistent_topology(const std::vector<TopologyAt>& topologies);
 
 }  // namespace neuralmesh

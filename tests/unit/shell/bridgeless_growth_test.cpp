@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "vcg_core/shell/level_topology.h"
+#include "vcg_core/shell/node_link.h"
 
 namespace neuralmesh {
 namespace {

@@ -10,7 +10,7 @@
 #include <cstdlib>
 
 #include "tests/unit/support/small_lattice.h"
-#include "vcg_core/shell/level_topology.h"
+#include "vcg_core/shell/node_link.h"
 
 namespace neuralmesh {
 namespace {
@@ -85,10 +85,28 @@ TEST(Clearance, SpaceBehindANarrowOpeningIsSealed) {
     const PerNode<SquaredRadius> closed = clearances(lattice, distances, kMax, sealed.inside);
     EXPECT_EQ(closed[middle], 0);
     EXPECT_GT(closed[lattice.index(0, 0, 0)], 0);
-    EXPECT_EQ(topology_of_levels(lattice, closed, counts, kMax, 0)[1].genus, 0);
+    EXPECT_EQ(euler_characteristic(lattice, solid_of(lattice, closed, counts, 1, 1).nodes), 1);
     // The middle is 8 steps from the points: no space is that much wider than its opening, or that deep.
     EXPECT_EQ(enclosed_spaces(lattice, distances, open, 8, 0).nodes, 0);
     EXPECT_EQ(enclosed_spaces(lattice, distances, open, 1.7, 8 * 8 + 1).nodes, 0);
+}
+
+TEST(Clearance, SmallComponentsAreSpecks) {
+    const Lattice lattice = small_lattice();
+    PerNode<std::uint32_t> counts(lattice.size(), 0);
+    counts[lattice.index(2, 2, 2)] = 10;
+    counts[lattice.index(8, 8, 8)] = 3;
+    const PerNode<SquaredRadius> distances = squared_distances(lattice, counts, kLargestRadius);
+    const PerNode<SquaredRadius> clearance = clearances(lattice, distances, kLargestRadius, {});
+    const Solid small = solid_of(lattice, clearance, counts, 1, 5);
+    EXPECT_EQ(small.components, 1);
+    EXPECT_EQ(small.points_in_specks, 3);
+    EXPECT_EQ(small.nodes[lattice.index(2, 2, 3)], 1);
+    EXPECT_EQ(small.nodes[lattice.index(8, 8, 8)], 0);
+    // They are 6 * sqrt(3) apart: balls of radius 5 have adjacent nodes.
+    const Solid large = solid_of(lattice, clearance, counts, kLargestRadius * kLargestRadius, 5);
+    EXPECT_EQ(large.components, 1);
+    EXPECT_EQ(large.points_in_specks, 0);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ struct Examined {
         : points(sphere(20000, 0.5F, {0, 0, 0}, 1)),
           surface_points(points.size()),
           region(with(others, points)),
-          solid(solid_of(region.lattice, region.clearance, region.counts, kLevel, region.min_points)) {}
+          solid(solid_of(region.lattice, region.clearance, region.counts, kLevel, region.min_points).nodes) {}
 
     /// The outliers among the others; empty if outliers_of() is.
     std::vector<int> outliers() const {
