@@ -11,7 +11,6 @@
 #include "vcg_core/shell/clearance.h"
 #include "vcg_core/shell/lattice.h"
 #include "vcg_core/shell/region.h"
-#include "vcg_core/shell/topology_vote.h"
 
 namespace neuralmesh {
 
@@ -30,6 +29,13 @@ int grown_level(int level);
 
 /// The components of the solid at \p level, without specks, grown to grown_level().
 NodeSet grown_solid(const Region& region, int level);
+
+/// The topology of the solid grown from a level.
+struct TopologyAt {
+    int level = 0;
+    int components = 0;
+    int genus = 0;
+};
 
 /// The topologies of the grown solids of some levels up to a third of Region::kMaxRadius. Left out are level
 /// 0 if it has specks, and levels whose solid is in pieces because the radius is smaller than the distance

@@ -6,8 +6,8 @@
 
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/shell/lattice.h"
+#include "vcg_core/shell/lattice_survey.h"
 #include "vcg_core/shell/region.h"
-#include "vcg_core/shell/topology_vote.h"
 
 namespace neuralmesh {
 

@@ -10,13 +10,27 @@
 #include <vector>
 
 #include "vcg_core/base/progress.h"
-#include "vcg_core/shell/region.h"
-#include "vcg_core/shell/topology_vote.h"
+#include "vcg_core/shell/bridgeless_growth.h"
 
 namespace neuralmesh {
 
 /// With a smaller share of the votes the topology is uncertain.
 inline constexpr double kLowConfidence = 0.5;
+
+/// The topology with most votes, and the range of radii with most votes for it.
+struct TopologyVote {
+    bool found = false;  ///< false: there were no topologies to vote on
+    int components = 0;
+    int genus = 0;
+    double confidence = 0;  ///< share of the votes, in [0, 1]
+    int level = 0;          ///< the first of the range
+};
+
+/// Votes on the topologies found on a lattice, by rising level. The radii from a to b over which the topology
+/// stays the same give it 1/a - 1/b votes. This rewards persistence relative to the radius and, of two
+/// equally persistent topologies, prefers the one at smaller radii: large balls only close handles and gaps.
+/// O(levels).
+TopologyVote persistent_topology(const std::vector<TopologyAt>& topologies);
 
 /// The lattice that tells the topology most clearly.
 struct LatticeSurvey {

@@ -11,8 +11,8 @@
 //    separates from the outside are hollows, and not of the solid (hollows.h).
 // 3. From several radii on the solid is grown to twice the radius without bridging gaps, which tells
 //    handles from gaps between points and from parts that nearly touch (bridgeless_growth.h). The topology
-//    that persists over the largest range of radii is chosen (topology_vote.h).
-// 4. If the vote is unclear, finer and coarser lattices are asked (lattice_survey.h).
+//    that persists over the largest range of radii is chosen (lattice_survey.h).
+// 4. If the vote is unclear, finer and coarser lattices are asked.
 // 5. Marching tetrahedra turn the chosen solid into a mesh (closed_mesh.h). Half-edge collapses, which keep
 //    the topology, reduce it (simplify.h), less where walls and gaps are narrow (local_width.h). There a mesh
 //    of more vertices tells the two sides of a wall apart (WallSides).

@@ -3,7 +3,7 @@
 
 // The vote on lists written by hand. Level l stands for the radius sqrt(l), level 0 for half a step, and the
 // last level of a list for one step more.
-#include "vcg_core/shell/topology_vote.h"
+#include "vcg_core/shell/lattice_survey.h"
 
 #include <gtest/gtest.h>
 
