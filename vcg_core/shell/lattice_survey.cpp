@@ -3,6 +3,7 @@
 
 #include "vcg_core/shell/lattice_survey.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -59,6 +60,10 @@ float step_for(const std::vector<Point3f>& points, const Box3f& box, double max_
 /// In lattice steps. Level 0, the occupied nodes alone, counts as half a step: half the width of a cell.
 double radius_of(int level) { return level == 0 ? 0.5 : std::sqrt(static_cast<double>(level)); }
 
+/// A solid that is in pieces up to a larger radius than this, in lattice steps, is that of points in clumps.
+/// The radii from here to where it hangs together vote for nothing.
+constexpr double kClumpRadius = 2;
+
 /// The votes for one topology, and the first level of the range with most of them.
 struct Tally {
     double votes = 0, most = 0;
@@ -70,6 +75,7 @@ struct Tally {
 TopologyVote persistent_topology(const std::vector<TopologyAt>& topologies) {
     std::map<std::pair<int, int>, Tally> tallies;  // by components and genus
     double all = 0;
+    if (!topologies.empty()) all = std::max(0.0, 1 / kClumpRadius - 1 / radius_of(topologies.front().level));
     for (std::size_t first = 0, last = 0; first < topologies.size(); first = last) {
         const TopologyAt& topology = topologies[first];
         while (last < topologies.size() && topologies[last].components == topology.components &&

@@ -29,7 +29,7 @@ struct TopologyVote {
 /// Votes on the topologies found on a lattice, by rising level. The radii from a to b over which the topology
 /// stays the same give it 1/a - 1/b votes. This rewards persistence relative to the radius and, of two
 /// equally persistent topologies, prefers the one at smaller radii: large balls only close handles and gaps.
-/// O(levels).
+/// Radii above two lattice steps at which the solid is in pieces vote for nothing. O(levels).
 TopologyVote persistent_topology(const std::vector<TopologyAt>& topologies);
 
 /// The lattice that tells the topology most clearly.

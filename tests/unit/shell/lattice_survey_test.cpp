@@ -55,5 +55,10 @@ TEST(TopologyVote, OccupiedNodesCountAsHalfAStep) {
     EXPECT_EQ(vote.level, 0);
 }
 
+TEST(TopologyVote, IsUncertainIfPointsLieInClumps) {
+    EXPECT_EQ(persistent_topology({{4, 1, 1}, {16, 1, 1}}).confidence, 1);
+    EXPECT_LT(persistent_topology({{9, 1, 1}, {16, 1, 1}}).confidence, 0.5);
+}
+
 }  // namespace
 }  // namespace neuralmesh
