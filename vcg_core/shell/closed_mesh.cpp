@@ -77,8 +77,4 @@ ClosedMesh closed_mesh(const Region& region, const TopologyVote& vote) {
     return closed;
 }
 
-Network mesh_on_all_nodes(const Region& region, const ClosedMesh& closed) {
-    return surface_of(region, signed_distances(region, closed.solid, closed.level), 1);
-}
-
 }  // namespace neuralmesh

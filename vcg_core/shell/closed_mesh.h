@@ -24,8 +24,4 @@ struct ClosedMesh {
 /// faces).
 ClosedMesh closed_mesh(const Region& region, const TopologyVote& vote);
 
-/// The surface of the solid of \p closed, made on all nodes: nearer to the level than a mesh on every third
-/// one, which cuts off what is narrower. O(nodes + faces log faces)
-Network mesh_on_all_nodes(const Region& region, const ClosedMesh& closed);
-
 }  // namespace neuralmesh

@@ -48,19 +48,6 @@ constexpr float kHalfLevel = 0.5F;
 constexpr double kEdgeOverWidth = 0.75;
 /// Walls thinner than this, in edges of an even mesh of as many vertices as asked for, are learned thicker.
 constexpr double kThickEdges = 1.5;
-/// The mesh that tells sides has this many times the vertices of the start mesh. The start mesh itself cuts
-/// corners off: at the edges of nested boxes half an edge apart it gives .4 % of the points to the wrong box,
-/// and the two meshes fold into each other there.
-constexpr int kSideVertices = 4;
-/// A shell of no more than this many times as many vertices tells sides as it is. If it were reduced twice,
-/// sharp edges would draw back: a blade two edges thick at its middle has four to nine times the error then,
-/// in two of four clouds.
-constexpr int kWorthReducing = 2;
-/// A shell made on every third or second node is too coarse to tell sides if walls want more than this share
-/// of its vertices at the start. It is kept where the points tell fewer start vertices than that: there balls
-/// may just get into a wall, and a mesh on all nodes has a dent, with 16 % of the faces turned (casting,
-/// walls of 3.4 spacings).
-constexpr double kMostOfCoarse = 1.0 / kSideVertices;
 /// Points are the two sides of walls where so many of them are on thin ones: with walls of 4 to 7 spacings
 /// .67 at least (wall_table.py), on depth frames and aerial scans .14 at most.
 constexpr double kWalled = 0.35;
@@ -132,19 +119,13 @@ WallSides reduce(ClosedMesh& closed, const Region& region, int vertices, double 
     for (const VertexId v : network.vertices()) area += area_around(network, v);
     const double even_edge = std::sqrt(area / (kAreaPerVertex * vertices));
     const float radius = lattice.step * std::sqrt(static_cast<float>(closed.level) + kHalfLevel);
-    WantedEdges edges = wanted_edges(closed, lattice, radius, even_edge);
-    if (edges.vertices > kMostOfCoarse * network.vertex_count() && edges.vertices < most) {
-        network = mesh_on_all_nodes(region, closed);
-        edges = wanted_edges(closed, lattice, radius, even_edge);
-    }
+    const WantedEdges edges = wanted_edges(closed, lattice, radius, even_edge);
     const int wanted = static_cast<int>(std::min(edges.vertices, most));
     if (!(wanted > kWorthwhile * vertices)) {
         simplify(network, vertices);
         return {};
     }
     progress(0.83, kReducing);
-    const int of_sides = kSideVertices * wanted;
-    if (network.vertex_count() > kWorthReducing * of_sides) simplify(network, of_sides, edges.lengths);
     const double thick = kThickEdges * std::sqrt(area / (kAreaPerVertex * final_vertices));
     WallSides walls =
         wall_sides(network, thickenings(network, lattice, closed.solid, radius, static_cast<float>(thick)));
