@@ -25,7 +25,7 @@ INERT = [
      r"kLeastPerThread|:kLeastOrdered$|:kLeastOutOfCache$|:k\w*Ahead$|:kPrefetchDistance$|:kTypicalSignals$|"
      r"base/cheapest_first\.h:", "speed: the same result"),
     (r"engine/(winner_search|cell_pyramid|tournament|scaled_numbers|eight_steps)|mesh/(face_tree|face_packets|vertex_order|"
-     r"self_crossings)|target/(nearest_points|alias_table)|shell/(clearance|lattice_rows)",
+     r"self_crossings)|target/(nearest_points|alias_table)|shell/(clearance)",
      "a search or an order: an exact result, found faster"),
     (r"base/(logarithm|random|packed_normal|even_mesh)\.h:|:k(PiF|White|DegreesPerRadian|DeviationPerMedian|UnitBallVolume|"
      r"Ln2|Pi)$|:kWithin30Degrees$", "mathematics"),

@@ -33,7 +33,8 @@ using EdgeKey = std::size_t;
 /// Collects triangles whose vertices lie on lattice edges.
 class EdgeTriangles {
 public:
-    EdgeTriangles(const Lattice& lattice, const PerNode<float>& values) : lattice_(lattice), values_(values) {}
+    EdgeTriangles(const Lattice& lattice, const PerNode<float>& values)
+        : lattice_(lattice), values_(values) {}
 
     void add_cubes();
     IndexedMesh<float> mesh() const;
