@@ -25,7 +25,7 @@ INERT = [
      r"kLeastPerThread|:kLeastOrdered$|:kLeastOutOfCache$|:k\w*Ahead$|:kPrefetchDistance$|"
      r"base/cheapest_first\.h:", "speed: the same result"),
     (r"engine/(winner_search|tournament|scaled_numbers|eight_steps)|mesh/(face_tree|face_packets|vertex_order)|"
-     r"target/(nearest_points|alias_table)|shell/(clearance|lattice_rows)",
+      r"target/nearest_points|shell/clearance",
      "a search or an order: an exact result, found faster"),
     (r"base/(logarithm|random|packed_normal|even_mesh)\.h:|:k(PiF|White|DegreesPerRadian|DeviationPerMedian|UnitBallVolume|"
      r"Ln2|Pi)$|:kWithin30Degrees$", "mathematics"),
@@ -53,7 +53,7 @@ MEASURED = re.compile(r"_table|of the error|times the error|error of|shell_topol
 SUBJECTS = {
     "noise": r"[nN]oise|variance|\bcalm\b|[dD]eviation",
     "points per vertex": r"points_per_vertex|\bper_vertex\(|(?<!Signals)(?<!Wins)PerVertex\b|PerCarried|PerLearned|PrecisePoints"
-                         r"|FewestToFill|points_per_node|PointsPer(Part|Node)",
+                         r"|FewestToFill|PointsPer(Part|Node)",
     "vertices asked for": r"(target|final|wanted|fewest)_vertices|most_wanted|\bcarried\b|grow_to|reduce_to|VerticesToHold"
                           r"|DenseFrom|ByVolumeFrom",
 }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 #include "vcg_core/base/ablation.h"
@@ -41,8 +40,6 @@ constexpr double kStartShare = 0.5;
 constexpr double kShellMade = 0.6;  // of the progress
 /// More points tell the surface, and learning gives better shaped faces than those of their hull.
 constexpr std::size_t kFewPoints = 128;
-/// The sides of walls thicker than this, in spacings of the points, are told apart (opposite_layers.h).
-constexpr double kToldSpacings = 4;
 
 /// The start mesh of the paper, in the middle of the cloud, which is the origin of the core's frame; or a
 /// large one, whose corners lie outside of most clouds. A small one that begins between handles reaches their
@@ -77,19 +74,30 @@ bool leave_out(LearningTask& task, const std::vector<std::uint8_t>& out) {
     return true;
 }
 
-/// The surveys of the points to learn, made anew after some were left out.
+/// Points that start meshes are made from, if the target has faces.
+constexpr int kDrawn = 200000;
+
+/// The points to learn and their surveys, made anew after some were left out; of a target with faces, points
+/// drawn from them.
 class Survey {
 public:
-    explicit Survey(int threads) : threads_(threads) {}
-    Surveys& of(const std::vector<vcg::Point3f>& points) {
+    explicit Survey(const Settings& settings)
+        : threads_(settings.threads), random_(stream_seed(settings.random_seed, Stream::shell)) {}
+    const std::vector<vcg::Point3f>& points_of(const TargetSpace& target) {
+        if (!target.has_faces()) return target.positions();
+        while (drawn_.size() < kDrawn) drawn_.push_back(target.sample(random_));
+        return drawn_;
+    }
+    Surveys& of(const TargetSpace& target) {
+        const std::vector<vcg::Point3f>& points = points_of(target);
         if (!surveys_ || surveys_->points().cloud.size() != points.size()) surveys_.emplace(points, threads_);
         return *surveys_;
     }
-    /// Of a target without faces, whose points are its surface; else nothing.
-    Surveys* of(const TargetSpace& target) { return target.has_faces() ? nullptr : &of(target.positions()); }
 
 private:
     int threads_;
+    Random random_;
+    std::vector<vcg::Point3f> drawn_;
     std::optional<Surveys> surveys_;
 };
 
@@ -100,14 +108,13 @@ Shell make_shell(const TargetSpace& target, const Settings& settings, Survey& su
     const int most_wanted = std::min(settings.target_vertices, kMostStartVertices / kMostPerFinal);
     options.most_vertices = settings.redistributes_vertices() ? kMostPerFinal * most_wanted : 0;
     options.threads = settings.threads;
-    options.learn_outliers = !settings.remove_outliers;
-    Random random(stream_seed(settings.random_seed, Stream::shell));
-    return Shell(target, options, random, progress, survey.of(target));
+    options.learn_outliers = !settings.remove_outliers || target.is_exact();
+    return Shell(survey.points_of(target), survey.of(target), options, progress);
 }
 
 void remove_outliers(LearningTask& task, Survey& survey, int threads, Progress& progress) {
     const std::vector<std::uint8_t> out =
-        find_outliers(survey.of(task.target().positions()).points(), threads,
+        find_outliers(survey.of(task.target()).points(), threads,
                       [&progress] { progress(0, "Start mesh: looking for outliers"); });
     if (out.empty()) return;
     const auto count = static_cast<std::size_t>(std::count(out.begin(), out.end(), 1));
@@ -137,7 +144,7 @@ LearningTask points_to_learn(const TargetSpace& given, const Settings& settings,
 void measure_noise(LearningTask& task, Survey& survey, const Settings& settings) {
     const std::vector<vcg::Point3f>& points = task.target().positions();
     const int vertices = settings.target_vertices;
-    const SurfaceSurvey& surface = survey.of(points).surface();
+    const SurfaceSurvey& surface = survey.of(task.target()).surface();
     task.noise = surface.noise_in_edges(static_cast<double>(points.size()) / vertices);
     // Closed surfaces are learned from even samples mostly, which one number describes. With the noise of
     // each place feline would have 1.15 times the error at .1 % of the diagonal (50,000 points, 2,000
@@ -150,7 +157,7 @@ void measure_noise(LearningTask& task, Survey& survey, const Settings& settings)
 /// Whether the points have normals that are to be used; a warning, if theirs cannot.
 bool normals_serve(LearningTask& task, Survey& survey, const Settings& settings) {
     if (!settings.use_normals || !task.target().has_normals()) return false;
-    const std::string why_not = why_normals_do_not_serve(task.target(), survey.of(task.target().positions()));
+    const std::string why_not = why_normals_do_not_serve(task.target(), survey.of(task.target()));
     if (!why_not.empty()) task.warnings.push_back(why_not);
     return why_not.empty();
 }
@@ -158,7 +165,7 @@ bool normals_serve(LearningTask& task, Survey& survey, const Settings& settings)
 /// Gives the points weights by which signals are even over the surface.
 void weigh_points(LearningTask& task, Survey& survey) {
     if (skips("even_sampling")) return;
-    std::optional<TargetSpace> even = task.target().evenly(survey.of(task.target().positions()).points());
+    std::optional<TargetSpace> even = task.target().evenly(survey.of(task.target()).points());
     if (even) task.cleaned = std::move(even);
 }
 
@@ -180,32 +187,18 @@ OpenStart make_open_start(const TargetSpace& target, const Settings& settings, S
     options.wanted_vertices = std::clamp(static_cast<int>(kStartShare * grown), 4, kMostStartVertices);
     options.target_vertices = settings.target_vertices;
     options.close_holes_up_to = settings.close_holes_up_to / target.frame().diagonal;
-    options.learn_outliers = !settings.remove_outliers;
+    options.learn_outliers = !settings.remove_outliers || target.is_exact();
     if (settings.surface != kOpenSurface && settings.close_holes_up_to < 0)
-        options.closed_up_to = widest_closed(target);
+        options.closed_up_to = kWidestClosed;
     options.use_normals = settings.use_normals;
     Random random(stream_seed(settings.random_seed, Stream::shell));
     options.threads = settings.threads;
-    return open_start(target, options, random, progress, survey.of(target));
+    return open_start(target, survey.points_of(target), survey.of(target), options, random, progress);
 }
 
-/// What becomes of walls whose sides cannot be told apart.
-constexpr const char* kSidesMayCross = "The sides of the mesh may cross there.";
-constexpr const char* kOneSheetClosed = "They were learned as one sheet, closed around both sides.";
-constexpr const char* kOneSheet = "They were learned as one sheet.";
-
-/// Warns if the points lie on the two sides of walls too thin to tell the sides apart.
 void warn_of_thin_walls(LearningTask& task, const LayerFigures& layers, const char* outcome) {
-    if (!layers.two || layers.thickness > kToldSpacings * layers.spacing) return;
-    const double diagonal = task.target().frame().diagonal;
-    std::ostringstream text = stream_with(2);
-    text
-        << "The points lie on the two sides of walls about " << layers.thickness * diagonal
-        << " thick, which cannot be told apart: the points of each side are about "
-        << layers.spacing * diagonal << " from each other. " << outcome
-        << " For both sides take points a quarter of the thickness from each other; for one, the points of one "
-           "side only.";
-    task.warnings.push_back(text.str());
+    const std::string text = warning_of_thin_walls(layers, task.target().frame().diagonal, outcome);
+    if (!text.empty()) task.warnings.push_back(text);
 }
 
 /// Of those of a start mesh, an OpenStart or a StartMesh; the fit, if there is one, reduces it.
@@ -223,11 +216,14 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& she
     const bool automatic = settings.surface == kAutomatic;
     try {
         OpenStart start = make_open_start(target, settings, survey, progress);
-        warn_of_thin_walls(task, start.layers, shell.encloses_space ? kSidesMayCross : kOneSheetClosed);
+        warn_of_thin_walls(task, start.layers,
+                           shell.encloses_space
+                               ? "The sides of the mesh may cross there."
+                               : "They were learned as one sheet, closed around both sides.");
         const bool whole = !start.misses_surface && !loses_more(start, shell);
         const bool open = automatic && start.loops > 0 && !start.layers.two && whole &&
-                          (target.has_faces() || may_be_open(shell, target, settings, start.radius)) &&
-                          (settings.close_holes_up_to >= 0 || start.widest_loop > widest_closed(target));
+                          may_be_open(shell, target, settings, start.radius) &&
+                          (settings.close_holes_up_to >= 0 || start.widest_loop > kWidestClosed);
         const bool fits = vertices_needed(start, settings) <= settings.target_vertices;
         if ((open && (fits || !shell.encloses_space)) || (fits && encloses_more(start, shell))) return start;
     } catch (const NoSurfaceError&) {
@@ -250,8 +246,7 @@ void begin_open(LearningTask& task, OpenStart start, const Settings& settings) {
         task.warnings.push_back(
             "The points enclose no space, or openings too wide to close: the surface ends "
             "where they end. Choose surface 1 to close it.");
-    std::vector<vcg::Point3f> viewer;
-    if (start.viewer) viewer.push_back(*start.viewer);
+    std::vector<vcg::Point3f> viewer(start.viewer ? 1 : 0, start.viewer.value_or(vcg::Point3f()));
     remove_groups_without_component(task, start.outliers, {&start.positions, &viewer});
     task.parts_faced_by_normals = start.faced_by_normals;
     task.network = Network(start.positions, start.faces);
@@ -264,7 +259,7 @@ void begin_tetrahedron(LearningTask& task, const Settings& settings) {
     task.topology_rules.from_tetrahedron = true;
     if (settings.surface == kClosedSurface) return;
     const double asked = settings.close_holes_up_to / task.target().frame().diagonal;
-    const double chosen = settings.surface == kOpenSurface ? 0 : widest_closed(task.target());
+    const double chosen = settings.surface == kOpenSurface ? 0 : kWidestClosed;
     task.topology_rules.opens_from = static_cast<float>(asked >= 0 ? asked : chosen);
 }
 
@@ -369,7 +364,7 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
     }
     if (settings.surface == kOpenSurface) {
         OpenStart start = make_open_start(task.target(), settings, survey, progress);
-        warn_of_thin_walls(task, start.layers, kOneSheet);
+        warn_of_thin_walls(task, start.layers, "They were learned as one sheet.");
         begin_open(task, std::move(start), settings);
         return;
     }
@@ -379,7 +374,7 @@ void begin(LearningTask& task, const Settings& settings, const IndexedMesh<doubl
 }  // namespace
 
 LearningTask points_to_learn(const TargetSpace& given, const Settings& settings) {
-    Survey survey(settings.threads);
+    Survey survey(settings);
     NoProgress progress;
     return points_to_learn(given, settings, survey, progress);
 }
@@ -388,7 +383,7 @@ LearningTask prepare(const TargetSpace& given, const Settings& settings, const I
                      Progress& progress) {
     progress(0, "Start mesh: looking for outliers");
     refuse_rounding(given, settings.target_vertices);
-    Survey survey(settings.threads);
+    Survey survey(settings);
     LearningTask task = points_to_learn(given, settings, survey, progress);
     progress(0, "Start mesh: examining the points");
     Settings trusted = settings;

@@ -64,7 +64,7 @@ LearningTask points_to_learn(const TargetSpace& given, const Settings& settings)
 /// closed. A tetrahedron lies in the middle of the cloud, as in the paper; if settings.learn_topology is on,
 /// it is as large as the cloud. Without that setting it stays closed, with a warning if settings.surface is
 /// open.
-/// \p given must outlive the result. Fractions of \p progress run from 0 to 1. \throws what shell_of()
+/// \p given must outlive the result. Fractions of \p progress run from 0 to 1. \throws what Shell
 /// throws; what open_start() throws if settings.surface is open, and NoSurfaceError if it is automatic and
 /// the points enclose no space; SettingError if an open start mesh needs more than settings.target_vertices
 /// vertices; what given_start() throws, and SettingError if \p start has more vertices than that

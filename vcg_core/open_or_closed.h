@@ -4,6 +4,8 @@
 // Whether the surface of a cloud is open or closed, by what its shell and its open start mesh say.
 #pragma once
 
+#include <string>
+
 #include "vcg_core/settings.h"
 #include "vcg_core/shell/open_start.h"
 #include "vcg_core/shell/shell.h"
@@ -11,12 +13,13 @@
 
 namespace neuralmesh {
 
-/// The widest hole of the open start mesh that is closed. That of a layer with faces opens what is wider in
-/// its faces; points drawn from them leave narrower holes.
-double widest_closed(const TargetSpace& target);
+/// The widest hole of the open start mesh that is closed. Openings of closed models (places without points on
+/// large faces, cavities) are narrower than this share of the diagonal, those of scans and cut models wider.
+/// Chosen by open_table.py.
+inline constexpr double kWidestClosed = 0.066;
 
 /// Whether the cloud may be open: the shell closed wide openings, or a part of it has no space inside, and is
-/// no thin wall. A layer with faces is open where they end.
+/// no thin wall.
 /// \param radius on which the points are a surface, 0 if it is not known yet
 bool may_be_open(const Enclosure& shell, const TargetSpace& target, const Settings& settings, double radius);
 
@@ -28,5 +31,9 @@ bool encloses_more(const OpenStart& start, const Enclosure& shell);
 /// which nothing is enclosed are covered on both sides, which is half as bad. Views that do not quite meet
 /// look like clutter to the one, and like a sheet to the other.
 bool loses_more(const OpenStart& start, const Enclosure& shell);
+
+/// A sentence if most points lie on the two sides of walls too thin to tell the sides apart; else empty.
+/// \param diagonal of the frame \param outcome what became of them, a sentence
+std::string warning_of_thin_walls(const LayerFigures& layers, double diagonal, const char* outcome);
 
 }  // namespace neuralmesh

@@ -26,7 +26,7 @@ inline constexpr const char* kStages[] = {
     "lifted_points", "clumps", "lattice_outliers", "even_sampling", "noise_by_place",
     // the start mesh
     "walled", "thickening", "finer_start", "hollows", "wide_lattice", "single_layer", "fringe",
-    "bridgeless_growth", "finer_lattice", "coarser_lattices", "topology_vote", "short_handles",
+    "finer_lattice", "coarser_lattices", "short_handles",
     // learning
     "brief_learning", "settling_surplus", "saturation", "boundary_faces", "learned_notches",
     // topology

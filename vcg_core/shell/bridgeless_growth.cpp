@@ -11,7 +11,6 @@
 #include <cstdint>
 
 #include "vcg_core/base/parallel_for.h"
-#include "vcg_core/shell/node_groups.h"
 #include "vcg_core/shell/node_link.h"
 
 namespace neuralmesh {
@@ -23,45 +22,20 @@ constexpr int kGrownLevelOfOccupied = 2;
 /// Dense for small radii, where gaps between points and narrow handles appear and vanish.
 constexpr std::array<int, 8> kGrownFromLevels = {0, 1, 2, 3, 4, 6, 9, 16};
 
+// Pieces that join within this squared radius, and hold this share of the points, are fragments.
+constexpr int kJoiningLevel = 4 * 4;
+constexpr double kFragmentShare = 0.05;
+
 constexpr std::uint8_t kInSolid = 1;
 
-/// A solid to which nodes are added, and how that changes its Euler characteristic: by 1 - that of the part
-/// of the node's link in the solid.
-class GrowingSolid {
-public:
-    GrowingSolid(const Lattice& lattice, NodeSet& solid) : neighbours_(lattice), solid_(solid) {}
-
-    /// Adds node \p i if its neighbours in the solid are connected, and calls visit(j) for the others.
-    template <class Visit>
-    void add_if_connected(NodeId i, const Visit& visit) {
-        const NeighbourSet places = neighbours_.places(i), link = link_of(i, places);
-        if (!topology_.is_connected(link)) return;
-        add(i, link);
-        neighbours_.for_each_at(i, places & ~link, [&](NodeId j, int) { visit(j); });
-    }
-    void add(NodeId i) { add(i, link_of(i, neighbours_.places(i))); }
-    int euler_change() const { return euler_change_; }
-
-private:
-    NeighbourSet link_of(NodeId i, NeighbourSet places) const {
-        return neighbours_in(neighbours_, i, places, [&](NodeId j) { return solid_[j] == kInSolid; });
-    }
-    void add(NodeId i, NeighbourSet link) {
-        solid_[i] = kInSolid;
-        euler_change_ += 1 - topology_.euler_characteristic(link);
-    }
-
-    const LinkTopology& topology_ = LinkTopology::table();
-    Neighbours neighbours_;
-    NodeSet& solid_;
-    int euler_change_ = 0;
-};
+Solid solid_at(const Region& region, int level) {
+    return solid_of(region.lattice, region.clearance, region.counts, level, region.min_points);
+}
 
 /// Adds the components of the nodes left out of \p solid that touch no node with clearance > level.
 /// \p left_out holds all nodes of clearance <= level that were outside before growth.
 void fill_cavities(const Lattice& lattice, const std::vector<NodeId>& left_out,
-                   const PerNode<SquaredRadius>& clearance, int level, NodeSet& solid,
-                   GrowingSolid& growing) {
+                   const PerNode<SquaredRadius>& clearance, int level, NodeSet& solid) {
     constexpr std::uint8_t kVisited = 2;  // in solid: visited, but not in it
     const Neighbours neighbours(lattice);
     std::vector<NodeId> component;
@@ -78,37 +52,15 @@ void fill_cavities(const Lattice& lattice, const std::vector<NodeId>& left_out,
         flood(neighbours, seed, enter, component);
         for (const NodeId i : component) open = open || neighbours.places(i) != kAllNeighbours;
         if (open) continue;
-        for (const NodeId i : component) growing.add(i);
+        for (const NodeId i : component) solid[i] = kInSolid;
     }
     for (const NodeId i : left_out) solid[i] = solid[i] == kInSolid ? kInSolid : 0;
 }
 
-/// A solid grown by grow_without_bridges().
-struct Grown {
-    NodeSet solid;
-    int euler = 0;  ///< its Euler characteristic
-};
-
-Grown grown(const Region& region, int level) {
-    const LevelTopology& plain = region.topologies[level];
-    Grown result;
-    if (plain.specks > 0) {
-        result.solid = solid_of(region.lattice, region.clearance, region.counts, level, region.min_points);
-        result.euler = euler_characteristic(region.lattice, result.solid);
-    } else {  // the same, without a search for components
-        result.solid.resize(region.clearance.size());
-        for (NodeId i = 0; i < result.solid.size(); ++i)
-            result.solid[i] = region.clearance[i] <= level ? kInSolid : 0;
-        result.euler = plain.euler_characteristic();
-    }
-    result.euler += grow_without_bridges(region.lattice, region.clearance, grown_level(level), result.solid);
-    return result;
-}
-
 }  // namespace
 
-int grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
-                         NodeSet& solid) {
+void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
+                          NodeSet& solid) {
     Indexed<std::vector<NodeId>> waiting(level + 1);
     std::vector<NodeId> outside;
     for (NodeId i = 0; i < solid.size(); ++i)
@@ -116,18 +68,24 @@ int grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& c
             waiting[clearance[i]].push_back(i);
             outside.push_back(i);
         }
-    GrowingSolid growing(lattice, solid);
+    const Neighbours neighbours(lattice);
     for (int l = 0; l <= level; ++l) {
         std::vector<NodeId>& front = waiting[l];
-        for (std::size_t k = 0; k < front.size(); ++k)
-            if (solid[front[k]] == 0)
-                growing.add_if_connected(front[k], [&](NodeId j) {
-                    // It may have been left out, and be connected to the solid in another way now.
-                    if (clearance[j] <= l) front.push_back(j);
-                });
+        for (std::size_t k = 0; k < front.size(); ++k) {
+            const NodeId i = front[k];
+            if (solid[i] != 0) continue;
+            const NeighbourSet places = neighbours.places(i);
+            const NeighbourSet link =
+                neighbours_in(neighbours, i, places, [&](NodeId j) { return solid[j] == kInSolid; });
+            if (!LinkTopology::table().is_connected(link)) continue;
+            solid[i] = kInSolid;
+            neighbours.for_each_at(i, places & ~link, [&](NodeId j, int) {
+                // It may have been left out, and be connected to the solid in another way now.
+                if (clearance[j] <= l) front.push_back(j);
+            });
+        }
     }
-    fill_cavities(lattice, outside, clearance, level, solid, growing);
-    return growing.euler_change();
+    fill_cavities(lattice, outside, clearance, level, solid);
 }
 
 int grown_level(int level) {
@@ -135,19 +93,29 @@ int grown_level(int level) {
     return std::min(Region::kMaxLevel, level * kRadiusFactor * kRadiusFactor);
 }
 
-NodeSet grown_solid(const Region& region, int level) { return grown(region, level).solid; }
+NodeSet grown_solid(const Region& region, int level) {
+    NodeSet solid = solid_at(region, level).nodes;
+    grow_without_bridges(region.lattice, region.clearance, grown_level(level), solid);
+    return solid;
+}
 
 std::vector<TopologyAt> grown_topologies(const Region& region, ThreadTeam& team) {
-    std::vector<TopologyAt> result;
-    for (const int level : kGrownFromLevels) {
-        const LevelTopology& plain = region.topologies[level];
-        if (is_fragmented(region, level) || (level == 0 && plain.specks > 0)) continue;
-        result.push_back({level, plain.components + region.topologies[grown_level(level)].cavities, 0});
-    }
-    for_chunks(result.size(), 1, team, [&](std::size_t i, std::size_t, std::size_t) {
-        result[i].genus = result[i].components - grown(region, result[i].level).euler;
+    const long long joined = solid_at(region, kJoiningLevel).points_in_specks;
+    const double fragments = kFragmentShare * static_cast<double>(region.total_points);
+    const int levels = static_cast<int>(kGrownFromLevels.size());
+    return parallel_collect<TopologyAt>(levels, 1, team, [&](int i, std::vector<TopologyAt>& found) {
+        const int level = kGrownFromLevels[at(i)];
+        Solid solid = solid_at(region, level);
+        if (solid.components == 0 || static_cast<double>(solid.points_in_specks - joined) > fragments ||
+            (level == 0 && solid.points_in_specks > 0))
+            return;
+        grow_without_bridges(region.lattice, region.clearance, grown_level(level), solid.nodes);
+        const auto cavities = std::count_if(region.hollows.begin(), region.hollows.end(), [&](NodeId node) {
+            return region.clearance[node] > grown_level(level);
+        });
+        const int surfaces = solid.components + static_cast<int>(cavities);
+        found.push_back({level, surfaces, surfaces - euler_characteristic(region.lattice, solid.nodes)});
     });
-    return result;
 }
 
 }  // namespace neuralmesh

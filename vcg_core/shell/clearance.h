@@ -50,4 +50,15 @@ SealedSpaces enclosed_spaces(const Lattice& lattice, const PerNode<SquaredRadius
                              const PerNode<SquaredRadius>& clearance, double width_ratio,
                              int min_squared_depth);
 
+/// The solid at a level, without its specks: components of fewer points than others need.
+struct Solid {
+    NodeSet nodes;
+    int components = 0;
+    long long points_in_specks = 0;
+};
+
+/// The components of {clearance <= level} that hold at least \p min_points points. O(nodes).
+Solid solid_of(const Lattice& lattice, const PerNode<SquaredRadius>& clearance,
+               const PerNode<std::uint32_t>& counts, int level, long long min_points);
+
 }  // namespace neuralmesh

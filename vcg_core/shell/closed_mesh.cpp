@@ -10,7 +10,6 @@
 
 #include "vcg_core/shell/bridgeless_growth.h"
 #include "vcg_core/shell/marching_tetrahedra.h"
-#include "vcg_core/shell/node_groups.h"
 
 namespace neuralmesh {
 namespace {
@@ -18,11 +17,6 @@ namespace {
 // In lattice steps. In sealed spaces, grown solids and specks the distance to the points has the wrong sign.
 // Such nodes get the sign of the solid and this distance.
 constexpr float kMinDistance = 0.2F;
-
-NodeSet solid_at(const Region& region, int level, bool grown) {
-    if (grown) return grown_solid(region, level);
-    return solid_of(region.lattice, region.clearance, region.counts, level, region.min_points);
-}
 
 /// Signed distances in lattice steps from the surface of \p solid, negative inside.
 PerNode<float> signed_distances(const Region& region, const NodeSet& solid, int level) {
@@ -65,48 +59,22 @@ Network surface_of(const Region& region, const PerNode<float>& distances, int st
     return mesh.faces.empty() ? Network() : Network(mesh.positions, mesh.faces);
 }
 
-bool has_topology(const TopologyVote& vote, const LevelTopology& solid) {
-    return solid.surfaces() == vote.components && solid.genus == vote.genus;
-}
-
 /// The Euler characteristic comes first: it need not be counted.
 bool has_topology(const TopologyVote& vote, const Network& closed) {
     return closed.euler_characteristic() == 2 * (vote.components - vote.genus) &&
            closed.component_count() == vote.components;
 }
 
-/// Makes \p closed the mesh at \p level, on every third or second node. \return whether it has the topology
-/// of \p vote
-bool close_with_stride(const Region& region, const TopologyVote& vote, int level, bool grown,
-                       ClosedMesh& closed) {
-    closed.level = grown ? grown_level(level) : level;
-    closed.solid = solid_at(region, level, grown);
-    const PerNode<float> distances = signed_distances(region, closed.solid, closed.level);
-    for (const int stride : {3, 2}) {
-        closed.network = surface_of(region, distances, stride);
-        if (has_topology(vote, closed.network)) return true;
-    }
-    return false;
-}
-
 }  // namespace
 
 ClosedMesh closed_mesh(const Region& region, const TopologyVote& vote) {
-    const std::vector<int>& levels = vote.levels;
-    ClosedMesh closed;
-    // The smallest radius, about the geometric mean, and the largest one.
-    for (const int level : {levels.front(), levels[levels.size() / 3], levels.back()}) {
-        if (has_topology(vote, region.topologies[level]) &&
-            close_with_stride(region, vote, level, false, closed))
-            return closed;
+    ClosedMesh closed{Network(), grown_solid(region, vote.level), grown_level(vote.level)};
+    const PerNode<float> distances = signed_distances(region, closed.solid, closed.level);
+    for (const int stride : {3, 2, 1}) {
+        closed.network = surface_of(region, distances, stride);
+        if (has_topology(vote, closed.network)) break;
     }
-    if (!close_with_stride(region, vote, levels.front(), vote.grown, closed))
-        closed.network = mesh_on_all_nodes(region, closed);
     return closed;
-}
-
-Network mesh_on_all_nodes(const Region& region, const ClosedMesh& closed) {
-    return surface_of(region, signed_distances(region, closed.solid, closed.level), 1);
 }
 
 }  // namespace neuralmesh

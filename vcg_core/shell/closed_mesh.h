@@ -6,8 +6,8 @@
 
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/shell/lattice.h"
+#include "vcg_core/shell/lattice_survey.h"
 #include "vcg_core/shell/region.h"
-#include "vcg_core/shell/topology_vote.h"
 
 namespace neuralmesh {
 
@@ -18,15 +18,10 @@ struct ClosedMesh {
     int level = 0;  ///< of the solid
 };
 
-/// A mesh of the topology of \p vote at one of its levels, from the lattice of \p region. The mesh lies
-/// outside the points by the radius of the level, so smaller levels are tried first, and plain solids before
-/// grown ones. The mesh is made on every third or second node if that keeps the topology, because fewer faces
-/// take less time to reduce. Otherwise it is made on all nodes, where it has exactly the topology counted.
-/// The network is empty if the solid is. O(nodes + faces log faces) for each of up to nine meshes.
+/// A mesh of the grown solid of \p vote, from the lattice of \p region. It is made on every third or second
+/// node if that keeps the topology, because fewer faces take less time to reduce; otherwise on all nodes,
+/// where it has exactly the topology counted. The network is empty if the solid is. O(nodes + faces log
+/// faces).
 ClosedMesh closed_mesh(const Region& region, const TopologyVote& vote);
-
-/// The surface of the solid of \p closed, made on all nodes: nearer to the level than a mesh on every third
-/// one, which cuts off what is narrower. O(nodes + faces log faces)
-Network mesh_on_all_nodes(const Region& region, const ClosedMesh& closed);
 
 }  // namespace neuralmesh

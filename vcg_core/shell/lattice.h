@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A regular lattice of nodes over a box: indices, adjacency and flood fill.
+// A regular lattice of nodes over a box: indices, adjacency, flood fill, and passes of separable sums, maxima
+// and distances.
 #pragma once
 
 #include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -79,15 +81,6 @@ inline constexpr std::array<NodeOffset, kNeighbourCount> kNeighbourOffsets = {
 using NeighbourSet = std::uint32_t;
 inline constexpr NeighbourSet kAllNeighbours = (NeighbourSet{1} << kNeighbourCount) - 1;
 
-/// Some of the neighbours of a node.
-struct NodeList {
-    std::array<NodeId, kNeighbourCount> nodes{};
-    std::size_t size = 0;  ///< what is behind counts for nothing
-
-    const NodeId* begin() const { return nodes.data(); }
-    const NodeId* end() const { return nodes.data() + size; }
-};
-
 /// The neighbours of nodes. For loops over many nodes: the differences of the ids are computed once.
 class Neighbours {
 public:
@@ -127,17 +120,6 @@ public:
     template <class Visit>
     void for_each(NodeId i, const Visit& visit) const {
         for_each_at(i, places(i), visit);
-    }
-    /// The neighbours j of node \p i with member(j), in the order of kNeighbourOffsets. Without a branch for
-    /// each, which would be hard to predict.
-    template <class Member>
-    NodeList of(NodeId i, const Member& member) const {
-        NodeList result;
-        for_each(i, [&](NodeId j, int) {
-            result.nodes[result.size] = j;
-            result.size += member(j) ? 1 : 0;
-        });
-        return result;
     }
 
 private:
@@ -181,6 +163,36 @@ void for_each_component(const Lattice& lattice, const Member& member, const Visi
         flood(neighbours, seed, enter, nodes);
         visit(nodes);
     }
+}
+
+/// Replaces each value v of row i by combine(v, w, i - j) for the values w at the same place of the rows j
+/// within \p reach of i, for \p count rows of \p width values, \p stride apart from \p first on. \p combine
+/// must not depend on the order of the rows. \p scratch is for a copy of them. O(count * width * reach).
+template <class T, class Combine>
+void combine_rows(T* first, int count, std::ptrdiff_t stride, int width, int reach, const Combine& combine,
+                  std::vector<T>& scratch) {
+    const std::ptrdiff_t w = width;
+    scratch.resize(static_cast<std::size_t>(count * w));
+    for (int i = 0; i < count; ++i) std::copy_n(first + i * stride, w, scratch.data() + i * w);
+    for (int i = 0; i < count; ++i) {
+        T* out = first + i * stride;
+        for (int j = std::max(0, i - reach); j <= std::min(count - 1, i + reach); ++j) {
+            if (j == i) continue;
+            const T* in = scratch.data() + j * w;
+            for (std::ptrdiff_t x = 0; x < w; ++x) out[x] = combine(out[x], in[x], i - j);
+        }
+    }
+}
+
+/// combine_rows() of all rows along x with those beside them along y, then along z.
+template <class T, class Combine>
+void combine_across_rows(const Lattice& l, int reach, const Combine& combine, PerNode<T>& values) {
+    std::vector<T> scratch;
+    const std::ptrdiff_t row = l.nx, slice = row * l.ny;
+    for (int z = 0; z < l.nz; ++z)
+        combine_rows(values.data() + z * slice, l.ny, row, l.nx, reach, combine, scratch);
+    for (int y = 0; y < l.ny; ++y)
+        combine_rows(values.data() + y * row, l.nz, slice, l.nx, reach, combine, scratch);
 }
 
 }  // namespace neuralmesh

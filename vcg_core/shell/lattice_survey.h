@@ -10,33 +10,40 @@
 #include <vector>
 
 #include "vcg_core/base/progress.h"
-#include "vcg_core/shell/region.h"
-#include "vcg_core/shell/shell.h"
-#include "vcg_core/shell/topology_vote.h"
+#include "vcg_core/shell/bridgeless_growth.h"
 
 namespace neuralmesh {
 
 /// With a smaller share of the votes the topology is uncertain.
 inline constexpr double kLowConfidence = 0.5;
 
-/// The lattices examined, finest first, and their vote.
-struct LatticeSurvey {
-    std::vector<Region> regions;
-    std::vector<std::vector<TopologyAt>> topologies;  ///< of each region
-    TopologyVote vote;
-    float step = 0;  ///< of the first lattice examined
-
-    const Region& chosen_region() const { return regions[static_cast<std::size_t>(vote.lattice)]; }
+/// The topology with most votes, and the range of radii with most votes for it.
+struct TopologyVote {
+    bool found = false;  ///< false: there were no topologies to vote on
+    int components = 0;
+    int genus = 0;
+    double confidence = 0;  ///< share of the votes, in [0, 1]
+    int level = 0;          ///< the first of the range
 };
 
-/// Stops as soon as the vote is clear, because most clouds are plain:
-/// 1. the solids of two lattices;
-/// 2. the same two, with the solids grown without bridges;
-/// 3. a finer lattice, for surfaces close to each other;
-/// 4. coarser lattices, for clouds with noise and gaps.
-/// If no lattice has a topology, the choice is the largest ball on the coarsest one. Uses
-/// options.threads threads. \p places tell hollows (hollows.h). The result does not depend on the threads.
+/// Votes on the topologies found on a lattice, by rising level. The radii from a to b over which the topology
+/// stays the same give it 1/a - 1/b votes. This rewards persistence relative to the radius and, of two
+/// equally persistent topologies, prefers the one at smaller radii: large balls only close handles and gaps.
+/// Radii above two lattice steps at which the solid is in pieces vote for nothing. O(levels).
+TopologyVote persistent_topology(const std::vector<TopologyAt>& topologies);
+
+/// The lattice that tells the topology most clearly.
+struct LatticeSurvey {
+    Region region;
+    TopologyVote vote;
+    float step = 0;  ///< of the first lattice examined
+};
+
+/// Examines a lattice as fine as the points allow. If the vote there is not clear, a finer one, for surfaces
+/// close to each other, and if it is uncertain coarser ones, for clouds with noise and gaps. If no lattice
+/// has a topology, the choice is the largest ball on the coarsest one. Uses \p threads threads, 0: one per
+/// core. \p places tell hollows (hollows.h). The result does not depend on the threads.
 LatticeSurvey survey_lattices(const std::vector<vcg::Point3f>& points, const std::vector<LayerPlace>& places,
-                              const vcg::Box3f& box, const ShellOptions& options, Progress& progress);
+                              const vcg::Box3f& box, int threads, Progress& progress);
 
 }  // namespace neuralmesh

@@ -6,10 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
-
-#include "vcg_core/base/platform.h"
 
 namespace neuralmesh {
 namespace {
@@ -31,51 +28,16 @@ constexpr std::array<std::array<int, 4>, 6> kPairFirst = {
     {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
 
 /// A lattice edge: 8 * its lower end + the corner bits from there to its upper end.
-using EdgeKey = std::uint64_t;
-
-/// A set of lattice edges, each with the number of those with smaller keys.
-class RankedEdges {
-public:
-    /// \p keys: below 8 * \p nodes
-    RankedEdges(const std::vector<EdgeKey>& keys, NodeId nodes)
-        : words_(nodes / (kBits / kKeysPerNode) + 1, 0), first_(words_.size()) {
-        for (const EdgeKey key : keys) words_[word_of(key)] |= std::uint64_t{1} << (key % kBits);
-        for (int w = 0; w < words_.size(); ++w) {
-            first_[w] = count_;
-            count_ += bit_count(words_[w]);
-        }
-    }
-    int size() const { return count_; }
-    int rank(EdgeKey key) const {
-        const std::uint64_t smaller = (std::uint64_t{1} << (key % kBits)) - 1;
-        return first_[word_of(key)] + bit_count(words_[word_of(key)] & smaller);
-    }
-    /// Calls visit(key) in rising order.
-    template <class Visit>
-    void for_each(const Visit& visit) const {
-        for (int w = 0; w < words_.size(); ++w)
-            for (std::uint64_t left = words_[w]; left != 0; left &= left - 1)
-                visit(static_cast<EdgeKey>(w) * kBits + static_cast<EdgeKey>(lowest_bit(left)));
-    }
-
-private:
-    static constexpr int kBits = 64, kKeysPerNode = 8;
-    static int word_of(EdgeKey key) { return static_cast<int>(key / kBits); }
-
-    Indexed<std::uint64_t> words_;
-    Indexed<int> first_;  ///< number of the keys in the words before
-    int count_ = 0;
-};
+using EdgeKey = std::size_t;
 
 /// Collects triangles whose vertices lie on lattice edges.
 class EdgeTriangles {
 public:
-    EdgeTriangles(const Lattice& lattice, const PerNode<float>& values, const TetrahedronFilter& wanted)
-        : lattice_(lattice), values_(values), wanted_(wanted) {}
+    EdgeTriangles(const Lattice& lattice, const PerNode<float>& values)
+        : lattice_(lattice), values_(values) {}
 
     void add_cubes();
-    /// \p nodes: receives for every vertex one end of the lattice edge it lies on
-    IndexedMesh<float> mesh(std::vector<NodeId>& nodes) const;
+    IndexedMesh<float> mesh() const;
 
 private:
     void add_cube(int x, int y, int z);
@@ -86,7 +48,6 @@ private:
 
     const Lattice& lattice_;
     const PerNode<float>& values_;
-    const TetrahedronFilter& wanted_;
     std::vector<EdgeKey> keys_;
 };
 
@@ -96,12 +57,7 @@ void EdgeTriangles::add_cube(int x, int y, int z) {
     for (int corner = 0; corner < 8; ++corner)
         if (values_[node + offset(corner)] < 0) solid |= 1U << corner;
     if (solid == 0 || solid == 255) return;
-    for (const std::array<int, 4>& corners : kTetrahedra) {
-        if (wanted_ && !wanted_({node + offset(corners[0]), node + offset(corners[1]),
-                                 node + offset(corners[2]), node + offset(corners[3])}))
-            continue;
-        add_tetrahedron(node, corners, solid);
-    }
+    for (const std::array<int, 4>& corners : kTetrahedra) add_tetrahedron(node, corners, solid);
 }
 
 void EdgeTriangles::add_tetrahedron(NodeId node, const std::array<int, 4>& corners, unsigned solid_corners) {
@@ -141,17 +97,18 @@ Point3f EdgeTriangles::point_on(EdgeKey key) const {
     return lattice_.position(node) + along * (t * lattice_.step);
 }
 
-IndexedMesh<float> EdgeTriangles::mesh(std::vector<NodeId>& nodes) const {
-    const RankedEdges edges(keys_, lattice_.size());
+IndexedMesh<float> EdgeTriangles::mesh() const {
+    constexpr int kNone = -1, kNext = -2;
+    std::vector<int> vertex(8 * static_cast<std::size_t>(lattice_.size()), kNone);
+    for (const EdgeKey key : keys_) vertex[key] = kNext;
     IndexedMesh<float> result;
-    result.positions.reserve(static_cast<std::size_t>(edges.size()));
-    edges.for_each([&](EdgeKey key) {
+    for (EdgeKey key = 0; key < vertex.size(); ++key) {
+        if (vertex[key] == kNone) continue;
+        vertex[key] = static_cast<int>(result.positions.size());
         result.positions.push_back(point_on(key));
-        nodes.push_back(static_cast<NodeId>(key / 8));
-    });
-    result.faces.reserve(keys_.size() / 3);
+    }
     for (std::size_t i = 0; i < keys_.size(); i += 3)
-        result.faces.push_back({edges.rank(keys_[i]), edges.rank(keys_[i + 1]), edges.rank(keys_[i + 2])});
+        result.faces.push_back({vertex[keys_[i]], vertex[keys_[i + 1]], vertex[keys_[i + 2]]});
     return result;
 }
 
@@ -163,16 +120,10 @@ void EdgeTriangles::add_cubes() {
 
 }  // namespace
 
-IndexedMesh<float> marching_tetrahedra(const Lattice& lattice, const PerNode<float>& values,
-                                       const TetrahedronFilter& wanted, std::vector<NodeId>& nodes) {
-    EdgeTriangles triangles(lattice, values, wanted);
-    triangles.add_cubes();
-    return triangles.mesh(nodes);
-}
-
 IndexedMesh<float> marching_tetrahedra(const Lattice& lattice, const PerNode<float>& values) {
-    std::vector<NodeId> nodes;
-    return marching_tetrahedra(lattice, values, {}, nodes);
+    EdgeTriangles triangles(lattice, values);
+    triangles.add_cubes();
+    return triangles.mesh();
 }
 
 }  // namespace neuralmesh

@@ -4,10 +4,6 @@
 // Marching tetrahedra: from a solid on a lattice to a triangle mesh of the same topology.
 #pragma once
 
-#include <array>
-#include <functional>
-#include <vector>
-
 #include "vcg_core/mesh/indexed_mesh.h"
 #include "vcg_core/shell/lattice.h"
 
@@ -21,14 +17,5 @@ namespace neuralmesh {
 /// O(nodes + faces log faces). Source: Doi and Koide 1991. (Marching cubes' tables may join or cut what the
 /// lattice counts otherwise.)
 IndexedMesh<float> marching_tetrahedra(const Lattice& lattice, const PerNode<float>& values);
-
-/// Whether the tetrahedron between four nodes is to be meshed.
-using TetrahedronFilter = std::function<bool(const std::array<NodeId, 4>& nodes)>;
-
-/// The same in the tetrahedra that \p wanted accepts: oriented, simplicial, every edge with one or two faces,
-/// but several fans of faces may meet in a vertex. \p nodes receives for every vertex one end of the lattice
-/// edge it lies on.
-IndexedMesh<float> marching_tetrahedra(const Lattice& lattice, const PerNode<float>& values,
-                                       const TetrahedronFilter& wanted, std::vector<NodeId>& nodes);
 
 }  // namespace neuralmesh

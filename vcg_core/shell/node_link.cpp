@@ -28,23 +28,6 @@ std::array<NeighbourSet, kNeighbourCount> adjacent_sets() {
     return sets;
 }
 
-/// Adds the neighbours at the place \p k in kNeighbourOffsets to the lower links of the nodes of row (y, z).
-void add_to_links_of_row(const Lattice& l, int y, int z, int k, const PerNode<std::int16_t>& values,
-                         PerNode<std::uint16_t>& links) {
-    const auto [dx, dy, dz] = kNeighbourOffsets[static_cast<std::size_t>(k)];
-    if (!l.contains(0, y + dy, z + dz)) return;
-    const std::ptrdiff_t begin = dx < 0 ? 1 : 0, end = dx > 0 ? l.nx - 1 : l.nx;
-    const std::int16_t* const here = values.data() + l.index(0, y, z);
-    const std::int16_t* const there = here + l.index(dx, dy, dz);
-    std::uint16_t* const out = links.data() + l.index(0, y, z);
-    const auto bit = static_cast<std::uint16_t>(1U << k);
-    if ((kSmallerIds >> k & 1U) != 0) {
-        for (std::ptrdiff_t x = begin; x < end; ++x) out[x] |= there[x] <= here[x] ? bit : 0;
-    } else {
-        for (std::ptrdiff_t x = begin; x < end; ++x) out[x] |= there[x] < here[x] ? bit : 0;
-    }
-}
-
 }  // namespace
 
 LinkTopology::LinkTopology()
@@ -74,12 +57,17 @@ const LinkTopology& LinkTopology::table() {
     return table;
 }
 
-PerNode<std::uint16_t> lower_links(const Lattice& l, const PerNode<std::int16_t>& values) {
-    PerNode<std::uint16_t> links(l.size(), 0);
-    for (int z = 0; z < l.nz; ++z)
-        for (int y = 0; y < l.ny; ++y)
-            for (int k = 0; k < kNeighbourCount; ++k) add_to_links_of_row(l, y, z, k, values, links);
-    return links;
+int euler_characteristic(const Lattice& lattice, const NodeSet& solid) {
+    const LinkTopology& topology = LinkTopology::table();
+    const Neighbours neighbours(lattice);
+    const auto in_solid = [&](NodeId i) { return solid[i] != 0; };
+    int sum = 0;
+    for (NodeId i = 0; i < solid.size(); ++i) {
+        if (!in_solid(i)) continue;
+        const NeighbourSet before = neighbours.places(i) & kSmallerIds;
+        sum += 1 - topology.euler_characteristic(neighbours_in(neighbours, i, before, in_solid));
+    }
+    return sum;
 }
 
 }  // namespace neuralmesh

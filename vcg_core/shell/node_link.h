@@ -42,9 +42,8 @@ private:
     std::vector<std::int8_t> euler_;
 };
 
-/// The lower link of every node: the neighbours that come before it when nodes are ordered by \p values and
-/// then by their ids. Where a solid grows in this order, each node changes its Euler characteristic by 1 -
-/// that of the lower link (Banchoff 1967). O(nodes), in SIMD.
-PerNode<std::uint16_t> lower_links(const Lattice& lattice, const PerNode<std::int16_t>& values);
+/// Euler characteristic of the simplices all of whose nodes are in \p solid: components - handles + cavities.
+/// Each node adds 1 - that of its neighbours with smaller ids in the solid (Banchoff 1967). O(nodes).
+int euler_characteristic(const Lattice& lattice, const NodeSet& solid);
 
 }  // namespace neuralmesh

@@ -25,7 +25,6 @@
 #include "vcg_core/shell/point_triangulation.h"
 #include "vcg_core/shell/sensor_place.h"
 #include "vcg_core/shell/short_handles.h"
-#include "vcg_core/shell/start_points.h"
 #include "vcg_core/shell/viewpoint.h"
 
 namespace neuralmesh {
@@ -58,34 +57,16 @@ constexpr int kNeighbours = 12;
 /// Points belong to a vertex that is not farther than so many of its radii.
 constexpr float kBelongs = 3;
 
-/// A part with fewer points than options.component_share counts if it is a sheet: of at least so many points
-/// and vertices. In a single view of 20,000 points a strip beside an occluded place has some hundred, and
-/// islands seen by two views have 50; clumps of outliers have no vertices.
-constexpr int kPointsOfSheet = 40;
-constexpr int kVerticesOfSheet = 3;
-/// The least share of the points that such a part may have, times the vertices asked for. It takes three of
-/// them, so more small parts than that would leave none for the others.
+/// The points that a part has at least. In a single view of 20,000 points a strip beside an occluded place
+/// has some hundred, and islands seen by two views have 50; clumps of outliers have no faces.
+constexpr int kPointsOfPart = 40;
+/// Their least share of all points, times the vertices asked for. A part takes three of them, so more small
+/// parts than that would leave none for the others.
 constexpr double kLeastPartVertices = 0.3;
 
-void check(const OpenStartOptions& o) {
-    if (o.wanted_vertices < 4 || o.target_vertices < 4 || o.samples < 4 ||
-        !(o.component_share >= 0 && o.component_share < 1))
-        throw SettingError(
-            "The options of the open start mesh are out of range: at least 4 vertices and 4 samples are "
-            "needed, and a component share in [0, 1).");
-}
-
-/// The points that a part needs, and a part that is a sheet of surface.
-struct Enough {
-    long long points, on_sheet;
-};
-
-Enough enough_points(std::size_t points, const OpenStartOptions& options) {
-    const auto all = static_cast<double>(points);
-    const auto share = static_cast<long long>(options.component_share * all);
-    const auto carrying = static_cast<long long>(kLeastPartVertices * all / options.target_vertices);
-    return {std::max<long long>(OpenStartOptions::kLeastPoints, share),
-            std::max<long long>(kPointsOfSheet, carrying)};
+long long points_of_part(std::size_t points, const OpenStartOptions& options) {
+    const double carrying = kLeastPartVertices * static_cast<double>(points) / options.target_vertices;
+    return std::max<long long>(kPointsOfPart, static_cast<long long>(carrying));
 }
 
 int wanted_vertices(std::size_t points, const OpenStartOptions& options) {
@@ -193,20 +174,16 @@ std::vector<int> vertices_of_points(Surveys& surveys, const Sheet& sheet, Thread
     return vertices;
 }
 
-/// Drops the parts of \p sheet that have too few points. \return 1 for each point of \p cloud, in the order
-/// given, that belongs to nothing that is kept
-std::vector<std::uint8_t> drop_small_parts(Surveys& surveys, const Enough& enough, ThreadTeam& team,
+/// Drops the parts of \p sheet that have fewer than \p least points. \return 1 for each point of \p cloud, in
+/// the order given, that belongs to nothing that is kept
+std::vector<std::uint8_t> drop_small_parts(Surveys& surveys, long long least, ThreadTeam& team,
                                            Sheet& sheet) {
     const Parts parts = parts_of(sheet.mesh);
     const std::vector<int> vertices = vertices_of_points(surveys, sheet, team);
-    std::vector<long long> points(at(parts.count), 0), size(at(parts.count), 0);
+    std::vector<long long> points(at(parts.count), 0);
     for (const int v : vertices)
         if (v >= 0) ++points[at(parts.of[v])];
-    for (const int part : parts.of) ++size[at(part)];
-    const auto counts = [&](int part) {
-        return points[at(part)] >= enough.points ||
-               (points[at(part)] >= enough.on_sheet && size[at(part)] >= kVerticesOfSheet);
-    };
+    const auto counts = [&](int part) { return points[at(part)] >= least; };
     std::vector<Triangle>& faces = sheet.mesh.faces;
     faces.erase(std::remove_if(faces.begin(), faces.end(),
                                [&](const Triangle& f) { return !counts(parts.of[f[0]]); }),
@@ -265,18 +242,14 @@ void fill_small_holes(Sheet& sheet, const OpenStartOptions& options, OpenStart& 
         const double most = options.close_holes_up_to >= 0 ? std::max(options.close_holes_up_to, gap)
                                                            : static_cast<double>(kGapRadii * radius);
         const double diameter = diameter_of(loop, mesh.positions);
-        if (diameter <= most && filler.fill(loop)) {
-            result.widest_filled = std::max(result.widest_filled, diameter);
-        } else if (!filler.fill(loop, kCrackRadii * radius)) {
-            left.push_back(&loop);
-            // Half a radius of surface, on both sides, is beyond the last vertices.
-            widest = std::max(widest, diameter - static_cast<double>(radius));
-        }
+        if ((diameter <= most && filler.fill(loop)) || filler.fill(loop, kCrackRadii * radius)) continue;
+        left.push_back(&loop);
+        // Half a radius of surface, on both sides, is beyond the last vertices.
+        widest = std::max(widest, diameter - static_cast<double>(radius));
     }
     result.widest_loop = widest / diagonal_of(mesh.positions);
     if (result.widest_loop > options.closed_up_to) return;
-    for (const auto* loop : left)
-        if (filler.fill(*loop)) result.widest_filled = std::max(result.widest_filled, widest);
+    for (const auto* loop : left) filler.fill(*loop);
 }
 
 IndexedMesh<float> indexed(const Network& network) {
@@ -354,16 +327,11 @@ void write_mesh(const Network& network, OpenStart& result) {
 
 }  // namespace
 
-OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options, Random& random,
-                     Progress& progress, Surveys* given) {
-    check(options);
+OpenStart open_start(const TargetSpace& target, const std::vector<Point3f>& points, Surveys& surveys,
+                     const OpenStartOptions& options, Random& random, Progress& progress) {
     progress(0.0, "Start mesh: surveying the cloud");
-    const StartPoints start_points(target, options.samples, random);
-    const std::vector<Point3f>& points = start_points.all();
     check_enough_points(points.size());
     ThreadTeam team(thread_count(options.threads));
-    Surveys own(points, options.threads);
-    Surveys& surveys = given != nullptr ? *given : own;
     const SurfaceSurvey& surface = surveys.surface();
     check_for_surface(surface);
 
@@ -375,8 +343,8 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     progress(0.6, "Start mesh: building an open mesh");
     Sheet sheet = sheet_of(std::move(consolidated), target.frame().inside({0, 0, 0}),
                            sensor_place(surveys.points().cloud, surface.places()), team);
-    const Enough enough = enough_points(points.size(), options);
-    std::vector<std::uint8_t> out = drop_small_parts(surveys, enough, team, sheet);
+    std::vector<std::uint8_t> out =
+        drop_small_parts(surveys, points_of_part(points.size(), options), team, sheet);
     check_for_part(!sheet.mesh.faces.empty());
     OpenStart result;
     result.misses_surface = misses_surface(surveys, out);
@@ -391,7 +359,7 @@ OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options,
     result.fewest_vertices = fewest_vertices(std::move(network), options.target_vertices);
     result.radius = std::max(surface.sparse_radius(), surface.usual_radius());
     result.layers = surface.layers();
-    set_outliers(std::move(out), options.learn_outliers || target.is_exact(), result);
+    set_outliers(std::move(out), options.learn_outliers, result);
     warn_of_cuts(target, sheet.contradictions, result);
     progress(1.0, "Start mesh: done");
     return result;

@@ -46,18 +46,12 @@ struct OpenStartOptions {
     double closed_up_to = 0;
     /// Outliers get no component, but are to be learned.
     bool learn_outliers = false;
-    /// A component counts with this share of the points and at least kLeastPoints of them. A sheet of surface
-    /// counts with fewer, if the mesh has vertices for it.
-    double component_share = 0.01;
     /// Parts with a boundary face the side to which most normals of the target point, if it has any, instead
     /// of facing out where they are convex.
     bool use_normals = false;
-    /// Points drawn from a target that is a mesh.
-    int samples = 100000;
     /// 0: one per core. The mesh does not depend on it.
     int threads = 0;
 
-    static constexpr int kLeastPoints = 20;
     /// Fewer points do not tell where a vertex of the start mesh belongs.
     static constexpr int kPointsPerVertex = 4;
     /// Fewer points show no boundary.
@@ -78,8 +72,7 @@ struct OpenStart {
     int faced_by_normals = 0;  ///< components with a boundary that face the side of the target's normals
     /// of the smallest sphere around the widest hole, as share of the mesh's diagonal
     double widest_loop = 0;
-    double radius = 0;         ///< on which the points are a surface: where they are sparse, or noisy
-    double widest_filled = 0;  ///< diameter of the widest hole that was filled
+    double radius = 0;  ///< on which the points are a surface: where they are sparse, or noisy
     /// More of the points whose surroundings show a surface were left out than chance and clutter account
     /// for: the mesh is not theirs. So are the narrow sides of a thin slab.
     bool misses_surface = false;
@@ -91,12 +84,10 @@ struct OpenStart {
     std::vector<std::string> warnings;  ///< full sentences
 };
 
-/// The open start mesh of \p target. The same target, options and state of \p random give the same mesh
-/// everywhere. \p progress gets fractions from 0 to 1; a
-/// wish to stop is not answered (0.3 s for 100,000 points).
-/// \param given of the points of a target without faces; nullptr: made here
-/// \throws NoSurfaceError; InputError if there are too few points
-OpenStart open_start(const TargetSpace& target, const OpenStartOptions& options, Random& random,
-                     Progress& progress, Surveys* given = nullptr);
+/// The open start mesh of \p target, from \p points of it, of which \p surveys are. Equal arguments give
+/// equal meshes everywhere. \p progress gets fractions from 0 to 1; a wish to stop is not answered (0.3 s for
+/// 100,000 points). \throws NoSurfaceError; InputError if there are too few points
+OpenStart open_start(const TargetSpace& target, const std::vector<vcg::Point3f>& points, Surveys& surveys,
+                     const OpenStartOptions& options, Random& random, Progress& progress);
 
 }  // namespace neuralmesh

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "vcg_core/shell/node_groups.h"
-
 namespace neuralmesh {
 namespace {
 
@@ -29,7 +27,8 @@ int max_squared_depth(const Region& region, int level) {
 
 /// The occupied nodes, without the fringe, that are far from all large groups.
 NodeSet isolated_nodes(const Region& region, int level) {
-    const NodeSet large = solid_of(region.lattice, region.distances, region.counts, level, region.min_points);
+    const NodeSet large =
+        solid_of(region.lattice, region.distances, region.counts, level, region.min_points).nodes;
     NodeSet isolated(large.size());
     for (NodeId i = 0; i < isolated.size(); ++i) isolated[i] = region.counts[i] != 0 && large[i] == 0 ? 1 : 0;
     return isolated;

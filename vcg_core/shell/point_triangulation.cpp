@@ -206,24 +206,7 @@ private:
             if (other.first != wedge.last && wedge.contains(other.from)) return false;
             if (other.last != wedge.first && other.contains(wedge.from)) return false;
         }
-        return leaves_one_fan(v, wedge);
-    }
-
-    /// A fan that closes must be the only one.
-    bool leaves_one_fan(int v, const Wedge& wedge) const {
-        std::size_t passed = 0;
-        int end = wedge.last;
-        for (bool moved = true; moved && end != wedge.first;) {
-            moved = false;
-            for (const Wedge& other : wedges_[at(v)])
-                if (other.first == end) {
-                    end = other.last;
-                    moved = true;
-                    ++passed;
-                    break;
-                }
-        }
-        return end != wedge.first || passed == wedges_[at(v)].size();
+        return true;
     }
 
     const Points& points_;

@@ -8,7 +8,6 @@
 
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/shell/hollows.h"
-#include "vcg_core/shell/lattice_rows.h"
 
 namespace neuralmesh {
 namespace {
@@ -24,9 +23,9 @@ constexpr int kSingleLayerSquaredDepth = 4 * 4;
 constexpr double kCoarseSteps = 40;
 constexpr int kCoarseMaxRadius = 18;
 
-// Pieces that join within this squared radius, and hold this share of the points, are fragments.
-constexpr int kJoiningLevel = 4 * 4;
-constexpr double kFragmentShare = 0.05;
+/// A component holds at least this share of the points, and so many of them.
+constexpr double kComponentShare = 0.01;
+constexpr long long kSpeckPoints = 20;
 
 // A node is fringe if its density is below this share of the highest density close by ...
 constexpr double kFringeShare = 0.2;
@@ -113,19 +112,13 @@ void seal(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box,
         clearances(region.lattice, region.distances, Region::kMaxRadius, sealed.inside, region.hollows);
 }
 
-long long points_of_component(long long total, double share, long long least) {
-    const long long wanted = std::max(least, static_cast<long long>(share * static_cast<double>(total)));
+long long points_of_component(long long total) {
+    const long long wanted =
+        std::max(kSpeckPoints, static_cast<long long>(kComponentShare * static_cast<double>(total)));
     return std::min(wanted, 1 + total / 4);  // so that a cloud of a few points has a component
 }
 
 }  // namespace
-
-bool is_fragmented(const Region& region, int level) {
-    const LevelTopology& here = region.topologies[level];
-    const LevelTopology& joined = region.topologies[std::max(level, kJoiningLevel)];
-    const double joining = static_cast<double>(here.speck_points - joined.speck_points);
-    return here.components == 0 || joining > kFragmentShare * static_cast<double>(region.total_points);
-}
 
 double sheet_share(const Region& region) {
     PerNode<std::uint32_t> enclosed(region.lattice.size(), 0);
@@ -161,16 +154,13 @@ double points_per_occupied_node(const PerNode<std::uint32_t>& counts) {
 }
 
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step,
-               double component_share, long long min_component_points,
                const std::vector<LayerPlace>& places) {
     Region region(Lattice(box, step, Region::kMargin));
     region.counts = without_fringe(region.lattice, count_points(region.lattice, points));
     region.distances = squared_distances(region.lattice, region.counts, Region::kMaxRadius);
     seal(points, box, places, region);
     region.total_points = static_cast<long long>(points.size());
-    region.min_points = points_of_component(region.total_points, component_share, min_component_points);
-    region.topologies = topology_of_levels(region.lattice, region.clearance, region.counts,
-                                           Region::kMaxRadius, region.min_points, region.hollows);
+    region.min_points = points_of_component(region.total_points);
     return region;
 }
 

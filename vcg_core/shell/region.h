@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A cloud on one lattice: its points per node, the space it encloses, and the topology of its solids at all
-// radii.
+// A cloud on one lattice: its points per node, and the space it encloses.
 #pragma once
 
 #include <vcg/space/box3.h>
@@ -13,7 +12,6 @@
 
 #include "vcg_core/shell/clearance.h"
 #include "vcg_core/shell/lattice.h"
-#include "vcg_core/shell/level_topology.h"
 #include "vcg_core/target/opposite_layers.h"
 
 namespace neuralmesh {
@@ -33,7 +31,6 @@ struct Region {
     long long total_points = 0;
     long long min_points = 0;     ///< that a component holds
     std::vector<NodeId> hollows;  ///< a node in each
-    PerLevel<LevelTopology> topologies;
 
     /// The other members are empty until examine() fills them.
     explicit Region(const Lattice& nodes) : lattice(nodes) {}
@@ -49,18 +46,11 @@ struct Region {
 /// are a single layer. Then large hollows are sealed, too, if their opening is at most 0.8 times as wide as
 /// they are (a head scanned down to the neck).
 ///
-/// A component holds at least \p component_share of the points and at least \p min_component_points, or a
-/// quarter of the points if that is less.
+/// A component holds at least 1 % of the points and at least 20, or a quarter of the points if that is less.
 ///
 /// Hollows, told from the sealed spaces by \p places (hollows.h), are outside as well. O(nodes + points).
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step,
-               double component_share, long long min_component_points,
                const std::vector<LayerPlace>& places = {});
-
-/// True if the solid at \p level is in pieces because the radius is smaller than the distance between points:
-/// no component is large enough, or 5 % of the points are in specks that join something larger within four
-/// lattice steps. O(1).
-bool is_fragmented(const Region& region, int level);
 
 /// The share of the nodes with points that have no enclosed space within two nodes, on any side: parts of the
 /// surface that are thin or open. O(nodes).

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -17,6 +16,7 @@
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/even_mesh.h"
 #include "vcg_core/base/text.h"
+#include "vcg_core/base/thread_team.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/simplify.h"
 #include "vcg_core/mesh/triangle.h"
@@ -25,9 +25,9 @@
 #include "vcg_core/shell/local_width.h"
 #include "vcg_core/shell/outliers.h"
 #include "vcg_core/shell/region.h"
-#include "vcg_core/shell/start_points.h"
 #include "vcg_core/target/noise_by_place.h"
 #include "vcg_core/target/opposite_layers.h"
+#include "vcg_core/target/surface_survey.h"
 
 namespace neuralmesh {
 namespace {
@@ -35,9 +35,6 @@ namespace {
 using vcg::Box3f;
 using vcg::Point3f;
 
-constexpr int kMinMeshVertices = 4;
-// Lattice::size() has to fit into an int: 1024^3 nodes do.
-constexpr int kMaxNodesPerSide = 1024;
 // Enough for a component or handle to keep its shape.
 constexpr int kVerticesPerFeature = 8;
 /// The points do not tell where more vertices of a start mesh are.
@@ -51,33 +48,12 @@ constexpr float kHalfLevel = 0.5F;
 constexpr double kEdgeOverWidth = 0.75;
 /// Walls thinner than this, in edges of an even mesh of as many vertices as asked for, are learned thicker.
 constexpr double kThickEdges = 1.5;
-/// The mesh that tells sides has this many times the vertices of the start mesh. The start mesh itself cuts
-/// corners off: at the edges of nested boxes half an edge apart it gives .4 % of the points to the wrong box,
-/// and the two meshes fold into each other there.
-constexpr int kSideVertices = 4;
-/// A shell of no more than this many times as many vertices tells sides as it is. If it were reduced twice,
-/// sharp edges would draw back: a blade two edges thick at its middle has four to nine times the error then,
-/// in two of four clouds.
-constexpr int kWorthReducing = 2;
-/// A shell made on every third or second node is too coarse to tell sides if walls want more than this share
-/// of its vertices at the start. It is kept where the points tell fewer start vertices than that: there balls
-/// may just get into a wall, and a mesh on all nodes has a dent, with 16 % of the faces turned (casting,
-/// walls of 3.4 spacings).
-constexpr double kMostOfCoarse = 1.0 / kSideVertices;
 /// Points are the two sides of walls where so many of them are on thin ones: with walls of 4 to 7 spacings
 /// .67 at least (wall_table.py), on depth frames and aerial scans .14 at most.
 constexpr double kWalled = 0.35;
 // A warning is due from here on, in steps of the first lattice and of the chosen one. Gaps between points are
 // narrower.
 constexpr double kCoarseRadius = 5, kWideOpening = 4;
-
-void check(const ShellOptions& o) {
-    if (o.max_vertices < kMinMeshVertices || o.target_vertices < kMinMeshVertices || !(o.max_nodes >= 1000) ||
-        o.max_nodes_per_side < 16 || o.max_nodes_per_side > kMaxNodesPerSide || !(o.points_per_node >= 1) ||
-        !(o.component_share >= 0 && o.component_share < 1) || o.samples < 4)
-        throw SettingError(
-            "An option of the start mesh is out of range. It needs at least 4 vertices, 1000 lattice nodes, 16 to 1024 nodes per side, 1 point per node and 4 samples, and a component share in [0, 1).");
-}
 
 double area_around(const Network& network, VertexId v) {
     const Ring& ring = network.ring(v);
@@ -143,19 +119,13 @@ WallSides reduce(ClosedMesh& closed, const Region& region, int vertices, double 
     for (const VertexId v : network.vertices()) area += area_around(network, v);
     const double even_edge = std::sqrt(area / (kAreaPerVertex * vertices));
     const float radius = lattice.step * std::sqrt(static_cast<float>(closed.level) + kHalfLevel);
-    WantedEdges edges = wanted_edges(closed, lattice, radius, even_edge);
-    if (edges.vertices > kMostOfCoarse * network.vertex_count() && edges.vertices < most) {
-        network = mesh_on_all_nodes(region, closed);
-        edges = wanted_edges(closed, lattice, radius, even_edge);
-    }
+    const WantedEdges edges = wanted_edges(closed, lattice, radius, even_edge);
     const int wanted = static_cast<int>(std::min(edges.vertices, most));
     if (!(wanted > kWorthwhile * vertices)) {
         simplify(network, vertices);
         return {};
     }
     progress(0.83, kReducing);
-    const int of_sides = kSideVertices * wanted;
-    if (network.vertex_count() > kWorthReducing * of_sides) simplify(network, of_sides, edges.lengths);
     const double thick = kThickEdges * std::sqrt(area / (kAreaPerVertex * final_vertices));
     WallSides walls =
         wall_sides(network, thickenings(network, lattice, closed.solid, radius, static_cast<float>(thick)));
@@ -191,15 +161,15 @@ void set_mesh(ClosedMesh& closed, const Region& region, std::size_t points, cons
 /// Sets the figures that the lattice and the vote give.
 void set_figures(const LatticeSurvey& survey, int level, StartMesh& result) {
     result.confidence = survey.vote.confidence;
-    result.resolution = static_cast<double>(survey.chosen_region().lattice.step);
+    result.resolution = static_cast<double>(survey.region.lattice.step);
     result.radius = result.resolution * std::sqrt(static_cast<double>(level));
 }
 
 Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace>& places, Surveys& surveys) {
     Enclosure result;
-    result.encloses_space = survey.chosen_region().encloses_space;
-    result.sheet_share = sheet_share(survey.regions.front());
-    result.widest_opening = survey.chosen_region().widest_opening;
+    result.encloses_space = survey.region.encloses_space;
+    result.sheet_share = sheet_share(survey.region);
+    result.widest_opening = survey.region.widest_opening;
     // Where the lattice shows no space, the points may lie on the two sides of walls too thin for it.
     const bool unclear = (!result.encloses_space || result.sheet_share > kMostSheet) && !skips("walled");
     result.walled = unclear && share_on_thin_walls(places, surveys) > kWalled;
@@ -207,18 +177,17 @@ Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace
     return result;
 }
 
-void set_outliers(const TargetSpace& target, const std::vector<Point3f>& points, const Region& region,
-                  const ClosedMesh& closed, bool learn_outliers, StartMesh& result) {
+void set_outliers(const std::vector<Point3f>& points, const Region& region, const ClosedMesh& closed,
+                  bool learn_outliers, StartMesh& result) {
     if (skips("lattice_outliers")) return;
     result.outliers = outliers_of(points, region, closed.solid, closed.level);
     result.ignored_points = std::count(result.outliers.begin(), result.outliers.end(), 1);
     const double most = ShellOptions::kMaxOutlierShare * static_cast<double>(points.size());
-    if (learn_outliers || target.is_exact() || static_cast<double>(result.ignored_points) > most)
-        result.outliers.clear();
+    if (learn_outliers || static_cast<double>(result.ignored_points) > most) result.outliers.clear();
 }
 
 void warn_of_uncertain_topology(const LatticeSurvey& survey, StartMesh& result) {
-    const bool coarser = survey.chosen_region().lattice.step > survey.step ||
+    const bool coarser = survey.region.lattice.step > survey.step ||
                          result.radius > kCoarseRadius * static_cast<double>(survey.step);
     if (coarser)
         result.warnings.push_back(
@@ -243,34 +212,24 @@ void warn_of_open_surface(StartMesh& result) {
 }  // namespace
 
 struct Shell::Examined {
-    const TargetSpace& target;
+    const std::vector<Point3f>& points;
     const ShellOptions options;
-    const StartPoints start_points;
     LatticeSurvey survey;
     Enclosure enclosure;
-
-    Examined(const TargetSpace& of, const ShellOptions& chosen, Random& random)
-        : target(of), options(chosen), start_points(of, chosen.samples, random) {}
 };
 
-Shell::Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress,
-             Surveys* surveys) {
-    check(options);
+Shell::Shell(const std::vector<Point3f>& points, Surveys& surveys, const ShellOptions& options,
+             Progress& progress) {
     progress(0.0, "Start mesh: measuring the density of the cloud");
-    auto examined = std::make_unique<Examined>(target, options, random);
-    const std::vector<Point3f>& points = examined->start_points.all();
     Box3f box;
     for (const Point3f& p : points) box.Add(p);
-
     progress(0.2, "Start mesh: counting components and handles");
     ThreadTeam team(thread_count(options.threads));
-    std::optional<Surveys> made;
-    if (surveys == nullptr) surveys = &made.emplace(points, options.threads);
-    const std::vector<LayerPlace> places = layer_places(surveys->points(), team);
+    const std::vector<LayerPlace> places = layer_places(surveys.points(), team);
     PartOf counting(progress, 0.2, 0.7);
-    examined->survey = survey_lattices(points, places, box, options, counting);
-    examined->enclosure = enclosure_of(examined->survey, places, *surveys);
-    examined_ = std::move(examined);
+    LatticeSurvey survey = survey_lattices(points, places, box, options.threads, counting);
+    const Enclosure enclosure = enclosure_of(survey, places, surveys);
+    examined_.reset(new Examined{points, options, std::move(survey), enclosure});
 }
 
 Shell::~Shell() = default;
@@ -279,9 +238,9 @@ const Enclosure& Shell::enclosure() const { return examined_->enclosure; }
 
 StartMesh Shell::mesh(Progress& progress) const {
     progress(0.7, "Start mesh: building the mesh");
-    const std::vector<Point3f>& points = examined_->start_points.all();
+    const std::vector<Point3f>& points = examined_->points;
     const LatticeSurvey& survey = examined_->survey;
-    const Region& region = survey.chosen_region();
+    const Region& region = survey.region;
     ClosedMesh closed = closed_mesh(region, survey.vote);
     if (closed.network.vertex_count() == 0)
         throw InputError(
@@ -291,7 +250,7 @@ StartMesh Shell::mesh(Progress& progress) const {
     set_mesh(closed, region, points.size(), examined_->options, progress, result);
     progress(0.9, "Start mesh: measuring it");
     set_figures(survey, closed.level, result);
-    set_outliers(examined_->target, points, region, closed, examined_->options.learn_outliers, result);
+    set_outliers(points, region, closed, examined_->options.learn_outliers, result);
     warn_of_uncertain_topology(survey, result);
     warn_of_open_surface(result);
     const std::string outliers =
@@ -300,11 +259,6 @@ StartMesh Shell::mesh(Progress& progress) const {
     if (!outliers.empty()) result.warnings.push_back(outliers);
     progress(1.0, "Start mesh: done");
     return result;
-}
-
-StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Random& random,
-                   Progress& progress) {
-    return Shell(target, options, random, progress).mesh(progress);
 }
 
 }  // namespace neuralmesh

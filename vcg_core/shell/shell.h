@@ -9,19 +9,20 @@
 //    outside without the ball touching a point. Spaces much wider than their opening are sealed: they are
 //    the inside of a surface with gaps between its points (clearance.h, region.h). Those that a wall
 //    separates from the outside are hollows, and not of the solid (hollows.h).
-// 3. Components and handles are counted at all radii (level_topology.h), on two lattices. The topology that
-//    persists over the largest range of radii is chosen (topology_vote.h).
-// 4. If the vote is unclear, the solids are grown without bridging gaps, on more lattices. This tells
-//    handles from gaps between points and from parts that nearly touch (bridgeless_growth.h,
-//    lattice_survey.h).
+// 3. From several radii on the solid is grown to twice the radius without bridging gaps, which tells
+//    handles from gaps between points and from parts that nearly touch (bridgeless_growth.h). The topology
+//    that persists over the largest range of radii is chosen (lattice_survey.h).
+// 4. If the vote is unclear, finer and coarser lattices are asked.
 // 5. Marching tetrahedra turn the chosen solid into a mesh (closed_mesh.h). Half-edge collapses, which keep
 //    the topology, reduce it (simplify.h), less where walls and gaps are narrow (local_width.h). There a mesh
 //    of more vertices tells the two sides of a wall apart (WallSides).
 //
 // Outliers make no component. An isolated group of points makes one if it holds at least 1 % of the points
-// (component_share) and at least kSpeckPoints: of 200,000 points, a group of 1,999 is outliers. Single points
-// deep inside are outliers, too. The start mesh leaves outliers out, and a warning says how many they are.
+// and at least 20 (region.cpp): of 200,000 points, a group of 1,999 is outliers. Single points deep inside
+// are outliers, too. The start mesh leaves outliers out, and a warning says how many they are.
 #pragma once
+
+#include <vcg/space/point3.h>
 
 #include <cstdint>
 #include <memory>
@@ -29,9 +30,7 @@
 #include <vector>
 
 #include "vcg_core/base/progress.h"
-#include "vcg_core/base/random.h"
 #include "vcg_core/mesh/indexed_mesh.h"
-#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 
@@ -41,8 +40,7 @@ class Surveys;
 /// .048 on where a part is open or a thin wall. Chosen by open_table.py.
 inline constexpr double kMostSheet = 0.04;
 
-/// Limits of cost, and what counts as a component. tests/experiments/tools/shell_topology shows what a change
-/// of the defaults does.
+/// Limits of cost.
 struct ShellOptions {
     /// The start mesh has min(max_vertices, target_vertices / 4) vertices, but at least 8 per component and 8
     /// per handle, and more if the topology needs them.
@@ -51,23 +49,11 @@ struct ShellOptions {
     /// Where walls or gaps are narrower than its edges, the start mesh gets shorter ones: in all up to this
     /// many vertices, and one for every eight points, if the surface encloses space. 0: none.
     int most_vertices = 0;
-    /// Upper limit of the nodes of the first lattice. A node costs about 30 bytes and 0.3 microseconds. Where
-    /// parts nearly touch, a further lattice has up to eight times as many nodes, and a node takes 9 bytes
-    /// more for each of at most eight threads.
-    double max_nodes = 5.0e5;
-    int max_nodes_per_side = 256;
-    /// The lattice is as fine as possible with this many points per occupied node on average.
-    double points_per_node = 1.1;
-    /// A component holds at least this share of the points, and kSpeckPoints.
-    double component_share = 0.01;
     /// Outliers get no component, but are to be learned.
     bool learn_outliers = false;
-    /// Points drawn from a target with faces.
-    int samples = 200000;
     /// 0: one per core. The mesh does not depend on it.
     int threads = 0;
 
-    static constexpr int kSpeckPoints = 20;
     /// If outliers are a larger share of the cloud, they are learned: then they are not rare errors.
     static constexpr double kMaxOutlierShare = 0.1;
 };
@@ -97,43 +83,35 @@ struct StartMesh : IndexedMesh<float>, Enclosure {
     double radius = 0;             ///< of the ball; the mesh lies about this far outside the points
     double resolution = 0;         ///< distance of the lattice nodes
     long long ignored_points = 0;  ///< outliers: the mesh leaves them out
-    /// 1 for each outlier of the cloud. Empty if all points are to be learned: there are no outliers, they
-    /// exceed kMaxOutlierShare, or the target has faces.
+    /// 1 for each outlier of the cloud. Empty if all points are to be learned: there are no outliers, or
+    /// they exceed kMaxOutlierShare.
     std::vector<std::uint8_t> outliers;
     std::vector<std::string> warnings;  ///< full sentences for the log
 };
 
-/// shell_of() in two steps. Whether the cloud encloses space is known after the first; if it is open, the
-/// mesh, which may take as long, is not needed.
+/// The shell of points, in two steps. Whether the cloud encloses space is known after the first; if it is
+/// open, the mesh, which may take as long, is not needed.
+///
+/// Equal points and options give equal meshes on every machine. The surfaces
+/// of hollows are components, seen from within. Time: about 0.2 s, 0.1 s more per million points, and up to 3
+/// s where parts nearly touch. Memory: about 30 bytes per lattice node.
 class Shell {
 public:
-    /// Examines the lattices and keeps them, and a reference to \p target. Draws from \p random only if the
-    /// target has faces. \p progress gets fractions up to 0.7 of both steps; its answer to stop is ignored.
-    /// \param surveys of the points of a target without faces; nullptr: made here
-    /// \throws SettingError if an option is out of range
-    Shell(const TargetSpace& target, const ShellOptions& options, Random& random, Progress& progress,
-          Surveys* surveys = nullptr);
+    /// Examines the lattices and keeps them, and a reference to \p points, of which \p surveys are. \p
+    /// progress gets fractions up to 0.7 of both steps; its answer to stop is ignored.
+    Shell(const std::vector<vcg::Point3f>& points, Surveys& surveys, const ShellOptions& options,
+          Progress& progress);
     ~Shell();
     Shell(const Shell&) = delete;
     Shell& operator=(const Shell&) = delete;
 
     const Enclosure& enclosure() const;
-    /// The mesh; see shell_of(). \throws InputError if no part of the cloud holds enough points
+    /// The mesh. \throws InputError if no part of the cloud holds enough points
     StartMesh mesh(Progress& progress) const;
 
 private:
     struct Examined;
     std::unique_ptr<const Examined> examined_;
 };
-
-/// The shell of \p target. Equal targets, options and states of \p random give equal meshes on every machine;
-/// random is used only if the target has faces. The surfaces of hollows are components, seen from within.
-///
-/// \p progress is called with fractions from 0 to 1 of this step; its answer to stop is ignored. Time: about
-/// 0.2 s, 0.1 s more per million points, and up to 3 s where parts nearly touch. Memory: about 30 bytes per
-/// lattice node.
-/// \throws SettingError if an option is out of range, InputError if no part of the cloud holds enough points
-StartMesh shell_of(const TargetSpace& target, const ShellOptions& options, Random& random,
-                   Progress& progress);
 
 }  // namespace neuralmesh

@@ -17,6 +17,7 @@
 #include "tests/unit/support/shell_shapes.h"
 #include "tests/unit/support/targets.h"
 #include "vcg_core/shell/shell.h"
+#include "vcg_core/target/surface_survey.h"
 
 namespace {
 
@@ -72,7 +73,8 @@ bool measure(const Model& model, std::size_t samples, double noise_percent) {
     const TargetSpace target = targets::target_of(cloud);
     NoProgress progress;
     const auto start = std::chrono::steady_clock::now();
-    const StartMesh mesh = shell_of(target, ShellOptions(), random, progress);
+    Surveys surveys(target.positions(), 0);
+    const StartMesh mesh = Shell(target.positions(), surveys, ShellOptions(), progress).mesh(progress);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     const bool right = mesh.components == model.components && mesh.genus == model.genus;
     std::printf("| %s | %zu | %g | %d / %d | %d / %d | %s | %.2f | %.2f | %.2f | %zu | %.2f |\n",

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "vcg_core/shell/level_topology.h"
+#include "vcg_core/shell/node_link.h"
 
 namespace neuralmesh {
 namespace {
@@ -28,8 +28,7 @@ public:
         });
         before_ = euler_characteristic(lattice_, solid_);
         distances_ = squared_distances(lattice_, occupied, kMaxRadius);
-        const int change = grow_without_bridges(lattice_, distances_, level, solid_);
-        EXPECT_EQ(change, after() - before_);
+        grow_without_bridges(lattice_, distances_, level, solid_);
     }
     int before() const { return before_; }
     int after() const { return euler_characteristic(lattice_, solid_); }

@@ -10,7 +10,7 @@
 #include <cstdlib>
 
 #include "tests/unit/support/small_lattice.h"
-#include "vcg_core/shell/level_topology.h"
+#include "vcg_core/shell/node_link.h"
 
 namespace neuralmesh {
 namespace {
@@ -61,33 +61,7 @@ TEST(Clearance, IsTheFixedPointOfRelaxation) {
                 squared_distances(lattice, random_counts(lattice, seed, one_in), kLargestRadius);
             const PerNode<SquaredRadius> relaxed = relaxed_clearances(lattice, distances);
             EXPECT_EQ(clearances(lattice, distances, kLargestRadius, {}), relaxed) << one_in;
-            // The same node by node, as with an inside: of a node that no path crosses.
-            NodeSet inside(lattice.size(), 0);
-            PerNode<SquaredRadius> closed = distances;
-            closed[lattice.index(6, 6, 6)] = 0;
-            inside[lattice.index(6, 6, 6)] = 1;
-            EXPECT_EQ(clearances(lattice, closed, kLargestRadius, inside),
-                      relaxed_clearances(lattice, closed));
         }
-}
-
-/// A corridor that turns back at both ends: paths along it run to and fro in all three directions.
-TEST(Clearance, FollowsACorridorToItsEnd) {
-    const Lattice lattice(vcg::Box3f(vcg::Point3f(0, 0, 0), vcg::Point3f(12, 12, 12)), 1.0F, 0);
-    PerNode<SquaredRadius> distances(lattice.size(), 0);
-    for_each_node(lattice, [&](int x, int y, int z) {
-        const bool floor = z % 2 == 1, wall = y % 2 == 1;
-        const bool stairs = x == (y % 4 == 1 ? 11 : 1) && !floor;
-        const bool hatch = x == 6 && y == (z % 4 == 1 ? 10 : 2);
-        const bool inner = x > 0 && y > 0 && z > 0 && x < 12 && y < 12 && z < 12;
-        const bool room = inner && !floor && !wall;
-        if (room || (inner && wall && stairs) || (inner && floor && hatch))
-            distances[lattice.index(x, y, z)] = static_cast<SquaredRadius>(4 + (x + y) % 3);
-    });
-    distances[lattice.index(6, 0, 2)] = distances[lattice.index(6, 1, 2)] = 5;  // the door
-    const PerNode<SquaredRadius> found = clearances(lattice, distances, kLargestRadius, {});
-    EXPECT_EQ(found, relaxed_clearances(lattice, distances));
-    EXPECT_GT(found[lattice.index(6, 10, 10)], 0);
 }
 
 /// The surface of a cube of 17 x 17 x 17 nodes with a hole of 3 x 3 nodes in its lid.
@@ -111,10 +85,28 @@ TEST(Clearance, SpaceBehindANarrowOpeningIsSealed) {
     const PerNode<SquaredRadius> closed = clearances(lattice, distances, kMax, sealed.inside);
     EXPECT_EQ(closed[middle], 0);
     EXPECT_GT(closed[lattice.index(0, 0, 0)], 0);
-    EXPECT_EQ(topology_of_levels(lattice, closed, counts, kMax, 0)[1].genus, 0);
+    EXPECT_EQ(euler_characteristic(lattice, solid_of(lattice, closed, counts, 1, 1).nodes), 1);
     // The middle is 8 steps from the points: no space is that much wider than its opening, or that deep.
     EXPECT_EQ(enclosed_spaces(lattice, distances, open, 8, 0).nodes, 0);
     EXPECT_EQ(enclosed_spaces(lattice, distances, open, 1.7, 8 * 8 + 1).nodes, 0);
+}
+
+TEST(Clearance, SmallComponentsAreSpecks) {
+    const Lattice lattice = small_lattice();
+    PerNode<std::uint32_t> counts(lattice.size(), 0);
+    counts[lattice.index(2, 2, 2)] = 10;
+    counts[lattice.index(8, 8, 8)] = 3;
+    const PerNode<SquaredRadius> distances = squared_distances(lattice, counts, kLargestRadius);
+    const PerNode<SquaredRadius> clearance = clearances(lattice, distances, kLargestRadius, {});
+    const Solid small = solid_of(lattice, clearance, counts, 1, 5);
+    EXPECT_EQ(small.components, 1);
+    EXPECT_EQ(small.points_in_specks, 3);
+    EXPECT_EQ(small.nodes[lattice.index(2, 2, 3)], 1);
+    EXPECT_EQ(small.nodes[lattice.index(8, 8, 8)], 0);
+    // They are 6 * sqrt(3) apart: balls of radius 5 have adjacent nodes.
+    const Solid large = solid_of(lattice, clearance, counts, kLargestRadius * kLargestRadius, 5);
+    EXPECT_EQ(large.components, 1);
+    EXPECT_EQ(large.points_in_specks, 0);
 }
 
 }  // namespace

@@ -18,15 +18,15 @@ constexpr float kFarthest = 0.5F;
 
 using Inside = std::function<bool(const vcg::Point3f&)>;
 
-struct Solid {
+struct Body {
     Lattice lattice;
     NodeSet nodes;
     Network shell;
 };
 
-Solid solid_of(const Inside& inside) {
+Body body_of(const Inside& inside) {
     const vcg::Box3f box(vcg::Point3f(-0.6F, -0.6F, -0.6F), vcg::Point3f(0.6F, 0.6F, 0.6F));
-    Solid solid{Lattice(box, kStep, 4), {}, {}};
+    Body solid{Lattice(box, kStep, 4), {}, {}};
     solid.nodes.assign(solid.lattice.size(), 0);
     PerNode<float> values(solid.lattice.size(), 1.0F);
     for (NodeId i = 0; i < solid.lattice.size(); ++i)
@@ -40,7 +40,7 @@ Solid solid_of(const Inside& inside) {
 }
 
 /// The widths at the vertices of the shell at which \p counts is true.
-std::vector<float> widths_where(const Solid& solid, float radius, const Inside& counts) {
+std::vector<float> widths_where(const Body& solid, float radius, const Inside& counts) {
     const PerVertex<float> widths = local_widths(solid.shell, solid.lattice, solid.nodes, radius, kFarthest);
     std::vector<float> chosen;
     for (const VertexId v : solid.shell.vertices())
@@ -51,7 +51,7 @@ std::vector<float> widths_where(const Solid& solid, float radius, const Inside& 
 bool in_the_middle(const vcg::Point3f& p) { return std::abs(p[0]) < 0.3F && std::abs(p[1]) < 0.3F; }
 
 TEST(LocalWidth, OfAWallIsItsThicknessBetweenThePoints) {
-    const Solid plate = solid_of([](const vcg::Point3f& p) {
+    const Body plate = body_of([](const vcg::Point3f& p) {
         return std::abs(p[0]) < 0.5F && std::abs(p[1]) < 0.5F && std::abs(p[2]) < 0.09F;
     });
     const float radius = 0.03F;
@@ -61,7 +61,7 @@ TEST(LocalWidth, OfAWallIsItsThicknessBetweenThePoints) {
 }
 
 TEST(LocalWidth, OfAGapIsItsWidthBetweenThePoints) {
-    const Solid blocks = solid_of([](const vcg::Point3f& p) {
+    const Body blocks = body_of([](const vcg::Point3f& p) {
         return std::abs(p[0]) < 0.5F && std::abs(p[1]) < 0.5F && std::abs(p[2]) > 0.07F &&
                std::abs(p[2]) < 0.55F;
     });
@@ -73,14 +73,14 @@ TEST(LocalWidth, OfAGapIsItsWidthBetweenThePoints) {
 }
 
 TEST(LocalWidth, IsTheBoundWhereNothingIsNear) {
-    const Solid ball = solid_of([](const vcg::Point3f& p) { return p.Norm() < 0.5F; });
+    const Body ball = body_of([](const vcg::Point3f& p) { return p.Norm() < 0.5F; });
     const std::vector<float> widths =
         widths_where(ball, 1.2F * kStep, [](const vcg::Point3f&) { return true; });
     for (const float width : widths) EXPECT_FLOAT_EQ(width, kFarthest);
 }
 
 TEST(LocalWidth, IsNeverLessThanTheLatticeTells) {
-    const Solid foil = solid_of([](const vcg::Point3f& p) {
+    const Body foil = body_of([](const vcg::Point3f& p) {
         return std::abs(p[0]) < 0.5F && std::abs(p[1]) < 0.5F && std::abs(p[2]) < 0.03F;
     });
     for (const float width : widths_where(foil, 0.025F, in_the_middle)) EXPECT_FLOAT_EQ(width, 1.5F * kStep);
@@ -94,7 +94,7 @@ struct PlateSides {
 /// The thickenings at the two sides of the lower of two plates of \p thickness that are \p gap apart.
 PlateSides thickenings_of_plates(float thickness, float gap, float radius, float thick) {
     constexpr float kBottom = -0.4F;
-    const Solid plates = solid_of([&](const vcg::Point3f& p) {
+    const Body plates = body_of([&](const vcg::Point3f& p) {
         const float z = p[2] - kBottom;
         const bool in_plate = (z > 0 && z < thickness) || (z > thickness + gap && z < 2 * thickness + gap);
         return std::abs(p[0]) < 0.5F && std::abs(p[1]) < 0.5F && in_plate;

@@ -11,7 +11,7 @@
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/small_lattice.h"
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/shell/level_topology.h"
+#include "vcg_core/shell/node_link.h"
 
 namespace neuralmesh {
 namespace {

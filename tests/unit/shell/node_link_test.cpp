@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The table of sets of neighbours against a search for components and a count of simplices; lower links
-// against a look at each neighbour.
+// The table of sets of neighbours against a search for components and a count of simplices.
 #include "vcg_core/shell/node_link.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "tests/unit/support/small_lattice.h"
@@ -90,17 +88,24 @@ TEST(NodeLink, EulerCharacteristicsAreThoseOfTheSimplices) {
     EXPECT_EQ(differ, 0);
 }
 
-TEST(NodeLink, LowerLinksHoldWhatComesBefore) {
+TEST(NodeLink, EulerCharacteristicOfKnownSolids) {
     const Lattice lattice = small_lattice();
-    const Neighbours neighbours(lattice);
-    Random random(1);
-    PerNode<std::int16_t> values(lattice.size());
-    for (std::int16_t& value : values) value = static_cast<std::int16_t>(random.below(4));
-    const PerNode<std::uint16_t> links = lower_links(lattice, values);
-    for (NodeId i = 0; i < lattice.size(); ++i)
-        ASSERT_EQ(links[i], set_of(neighbours, i, [&](NodeId j) {
-                      return std::pair(values[j], j) < std::pair(values[i], i);
-                  }));
+    const auto euler = [&](const auto& inside) {
+        NodeSet solid(lattice.size(), 0);
+        for_each_node(lattice,
+                      [&](int x, int y, int z) { solid[lattice.index(x, y, z)] = inside(x, y, z) ? 1 : 0; });
+        return euler_characteristic(lattice, solid);
+    };
+    const auto in_cube = [](int x, int y, int z) {
+        return x >= 2 && x <= 8 && y >= 2 && y <= 8 && z >= 2 && z <= 8;
+    };
+    EXPECT_EQ(euler([](int, int, int) { return false; }), 0);
+    EXPECT_EQ(euler([](int x, int y, int z) { return x == 5 && y == 5 && z == 5; }), 1);
+    EXPECT_EQ(euler(in_cube), 1);
+    EXPECT_EQ(euler([&](int x, int y, int z) { return in_cube(x, y, z) && z != 5; }), 2);
+    EXPECT_EQ(euler([&](int x, int y, int z) { return in_cube(x, y, z) && (x != 5 || y != 5); }), 0);
+    EXPECT_EQ(euler([&](int x, int y, int z) { return in_cube(x, y, z) && (x != 5 || y != 5 || z != 5); }),
+              2);  // a cavity
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ using shapes::Cloud;
 OpenStart start_of(const TargetSpace& target, const OpenStartOptions& options = {}) {
     Random random(1);
     NoProgress progress;
-    return open_start(target, options, random, progress);
+    Surveys surveys(target.positions(), options.threads);
+    return open_start(target, target.positions(), surveys, options, random, progress);
 }
 
 /// Of a cloud.

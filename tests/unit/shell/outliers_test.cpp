@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "tests/unit/support/shapes.h"
-#include "vcg_core/shell/node_groups.h"
 
 namespace neuralmesh {
 namespace {
@@ -34,7 +33,7 @@ struct Examined {
         : points(sphere(20000, 0.5F, {0, 0, 0}, 1)),
           surface_points(points.size()),
           region(with(others, points)),
-          solid(solid_of(region.lattice, region.clearance, region.counts, kLevel, region.min_points)) {}
+          solid(solid_of(region.lattice, region.clearance, region.counts, kLevel, region.min_points).nodes) {}
 
     /// The outliers among the others; empty if outliers_of() is.
     std::vector<int> outliers() const {
@@ -56,7 +55,7 @@ private:
     static Region with(const std::vector<Point3f>& others, std::vector<Point3f>& points) {
         append(points, others);
         const vcg::Box3f box(Point3f(-1, -1, -1), Point3f(1, 1, 1));
-        return examine(points, box, 0.04F, 0.01, 20);
+        return examine(points, box, 0.04F);
     }
 };
 

@@ -15,15 +15,16 @@
 #include "tests/unit/support/shell_shapes.h"
 #include "tests/unit/support/targets.h"
 #include "vcg_core/mesh/network.h"
+#include "vcg_core/target/surface_survey.h"
 
 namespace neuralmesh {
 namespace {
 
 StartMesh shell(const std::vector<vcg::Point3d>& cloud, const ShellOptions& options = {}) {
     const TargetSpace target = targets::target_of(cloud);
-    Random random(1);
+    Surveys surveys(target.positions(), options.threads);
     NoProgress progress;
-    return shell_of(target, options, random, progress);
+    return Shell(target.positions(), surveys, options, progress).mesh(progress);
 }
 
 StartMesh shell_of_samples(const shell_shapes::Shape& shape, std::size_t count, double noise = 0) {
