@@ -12,7 +12,6 @@
 #include "vcg_core/base/random.h"
 #include "vcg_core/fit/fitter.h"
 #include "vcg_core/fit/refine.h"
-#include "vcg_core/fit/sources.h"
 
 namespace neuralmesh {
 
@@ -57,16 +56,6 @@ constexpr float kHold = 0.3F;
 
 /// 20 rounds for small meshes, where a round is cheap and every vertex counts.
 int automatic_rounds(int vertices) { return std::min(20, std::max(8, 40000 / std::max(vertices, 1))); }
-
-/// For every inserted vertex the vertex of \p before at whose place it lies, found from the vertex beside
-/// which it was inserted. So a counter stays where it was learned.
-void find_sources(const Network& before, const Network& after, PerVertex<VertexId>& sources) {
-    for (VertexId v = 0; v < after.slot_count(); ++v) {
-        if (!after.alive(v)) sources[v] = -1;
-        if (after.alive(v) && sources[v] != v)
-            sources[v] = nearest_by_steps(before, sources[v], after.position(v));
-    }
-}
 
 /// The rounds of a fit and the best mesh so far.
 class FitRounds {
@@ -135,9 +124,7 @@ private:
             points = fitter_.assign_faces(surface);
         }
         if (options_.redistribute && round >= kFirstRedistribution && round + kQuietRounds < rounds_) {
-            const int moved = fitter_.redistribute_vertices(surface, points);
-            report_.moved_vertices += moved;
-            if (moved > 0) {
+            if (fitter_.redistribute_vertices(surface, points)) {
                 surface = Surface(network_);
                 points = fitter_.assign_faces(surface);
             }
@@ -152,7 +139,6 @@ private:
         if (round == 0 || error < best_error_) {
             best_ = network_;
             best_error_ = error;
-            report_.sources = fitter_.sources();
             report_.rounds = round + 1;
         }
         const bool by_volume = fitter_.reduced_by_volume();
@@ -163,7 +149,7 @@ private:
         last_error_ = error;
         if (options_.flip_edges && round + 1 < rounds_) {
             if (round >= kFirstCreases) fitter_.move_to_creases(surface, points);
-            report_.flips += fitter_.flip_edges(surface, points);
+            fitter_.flip_edges(surface, points);
         }
         return false;
     }
@@ -205,11 +191,10 @@ double learned_share_of(const Network& network, const TargetSpace& target) {
 /// Inserts vertices and bends the finer mesh through the points. The points do not tell where the vertices
 /// should be, so none is redistributed.
 void refine_and_fit(Network& network, const TargetSpace& target, const FitOptions& options, ThreadTeam& team,
-                    std::uint64_t seed, Progress& progress, FitReport& report) {
+                    std::uint64_t seed, Progress& progress) {
     const double learned_share = learned_share_of(network, target);
     PartOf inserting(progress, 0, 0.1);
-    const int inserted = refine(network, options.refine_to, NewVertices::curved, report.sources, inserting);
-    report.inserted += inserted;
+    const int inserted = refine(network, options.refine_to, NewVertices::curved, inserting);
     PointChoice points = points_for(network.vertex_count(), target, options, seed);
     if (inserted == 0 || points.fitted.points.size() < kMinPoints) return;
     Fitter fitter(network, std::move(points), team);
@@ -217,7 +202,6 @@ void refine_and_fit(Network& network, const TargetSpace& target, const FitOption
     PartOf untangling(progress, 0.1, 0.2);
     PartOf fitting(progress, 0.2, 1);
     if (!fitter.untangle_surface(untangling)) return;
-    report.sources = chained(report.sources, chained(fitter.origins(), own_sources(network)));
     const Network before = network;
     FitOptions of_refined = options;
     of_refined.rounds = kRefinedRounds;
@@ -233,7 +217,6 @@ void refine_and_fit(Network& network, const TargetSpace& target, const FitOption
 FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitOptions& options,
                          ThreadTeam& team, std::uint64_t seed, Progress& progress) {
     FitReport report;
-    report.sources = own_sources(network);
     const bool reduces = options.reduce_to > 0 && options.reduce_to < network.vertex_count();
     const int vertices = reduces ? options.reduce_to : network.vertex_count();
     PointChoice points = points_for(vertices, target, options, seed);
@@ -246,23 +229,12 @@ FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitO
     PartOf reducing(progress, 0.1, 0.5);
     PartOf fitting(progress, reduces ? 0.5 : 0.1, 1);
     if (!fitter.untangle_surface(untangling)) return report;
-    const bool reduced = !reduces || fitter.reduce_to(vertices, options, reducing);
-    const PerVertex<VertexId> origins = chained(fitter.origins(), own_sources(network));
-    report.sources = origins;
-    if (!reduced) return report;
-    for (VertexId v : network.vertices()) report.inserted += origins[v] != v ? 1 : 0;
+    if (reduces && !fitter.reduce_to(vertices, options, reducing)) return report;
     const Network before = network;
     FitRounds rounds(network, fitter, options, report);
     rounds.run(fitting);
     rounds.judge(learned_share, team);
-    if (report.improved) {
-        network = std::move(rounds.best());
-        find_sources(before, network, report.sources);
-        report.sources = chained(origins, std::move(report.sources));
-    } else {
-        network = before;
-        report.sources = origins;
-    }
+    network = report.improved ? std::move(rounds.best()) : before;
     return report;
 }
 
@@ -275,7 +247,7 @@ FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOp
     PartOf refining(progress, 0.6, 1);
     FitReport report = reduce_and_fit(network, target, options, team, seed, fitting);
     if (options.refine_to > network.vertex_count() && refining(0, "Fitting to the points: more vertices"))
-        refine_and_fit(network, target, options, team, seed, refining, report);
+        refine_and_fit(network, target, options, team, seed, refining);
     return report;
 }
 

@@ -54,16 +54,9 @@ struct FitReport {
     double rms_unfitted = 0;
     double rms_fitted = 0;  ///< of the mesh that was kept
     int rounds = 0;
-    int flips = 0;
-    int moved_vertices = 0;  ///< removed in one place and inserted in another
-    /// Vertices added because of options.refine_to, or for those removed with faces that cut others.
-    int inserted = 0;
     /// False: the result of the rounds was discarded. What comes before them stays: the smoothing of a mesh
     /// that cuts itself, and the reduction.
     bool improved = false;
-    /// For every slot the vertex, by its id before the fit, whose counters belong to it: itself, or for an
-    /// inserted vertex the one at whose place it lies. -1 for free slots.
-    PerVertex<VertexId> sources;
 };
 
 /// Moves the vertices of \p network to lower the sum of squared distances of the points of \p target. Some

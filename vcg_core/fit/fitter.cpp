@@ -18,7 +18,6 @@
 #include "vcg_core/fit/noise.h"
 #include "vcg_core/fit/notches.h"
 #include "vcg_core/fit/sound_start.h"
-#include "vcg_core/fit/sources.h"
 #include "vcg_core/fit/stray_points.h"
 #include "vcg_core/fit/webs.h"
 
@@ -129,14 +128,11 @@ Fitter::Fitter(Network& network, PointChoice points, ThreadTeam& team)
       team_(team),
       final_vertices_(network.vertex_count()),
       fitted_(std::move(points.fitted)),
-      held_out_(std::move(points.held_out)),
-      origins_(own_sources(network)),
-      sources_(origins_) {}
+      held_out_(std::move(points.held_out)) {}
 
 bool Fitter::untangle_surface(Progress& progress) {
-    std::optional<std::vector<SelfCrossing>> left = make_sound(network_, origins_, team_, progress);
+    std::optional<std::vector<SelfCrossing>> left = make_sound(network_, team_, progress);
     if (left) guard_ = CrossingGuard(std::move(*left));
-    sources_ = own_sources(network_);
     return left.has_value();
 }
 
@@ -375,7 +371,7 @@ void Fitter::redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>&
         for (WalkStart& start : tracked->last_hit) start.vertex = survivor[start.vertex];
 }
 
-int Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& points) {
+bool Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& points) {
     const int max_pairs =
         std::max(1, static_cast<int>(kMovedShare * static_cast<double>(network_.vertex_count())));
     const std::vector<Collapse> collapses = find_collapses(network_, surface, points, team_);
@@ -384,22 +380,20 @@ int Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& po
     const VertexMoves done = guarded(surface, [&](const PerVertex<char>& barred) {
         return redistribute(network_, collapses, splits, max_pairs, barred);
     });
-    if (done.collapses.empty()) return 0;
+    if (done.collapses.empty()) return false;
     redirect_to_survivors(done.collapses);
     widest_variances_.resize(network_.slot_count(), 0);
-    for (const VertexMoves::Insertion& insertion : done.insertions) {
-        sources_[insertion.added] = sources_[insertion.beside];
+    for (const VertexMoves::Insertion& insertion : done.insertions)
         widest_variances_[insertion.added] = widest_variances_[insertion.beside];
-    }
-    return static_cast<int>(done.collapses.size());
+    return true;
 }
 
-int Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
+void Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
     points.update_feet(surface, team_);
     const std::vector<EdgeFlip> found =
         find_flips(network_, surface, points,
                    noise_ != nullptr ? kFlipVariances : kFlipVariances * noise_variance_, team_, by_place());
-    return guarded(surface, [&](const PerVertex<char>& barred) {
+    guarded(surface, [&](const PerVertex<char>& barred) {
         return neuralmesh::flip_edges(network_, found, barred);
     });
 }

@@ -87,12 +87,11 @@ public:
     /// part has layers, the last of them competes
     /// \param hold see PointToPlaneSystem
     double solve(const PointsByFace& points, Surface& surface, float hold = PointToPlaneSystem::kSliding);
-    /// Collapses vertices that matter little and inserts as many where the error is large. \return their
-    /// number
-    int redistribute_vertices(const Surface& surface, const PointsByFace& points);
-    /// Computes the feet of \p points again, then flips edges where that brings the points closer. \return
-    /// the number of flips
-    int flip_edges(const Surface& surface, PointsByFace& points);
+    /// Collapses vertices that matter little and inserts as many where the error is large. \return whether
+    /// there were any
+    bool redistribute_vertices(const Surface& surface, const PointsByFace& points);
+    /// Computes the feet of \p points again, then flips edges where that brings the points closer.
+    void flip_edges(const Surface& surface, PointsByFace& points);
     /// Moves the vertices beside creases onto them, so that flip_edges() gives the creases edges. Moves \p
     /// surface, that of the network, with them. \pre \p points were assigned to \p surface before it moved
     /// last
@@ -102,12 +101,6 @@ public:
     int mend_boundary(const Surface& surface, const PointsByFace& points);
 
     const HeldOut& held_out() const { return held_out_; }
-    /// For every slot of the network: itself, or for a vertex inserted since untangle_surface() one that was
-    /// near it.
-    const PerVertex<VertexId>& sources() const { return sources_; }
-    /// For every slot after untangle_surface(): itself, or for a vertex that it inserted one that was near
-    /// it.
-    const PerVertex<VertexId>& origins() const { return origins_; }
     float noise_variance() const { return noise_variance_; }
     /// The part of the noise that the held-out points share with their neighbours, which are on the same
     /// steps of the coordinates. O(held-out points x log places).
@@ -170,8 +163,6 @@ private:
     bool reduced_by_volume_ = false;
     bool solved_ = false;  ///< vertices have moved
     BendingSearch bending_;
-    PerVertex<VertexId> origins_;
-    PerVertex<VertexId> sources_;
     CrossingGuard guard_;  ///< has accepted the present surface
 };
 

@@ -10,7 +10,6 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/fitter.h"
-#include "vcg_core/fit/sources.h"
 #include "vcg_core/fit/volume_collapse.h"
 
 namespace neuralmesh {
@@ -54,9 +53,7 @@ bool Fitter::reduce_to(int vertices, const FitOptions& options, Progress& progre
     fitted_.points.insert(fitted_.points.end(), set_aside_.points.begin(), set_aside_.points.end());
     fitted_.weights.insert(fitted_.weights.end(), set_aside_.weights.begin(), set_aside_.weights.end());
     set_aside_ = {};
-    if (!guard_.accepted().empty()) return untangle_surface(untangling);
-    sources_ = own_sources(network_);
-    return true;
+    return guard_.accepted().empty() || untangle_surface(untangling);
 }
 
 bool Fitter::reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress) {
@@ -79,15 +76,9 @@ bool Fitter::reduce_by_volume(int vertices, Surface& surface, PointsByFace point
     flip_edges(surface, points);
     surface = Surface(network_);
     const auto edge = static_cast<double>(mean_edge_length(surface));
-    const Network before = network_;
     redirect_to_survivors(guarded(surface, [&](const PerVertex<char>& barred) {
         return collapse_by_volume(network_, vertices, barred, edge);
     }));
-    // Vertices have moved by up to an edge.
-    PerVertex<VertexId> sources = own_sources(network_);
-    for (const VertexId v : network_.vertices())
-        sources[v] = nearest_by_steps(before, v, network_.position(v));
-    origins_ = chained(origins_, std::move(sources));
     if (network_.vertex_count() == vertices) return true;
     surface = Surface(network_);
     points = assign_faces(surface);

@@ -11,8 +11,7 @@
 
 namespace neuralmesh {
 
-std::optional<std::vector<SelfCrossing>> make_sound(Network& network, PerVertex<VertexId>& origins,
-                                                    ThreadTeam& team, Progress& progress) {
+std::optional<std::vector<SelfCrossing>> make_sound(Network& network, ThreadTeam& team, Progress& progress) {
     unfold(network);
     std::optional<std::vector<SelfCrossing>> left = untangle(network, kGentle, team, progress);
     if (!left || left->empty() || network.boundary_loop_count() == 0 || skips("cut_faces")) return left;
@@ -26,7 +25,7 @@ std::optional<std::vector<SelfCrossing>> make_sound(Network& network, PerVertex<
         cuts = *untangle(network, kThorough, team, unasked);
         remove_cut_faces(network, Removal::inner_faces, cuts, team);
     }
-    refine(network, vertices, NewVertices::on_edges, origins, unasked);
+    refine(network, vertices, NewVertices::on_edges, unasked);
     return self_crossings(Surface(network), team);
 }
 

@@ -16,13 +16,12 @@ namespace neuralmesh {
 
 /// Removes the self-crossings of \p network. On a closed surface by smoothing alone, see untangle(). If there
 /// is a boundary and some remain, also by removing faces that cut others, see remove_cut_faces(); as many
-/// vertices as go with them are inserted on the longest edges. \p origins gets an entry for each: that of an
-/// end of its edge. The result does not depend on the number of threads.
+/// vertices as go with them are inserted on the longest edges. The result does not depend on the number of
+/// threads.
 ///
 /// \param progress asked before every round of the first smoothing; if it asks to stop, the network stays
 /// unchanged
 /// \return the remaining self-crossings, sorted; nothing if stopped
-std::optional<std::vector<SelfCrossing>> make_sound(Network& network, PerVertex<VertexId>& origins,
-                                                    ThreadTeam& team, Progress& progress);
+std::optional<std::vector<SelfCrossing>> make_sound(Network& network, ThreadTeam& team, Progress& progress);
 
 }  // namespace neuralmesh
