@@ -175,14 +175,6 @@ PointChoice points_for(int vertices, const TargetSpace& target, const FitOptions
     return choose_points(target, wanted, random);
 }
 
-/// What is known of the points before the fit.
-void tell_of_points(Fitter& fitter, const FitOptions& options) {
-    if (options.noise != nullptr) fitter.know_noise(*options.noise);
-    if (options.expect_strays) fitter.expect_strays();
-    if (!options.expect_layers) fitter.exclude_layers();
-    if (options.fitted_before) fitter.expect_fitted();
-}
-
 double learned_share_of(const Network& network, const TargetSpace& target) {
     if (target.has_faces()) return 0;
     return kLearnedShare * network.vertex_count() / static_cast<double>(target.positions().size());
@@ -197,8 +189,7 @@ void refine_and_fit(Network& network, const TargetSpace& target, const FitOption
     const int inserted = refine(network, options.refine_to, NewVertices::curved, inserting);
     PointChoice points = points_for(network.vertex_count(), target, options, seed);
     if (inserted == 0 || points.fitted.points.size() < kMinPoints) return;
-    Fitter fitter(network, std::move(points), team);
-    tell_of_points(fitter, options);
+    Fitter fitter(network, std::move(points), options, team);
     PartOf untangling(progress, 0.1, 0.2);
     PartOf fitting(progress, 0.2, 1);
     if (!fitter.untangle_surface(untangling)) return;
@@ -222,14 +213,13 @@ FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitO
     PointChoice points = points_for(vertices, target, options, seed);
     if (points.fitted.points.size() < kMinPoints || network.face_count() == 0) return report;
     const double learned_share = learned_share_of(network, target);
-    Fitter fitter(network, std::move(points), team);
-    tell_of_points(fitter, options);
+    Fitter fitter(network, std::move(points), options, team);
     // By time: the reduction takes about as long as the rounds.
     PartOf untangling(progress, 0, 0.1);
     PartOf reducing(progress, 0.1, 0.5);
     PartOf fitting(progress, reduces ? 0.5 : 0.1, 1);
     if (!fitter.untangle_surface(untangling)) return report;
-    if (reduces && !fitter.reduce_to(vertices, options, reducing)) return report;
+    if (reduces && !fitter.reduce_to(vertices, reducing)) return report;
     const Network before = network;
     FitRounds rounds(network, fitter, options, report);
     rounds.run(fitting);

@@ -123,12 +123,16 @@ void BendingSearch::begin_late() {
     chosen_ = kChosen;
 }
 
-Fitter::Fitter(Network& network, PointChoice points, ThreadTeam& team)
+Fitter::Fitter(Network& network, PointChoice points, const FitOptions& options, ThreadTeam& team)
     : network_(network),
+      options_(options),
       team_(team),
       final_vertices_(network.vertex_count()),
       fitted_(std::move(points.fitted)),
-      held_out_(std::move(points.held_out)) {}
+      held_out_(std::move(points.held_out)),
+      excludes_layers_(!options.expect_layers) {
+    if (options.fitted_before) bending_.begin_late();
+}
 
 bool Fitter::untangle_surface(Progress& progress) {
     std::optional<std::vector<SelfCrossing>> left = make_sound(network_, team_, progress);
@@ -235,19 +239,19 @@ PointsByFace Fitter::assign(const Surface& surface, const std::vector<Hit>& hits
     PointsByFace points = group_by_face(surface, fitted_, hits, team_);
     measure_noise(surface, points);
     weaken_outliers(surface, points);
-    if (expects_strays_ && !skips("strays")) silence_strays(surface, points);
+    if (options_.expect_strays && !skips("strays")) silence_strays(surface, points);
     return points;
 }
 
 void Fitter::measure_noise(const Surface& surface, const PointsByFace& points) {
     noise_variance_ = neuralmesh::noise_variance(surface, points, team_);
     variances_.assign(network_.slot_count(), noise_variance_);
-    if (noise_ == nullptr) return;
+    if (options_.noise == nullptr) return;
     rounding_variances_.assign(network_.slot_count(), 0);
     const PerVertex<float> about_faces = local_variances(network_, surface, points);
     parallel_for(network_.slot_count(), kFitChunk, team_, [&](VertexId v) {
         if (!network_.alive(v)) return;
-        const NoiseByPlace::Noise& surveyed = noise_->at(network_.position(v));
+        const NoiseByPlace::Noise& surveyed = options_.noise->at(network_.position(v));
         variances_[v] = surveyed.variance;
         rounding_variances_[v] = surveyed.rounding_variance;
         if (about_faces[v] > 0) variances_[v] = std::min(variances_[v], kMostOfLocal * about_faces[v]);
@@ -256,17 +260,17 @@ void Fitter::measure_noise(const Surface& surface, const PointsByFace& points) {
 }
 
 double Fitter::rounding_variance() const {
-    if (noise_ == nullptr) return 0;
+    if (options_.noise == nullptr) return 0;
     double sum = 0;
     for (const Vector3& p : held_out_.points())
-        sum += static_cast<double>(noise_->at(to_vcg(p)).rounding_variance);
+        sum += static_cast<double>(options_.noise->at(to_vcg(p)).rounding_variance);
     return sum / static_cast<double>(held_out_.points().size());
 }
 
 /// By Bayes' rule: what gaps of likely length weigh, in points per vertex. At places with layers more.
 VertexNoise Fitter::noise_around(const Surface& surface, const PointsByFace& points) {
     VertexNoise noise;
-    if (noise_ != nullptr) {
+    if (options_.noise != nullptr) {
         const float gap = kLikelyGapByPlace * mean_edge_length(surface);
         const float points_per_vertex = points.per_vertex(network_.vertex_count());
         noise = {variances_, variances_};
@@ -297,7 +301,7 @@ std::vector<float> Fitter::choose_weights(const Surface& surface, const PointsBy
     const float points_per_vertex = points.per_vertex(network_.vertex_count());
     const float gap =
         (points_per_vertex < kFewPerVertex ? kLikelyGapOfFew : kLikelyGap) * mean_edge_length(surface);
-    const float least = noise_ != nullptr ? 0 : noise_variance_ / (gap * gap * points_per_vertex);
+    const float least = options_.noise != nullptr ? 0 : noise_variance_ / (gap * gap * points_per_vertex);
     std::vector<float> weights = bending_.next_weights(least);
     if (stiff_rounds_ > 0 && layering_ > 0) weights = {kStiffWeight};
     return weights;
@@ -355,7 +359,7 @@ void Fitter::move_to_creases(Surface& surface, const PointsByFace& points) {
 }
 
 LeastSplitGain Fitter::least_split_gain(const Surface& surface) const {
-    if (noise_ != nullptr)
+    if (options_.noise != nullptr)
         return {kMinSplitVariances, kMaxSplitVariances, 1 / kSmallNoise, mean_edge_length(surface)};
     return {kMinSplitVariances * noise_variance_, kMaxSplitVariances * noise_variance_,
             std::sqrt(noise_variance_) / kSmallNoise, mean_edge_length(surface)};
@@ -392,7 +396,7 @@ void Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
     points.update_feet(surface, team_);
     const std::vector<EdgeFlip> found =
         find_flips(network_, surface, points,
-                   noise_ != nullptr ? kFlipVariances : kFlipVariances * noise_variance_, team_, by_place());
+                   options_.noise != nullptr ? kFlipVariances : kFlipVariances * noise_variance_, team_, by_place());
     guarded(surface, [&](const PerVertex<char>& barred) {
         return neuralmesh::flip_edges(network_, found, barred);
     });

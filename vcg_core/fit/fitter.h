@@ -42,16 +42,7 @@ private:
 class Fitter {
 public:
     /// Keeps references to \p network and \p team. \pre neither part of \p points is empty
-    Fitter(Network& network, PointChoice points, ThreadTeam& team);
-
-    /// From now on takes the noise of the points, place by place, from \p noise, which must outlive this.
-    void know_noise(const NoiseByPlace& noise) { noise_ = &noise; }
-    /// From now on leaves out points that StrayPoints tells, anew with each assignment.
-    void expect_strays() { expects_strays_ = true; }
-    /// From now on does not look for layers of points.
-    void exclude_layers() { excludes_layers_ = true; }
-    /// The network is the result of another fit.
-    void expect_fitted() { bending_.begin_late(); }
+    Fitter(Network& network, PointChoice points, const FitOptions& options, ThreadTeam& team);
 
     /// Removes self-crossings, see make_sound(), and from then on lets no step add any. \return false if
     /// \p progress asks to stop; then the network is unchanged.
@@ -60,7 +51,7 @@ public:
     /// rounds that each end with a least-squares solution; with FitOptions::by_volume they are those of
     /// collapse_by_volume(), after a few such solutions. \return false if \p progress asks to stop or no more
     /// vertices can go \pre the network has more than \p vertices vertices
-    bool reduce_to(int vertices, const FitOptions& options, Progress& progress);
+    bool reduce_to(int vertices, Progress& progress);
     /// Whether reduce_to() went by FitOptions::by_volume, for which there must be many more vertices.
     bool reduced_by_volume() const { return reduced_by_volume_; }
 
@@ -117,7 +108,7 @@ private:
     /// The variances around the vertices where they are known; else none.
     const PerVertex<float>& by_place() const {
         static const PerVertex<float> none;
-        return noise_ != nullptr ? variances_ : none;
+        return options_.noise != nullptr ? variances_ : none;
     }
     VertexNoise noise_around(const Surface& surface, const PointsByFace& points);
     PerVertex<float> examine_variances(const Surface& surface, const PointsByFace& points);
@@ -142,24 +133,23 @@ private:
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
 
     Network& network_;
+    const FitOptions options_;
     ThreadTeam& team_;
     int final_vertices_;  ///< after the reduction
     TrackedPoints fitted_;
     TrackedPoints set_aside_;  ///< fitted points that the reduction does not use
     HeldOut held_out_;
     float outlier_distance_ = 0;  ///< from the first assignment; fixed, so that errors stay comparable
-    const NoiseByPlace* noise_ = nullptr;
     float noise_variance_ = 0;           ///< from the last assignment
     PerVertex<float> variances_;         ///< of the noise around each vertex, from the last assignment
     PerVertex<float> rounding_variances_;  ///< the part that the points of one step share
     PerVertex<float> widest_variances_;  ///< of the points across the surface, so far
     bool layered_places_ = true;         ///< until a search shows none
-    bool excludes_layers_ = false;       ///< the points, or a surface of many more vertices, show none
+    bool excludes_layers_;  ///< the points, or a surface of many more vertices, show none
     bool layered_ = false;               ///< somewhere; from the last exact search, as the next
     float layering_ = 0;                 ///< over most of the surface, see layering()
     double bending_error_ = 0;           ///< of layers: weight of the mean squared gap in squared errors
     int stiff_rounds_ = 0;  ///< still to come: their bending weight lets the surface follow no layer
-    bool expects_strays_ = false;
     bool reduced_by_volume_ = false;
     bool solved_ = false;  ///< vertices have moved
     BendingSearch bending_;

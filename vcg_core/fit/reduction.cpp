@@ -36,12 +36,12 @@ constexpr int kSolutionsBefore = 5;
 
 }  // namespace
 
-bool Fitter::reduce_to(int vertices, const FitOptions& options, Progress& progress) {
+bool Fitter::reduce_to(int vertices, Progress& progress) {
     PartOf reducing(progress, 0, 0.9);
     PartOf untangling(progress, 0.9, 1);
     if (!wants_reduction(vertices, network_.vertex_count(), reducing)) return false;
     final_vertices_ = vertices;
-    reduced_by_volume_ = options.by_volume && network_.vertex_count() >= kByVolumeFrom * vertices;
+    reduced_by_volume_ = options_.by_volume && network_.vertex_count() >= kByVolumeFrom * vertices;
     set_points_aside(kReducingPointsPerVertex);
     Surface surface(network_);
     PointsByFace points = locate_points(surface, reduced_by_volume_);
@@ -88,7 +88,7 @@ bool Fitter::reduce_by_volume(int vertices, Surface& surface, PointsByFace point
 bool Fitter::reduce_by_costs(int vertices, Surface& surface, PointsByFace points, Progress& progress) {
     const int at_start = network_.vertex_count();
     // Not where each round finds the stray points anew.
-    const bool dense = at_start > kDenseFrom * vertices && !expects_strays_ && !skips("dense_collapses");
+    const bool dense = at_start > kDenseFrom * vertices && !options_.expect_strays && !skips("dense_collapses");
     while (network_.vertex_count() > vertices) {
         if (!wants_reduction(vertices, at_start, progress)) return false;
         points = update_for_removal(surface, std::move(points));
@@ -113,7 +113,7 @@ bool Fitter::wants_reduction(int vertices, int at_start, Progress& progress) con
 
 /// \return the points on the surface after the last solution, mended where it has a boundary
 PointsByFace Fitter::update_for_removal(Surface& surface, PointsByFace points) {
-    if (!expects_strays_) {
+    if (!options_.expect_strays) {
         points.update_feet(surface, team_);  // the next search follows once the vertices are removed
         if (!surface.has_boundary()) return points;
         const Network before = network_;

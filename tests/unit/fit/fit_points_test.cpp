@@ -49,7 +49,7 @@ TEST(PrecisePoints, AreManyForEachVertexAndWithoutNoise) {
         const TargetSpace target = soundness::target_of(shapes::sphere_cloud(count, noise));
         Network network = targets::network_in_frame(target, shapes::icosphere(3));
         Random random(1);
-        Fitter fitter(network, choose_points(target, 100000, random), team);
+        Fitter fitter(network, choose_points(target, 100000, random), FitOptions(), team);
         const Surface surface(network);
         fitter.locate_points(surface);
         return fitter.has_precise_points(surface);
