@@ -161,7 +161,7 @@ StopReason Learning::learn(const Settings& settings, const Plan& plan, Progress&
     return learner_->run(goes_on ? 0 : task_.landing_signals, progress);
 }
 
-LearnedNetwork Learning::with(int vertices, MonotoneProgress& progress, int rounds) {
+LearnedNetwork Learning::with(int vertices, MonotoneProgress& progress) {
     const Settings settings = settings_for(vertices);
     if (task_.is_known) return observed(task_, settings, progress);
     const Plan plan = plan_for(settings);
@@ -171,10 +171,8 @@ LearnedNetwork Learning::with(int vertices, MonotoneProgress& progress, int roun
     LearnedNetwork result = learned_by(*learner_, reason, before_);
     thickening_.take_back(result.network, team_);
     const Network learned = result.network;
-    FitOptions options = fit_options(task_, settings, plan);
-    options.rounds = rounds;
     const bool fits = settings.fit_to_points && !progress.stopped();
-    if (fits) fit(result.network, task_, options, settings, fitting);
+    if (fits) fit(result.network, task_, fit_options(task_, settings, plan), settings, fitting);
     if (progress.stopped()) result.stop_reason = StopReason::cancelled;
     finish(result.network, vertices);
     result.measures =
