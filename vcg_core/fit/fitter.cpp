@@ -16,10 +16,9 @@
 #include "vcg_core/fit/layers.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/noise.h"
-#include "vcg_core/fit/notches.h"
+#include "vcg_core/fit/boundary_mending.h"
 #include "vcg_core/fit/sound_start.h"
 #include "vcg_core/fit/stray_points.h"
-#include "vcg_core/fit/webs.h"
 
 namespace neuralmesh {
 

@@ -13,8 +13,7 @@
 #include "vcg_core/fit/boundary_targets.h"
 #include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/fit.h"
-#include "vcg_core/fit/notches.h"
-#include "vcg_core/fit/webs.h"
+#include "vcg_core/fit/boundary_mending.h"
 
 namespace neuralmesh {
 namespace {
