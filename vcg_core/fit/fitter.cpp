@@ -357,13 +357,6 @@ void Fitter::move_to_creases(Surface& surface, const PointsByFace& points) {
     place_vertices(surface);
 }
 
-LeastSplitGain Fitter::least_split_gain(const Surface& surface) const {
-    if (options_.noise != nullptr)
-        return {kMinSplitVariances, kMaxSplitVariances, 1 / kSmallNoise, mean_edge_length(surface)};
-    return {kMinSplitVariances * noise_variance_, kMaxSplitVariances * noise_variance_,
-            std::sqrt(noise_variance_) / kSmallNoise, mean_edge_length(surface)};
-}
-
 /// Moves the starts of walks from removed vertices to the vertices they were collapsed into.
 void Fitter::redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses) {
     PerVertex<VertexId> survivor(network_.slot_count());
@@ -378,8 +371,9 @@ bool Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& p
     const int max_pairs =
         std::max(1, static_cast<int>(kMovedShare * static_cast<double>(network_.vertex_count())));
     const std::vector<Collapse> collapses = find_collapses(network_, surface, points, team_);
-    const std::vector<EdgeSplit> splits =
-        find_splits(network_, surface, points, least_split_gain(surface), team_, by_place());
+    const LeastSplitGain least{kMinSplitVariances, kMaxSplitVariances, 1 / kSmallNoise,
+                               mean_edge_length(surface)};
+    const std::vector<EdgeSplit> splits = find_splits(network_, surface, points, least, team_, variances_);
     const VertexMoves done = guarded(surface, [&](const PerVertex<char>& barred) {
         return redistribute(network_, collapses, splits, max_pairs, barred);
     });
@@ -394,8 +388,7 @@ bool Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& p
 void Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
     points.update_feet(surface, team_);
     const std::vector<EdgeFlip> found =
-        find_flips(network_, surface, points,
-                   options_.noise != nullptr ? kFlipVariances : kFlipVariances * noise_variance_, team_, by_place());
+        find_flips(network_, surface, points, kFlipVariances, team_, variances_);
     guarded(surface, [&](const PerVertex<char>& barred) {
         return neuralmesh::flip_edges(network_, found, barred);
     });

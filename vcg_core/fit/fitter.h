@@ -105,17 +105,11 @@ private:
     double with_bending(double error, const Surface& surface) const;
     void examine_layers(const Surface& surface, const PointsByFace& points, bool lags);
     void measure_noise(const Surface& surface, const PointsByFace& points);
-    /// The variances around the vertices where they are known; else none.
-    const PerVertex<float>& by_place() const {
-        static const PerVertex<float> none;
-        return options_.noise != nullptr ? variances_ : none;
-    }
     VertexNoise noise_around(const Surface& surface, const PointsByFace& points);
     PerVertex<float> examine_variances(const Surface& surface, const PointsByFace& points);
     PerVertex<float> stiffness_by(const PerVertex<float>& variances, const Surface& surface,
                                   const PointsByFace& points) const;
     std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
-    LeastSplitGain least_split_gain(const Surface& surface) const;
     /// The standard deviation of the noise in mean edge lengths of \p surface.
     float noise_in_edges(const Surface& surface) const;
     /// Carries out \p change(barred) on the network, whose surface is \p surface. If the guard objects to the
