@@ -25,32 +25,21 @@ constexpr std::size_t kMinPoints = 64;
 /// fits that halve the error were refused with .8, which was measured on denser clouds; on those both do the
 /// same.
 constexpr double kLearnedShare = 2;
-/// A crumpled surface is nearer to the points even along a fixed direction. The gain relative to the variance
-/// is about the square of its slopes, which are noise / edge length. A mesh that learning left crumpled must
-/// not win by that.
-constexpr double kCrumpling = 3;
 /// The first round with a redistribution, and the number of rounds at the end without one.
 constexpr int kFirstRedistribution = 1;
 constexpr int kQuietRounds = 3;
-/// The first round after which vertices move to creases: before, they are too far from the points. Without
-/// such moves, straight creases are twice as far from the mesh with 5,000 vertices.
-constexpr int kFirstCreases = 1;
-/// The fit ends when two rounds lower the error by less than this share, but not in the first ones. The
-/// second of each pair is for fits after a reduction by volume, where rounds gain little: models with 1,000
-/// and 2,000 vertices have the same error with them, in .92 to .96 of the time.
-constexpr double kLeastProgress = 0.001, kLeastAfterVolume = 0.005;
-constexpr int kFirstRounds = 5, kFirstAfterVolume = 4;
+/// The fit ends when two rounds lower the error by less than this share, but not in the first ones.
+constexpr double kLeastProgress = 0.005;
+constexpr int kFirstRounds = 4;
 
 /// Rounds after the insertion of vertices that the points do not carry: by then the mesh is near the points.
 constexpr int kRefinedRounds = 4;
 
-/// With precise points (Fitter::has_precise_points()), and up to so many vertices, there are ten rounds at
-/// least, and from the fifth on the points hold the surface. By then it is near them, and solutions that let
-/// it slide may take it away again: block, clean, 5,000 vertices, by up to 20 % of the error in a round.
+/// With precise points (Fitter::has_precise_points()) the points hold the surface from the fifth round on. By
+/// then it is near them, and solutions that let it slide may take it away again: block, clean, 5,000
+/// vertices, by up to 20 % of the error in a round.
 /// Open surfaces are left free, because their boundary has to slide to where the points end. So are sheets
 /// that are closed around both sides, where each point would hold the layer that it is nearer to by chance.
-constexpr int kRoundsWithHold = 10;
-constexpr int kMostVerticesToHold = 10000;
 constexpr int kFirstHold = 4;
 constexpr float kHold = 0.3F;
 
@@ -84,10 +73,7 @@ public:
         const Surface fitted(best_);
         at_start_.relocate(fitted, team);
         const double error = fitter_.error_at(at_start_, fitted);
-        const double edge = static_cast<double>(mean_edge_length(fitted));
-        const double variance = static_cast<double>(fitter_.noise_variance());
-        const double optimism =
-            variance * (learned_share + kCrumpling * variance / (edge * edge)) + fitter_.rounding_variance();
+        const double optimism = learned_share * static_cast<double>(fitter_.noise_variance());
         report_.improved =
             error * error < report_.rms_unfitted * report_.rms_unfitted + optimism || skips("held_out");
         if (report_.improved) report_.rms_fitted = error;
@@ -106,10 +92,8 @@ private:
         Surface surface(network_);
         PointsByFace points = fitter_.locate_points(surface);
         // Sheets that are closed around both sides are not redistributed.
-        holds_ = options_.redistribute && !surface.has_boundary() &&
-                 network_.vertex_count() <= kMostVerticesToHold && fitter_.has_precise_points(surface) &&
+        holds_ = options_.redistribute && !surface.has_boundary() && fitter_.has_precise_points(surface) &&
                  !skips("hold");
-        if (holds_ && options_.rounds == 0) rounds_ = std::max(rounds_, kRoundsWithHold);
         fitter_.set_directions(surface);
         at_start_ = fitter_.held_out();
         report_.rms_unfitted = report_.rms_fitted = fitter_.held_out_error(surface);
@@ -141,14 +125,11 @@ private:
             best_error_ = error;
             report_.rounds = round + 1;
         }
-        const bool by_volume = fitter_.reduced_by_volume();
-        const int first_rounds = by_volume ? kFirstAfterVolume : kFirstRounds;
-        const double least_progress = by_volume ? kLeastAfterVolume : kLeastProgress;
-        if (round >= first_rounds && error > (1 - least_progress) * error_before_last_) return true;
+        if (round >= kFirstRounds && error > (1 - kLeastProgress) * error_before_last_) return true;
         error_before_last_ = last_error_;
         last_error_ = error;
         if (options_.flip_edges && round + 1 < rounds_) {
-            if (round >= kFirstCreases) fitter_.move_to_creases(surface, points);
+            fitter_.move_to_creases(surface, points);
             fitter_.flip_edges(surface, points);
         }
         return false;
@@ -158,7 +139,7 @@ private:
     Fitter& fitter_;
     const FitOptions& options_;
     FitReport& report_;
-    int rounds_;
+    const int rounds_;
     bool holds_ = false;  ///< in later rounds the points hold the surface
     HeldOut at_start_;  ///< with the directions of the mesh before the rounds
     Network best_;

@@ -31,7 +31,6 @@ constexpr float kOutlierEdges = 0.5F;
 /// Points are astray from this many times the spread around them; see StrayPoints. Chosen by
 /// tests/experiments/accuracy/scan_table.py --groups outliers.
 constexpr float kStrayDeviations = 4;
-constexpr float kFirstStrayDeviations = 2.5F;
 constexpr int kFitChunk = 128;
 /// Bending weights of the first round, and factors from the last choice to those on either side of it.
 constexpr float kFirstWeights[] = {0.01F, 0.1F, 1.0F, 8.0F, 50.0F};
@@ -48,8 +47,7 @@ constexpr float kLastLeastWeight = 1e-3F;
 /// Likely gap of an edge (see PointToPlaneSystem) on a surface without noise, in edge lengths. By Bayes' rule
 /// it determines the least bending weight under noise.
 constexpr float kLikelyGap = 0.05F;
-/// The same with fewer points per vertex than kFewPerVertex, where it rarely takes a bend for noise.
-constexpr float kLikelyGapOfFew = 0.1F;
+/// With fewer points per vertex no layers are looked for.
 constexpr float kFewPerVertex = 5;
 /// The same where the noise of each place is known. A frame of a depth camera in a room has normals that are
 /// 2.3 degrees off with .05 and 2.8 with .07 (2,500 vertices), 3.8 with .1 (10,000).
@@ -258,14 +256,6 @@ void Fitter::measure_noise(const Surface& surface, const PointsByFace& points) {
     });
 }
 
-double Fitter::rounding_variance() const {
-    if (options_.noise == nullptr) return 0;
-    double sum = 0;
-    for (const Vector3& p : held_out_.points())
-        sum += static_cast<double>(options_.noise->at(to_vcg(p)).rounding_variance);
-    return sum / static_cast<double>(held_out_.points().size());
-}
-
 /// By Bayes' rule: what gaps of likely length weigh, in points per vertex. At places with layers more.
 VertexNoise Fitter::noise_around(const Surface& surface, const PointsByFace& points) {
     VertexNoise noise;
@@ -285,11 +275,8 @@ VertexNoise Fitter::noise_around(const Surface& surface, const PointsByFace& poi
     return noise;
 }
 
-/// A vertex that a stray point has drawn to itself would find it close by. So before vertices move for the
-/// first time points are left out sooner; those that turn out to be near the surface come back.
 void Fitter::silence_strays(const Surface& surface, PointsByFace& points) {
-    const StrayPoints strays(network_, surface, points, solved_ ? kStrayDeviations : kFirstStrayDeviations,
-                             team_);
+    const StrayPoints strays(network_, surface, points, kStrayDeviations, team_);
     parallel_for(surface.face_count(), kFitChunk, team_, [&](int face) {
         for (PointsByFace::Assignment& a : points.of(face))
             if (strays.contain(a, face)) a.influence = 0;
@@ -298,8 +285,7 @@ void Fitter::silence_strays(const Surface& surface, PointsByFace& points) {
 
 std::vector<float> Fitter::choose_weights(const Surface& surface, const PointsByFace& points) {
     const float points_per_vertex = points.per_vertex(network_.vertex_count());
-    const float gap =
-        (points_per_vertex < kFewPerVertex ? kLikelyGapOfFew : kLikelyGap) * mean_edge_length(surface);
+    const float gap = kLikelyGap * mean_edge_length(surface);
     const float least = options_.noise != nullptr ? 0 : noise_variance_ / (gap * gap * points_per_vertex);
     std::vector<float> weights = bending_.next_weights(least);
     if (stiff_rounds_ > 0 && layering_ > 0) weights = {kStiffWeight};
@@ -323,7 +309,6 @@ double Fitter::solve(const PointsByFace& points, Surface& surface, float hold) {
         best = i;
         best_error = error;
     }
-    solved_ = true;
     bending_.choose(stiff_rounds_ > 0 ? kWeightAfterStiff : weights[best]);
     surface.positions = solutions[best];
     std::vector<SelfCrossing> crossings = self_crossings(surface, team_);

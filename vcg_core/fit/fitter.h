@@ -52,8 +52,6 @@ public:
     /// collapse_by_volume(), after a few such solutions. \return false if \p progress asks to stop or no more
     /// vertices can go \pre the network has more than \p vertices vertices
     bool reduce_to(int vertices, Progress& progress);
-    /// Whether reduce_to() went by FitOptions::by_volume, for which there must be many more vertices.
-    bool reduced_by_volume() const { return reduced_by_volume_; }
 
     /// Assigns the fitted points to their nearest faces and finds the held-out points, all by exact search.
     /// \param lags the surface is behind the points, as learning with few signals leaves it
@@ -93,9 +91,6 @@ public:
 
     const HeldOut& held_out() const { return held_out_; }
     float noise_variance() const { return noise_variance_; }
-    /// The part of the noise that the held-out points share with their neighbours, which are on the same
-    /// steps of the coordinates. O(held-out points x log places).
-    double rounding_variance() const;
 
 private:
     PointsByFace assign(const Surface& surface, const std::vector<Hit>& hits);
@@ -144,8 +139,6 @@ private:
     float layering_ = 0;                 ///< over most of the surface, see layering()
     double bending_error_ = 0;           ///< of layers: weight of the mean squared gap in squared errors
     int stiff_rounds_ = 0;  ///< still to come: their bending weight lets the surface follow no layer
-    bool reduced_by_volume_ = false;
-    bool solved_ = false;  ///< vertices have moved
     BendingSearch bending_;
     CrossingGuard guard_;  ///< has accepted the present surface
 };

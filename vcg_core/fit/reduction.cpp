@@ -27,8 +27,6 @@ constexpr std::size_t kMinReducingVertices = 1000;
 /// instead of 8 %. Clean, bunny, koala, fandisk, block, kitten and feline then have .98, 1.01 and 1.00 of the
 /// error at 500, 1,000 and 2,000 vertices. From twice the vertices on, 10,000 would have 1.01.
 constexpr int kDenseFrom = 2;
-/// From this many times the vertices wanted on, meshes are reduced by volume.
-constexpr double kByVolumeFrom = 1.5;
 /// Solutions before that, with edge flips between them. The learned mesh lags behind the points and has its
 /// vertices beside sharp edges, and the collapses keep what it shows. With three, 500 and 2,000 vertices have
 /// 1.02 and 1.01 times the error; with four, 500 and 1,000 have 1.01.
@@ -41,13 +39,12 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
     PartOf untangling(progress, 0.9, 1);
     if (!wants_reduction(vertices, network_.vertex_count(), reducing)) return false;
     final_vertices_ = vertices;
-    reduced_by_volume_ = options_.by_volume && network_.vertex_count() >= kByVolumeFrom * vertices;
     set_points_aside(kReducingPointsPerVertex);
     Surface surface(network_);
-    PointsByFace points = locate_points(surface, reduced_by_volume_);
+    PointsByFace points = locate_points(surface, options_.by_volume);
     set_directions(surface);
     solve(points, surface);
-    const bool reduced = reduced_by_volume_ ? reduce_by_volume(vertices, surface, std::move(points), reducing)
+    const bool reduced = options_.by_volume ? reduce_by_volume(vertices, surface, std::move(points), reducing)
                                             : reduce_by_costs(vertices, surface, std::move(points), reducing);
     if (!reduced) return false;
     fitted_.points.insert(fitted_.points.end(), set_aside_.points.begin(), set_aside_.points.end());

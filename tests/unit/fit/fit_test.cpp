@@ -237,20 +237,6 @@ TEST(Fit, TakesNoSpikeOfALaggingSurfaceForLayers) {
     EXPECT_LT(rms(target, network), 1e-3);
 }
 
-TEST(Fit, DoesNothingByVolumeWhereFewVerticesAreToGo) {
-    Cloud bumpy = shapes::sphere_cloud(9000);
-    for (vcg::Point3d& p : bumpy) p *= 1 + 0.1 * std::sin(9 * p[0]) * std::sin(9 * p[1]);
-    const TargetSpace target = target_of(bumpy);
-    Network by_volume = network_in_frame(target, shapes::icosphere(4));
-    Network by_costs = by_volume;
-    FitOptions options;
-    options.reduce_to = 2000;
-    fit(by_costs, target, options);
-    options.by_volume = true;
-    fit(by_volume, target, options);
-    EXPECT_TRUE(same_bytes(by_volume, by_costs));
-}
-
 TEST(Fit, CancelledInTheReductionItLeavesASoundMesh) {
     class StopLater : public Progress {
     public:
