@@ -102,11 +102,7 @@ private:
 
     bool next_round(int round) {
         Surface surface(network_);
-        PointsByFace points = fitter_.assign_faces(surface);
-        if (fitter_.mend_boundary(surface, points) > 0) {
-            surface = Surface(network_);
-            points = fitter_.assign_faces(surface);
-        }
+        PointsByFace points = fitter_.mended(surface);
         if (options_.redistribute && round >= kFirstRedistribution && round + kQuietRounds < rounds_) {
             if (fitter_.redistribute_vertices(surface, points)) {
                 surface = Surface(network_);

@@ -40,10 +40,9 @@ constexpr float kWeightUp = 2.5F;
 /// them apart. Points vary about a mesh that follows them less than they do about the surface, but not by so
 /// much.
 constexpr float kMostOfLocal = 2;
-/// The least bending weight falls by this factor from round to round.
-constexpr float kFirstLeastWeight = 0.3F;
-constexpr float kLeastWeightDecay = 0.1F;
-constexpr float kLastLeastWeight = 1e-3F;
+constexpr float kLeastWeight = 1e-3F;
+/// That with which a network begins that another fit has brought to the points.
+constexpr float kFittedWeight = 0.01F;
 /// Likely gap of an edge (see PointToPlaneSystem) on a surface without noise, in edge lengths. By Bayes' rule
 /// it determines the least bending weight under noise.
 constexpr float kLikelyGap = 0.05F;
@@ -101,25 +100,6 @@ float outlier_distance(const Surface& surface, const std::vector<Hit>& hits) {
 
 }  // namespace
 
-std::vector<float> BendingSearch::next_weights(float least) {
-    std::vector<float> weights{chosen_, chosen_ / kWeightDown, chosen_ * kWeightUp};
-    if (rounds_ == 0) weights.assign(std::begin(kFirstWeights), std::end(kFirstWeights));
-    float least_of_round = kFirstLeastWeight;
-    for (int i = 0; i < rounds_; ++i) least_of_round *= kLeastWeightDecay;
-    ++rounds_;
-    least = std::max({least, least_of_round, kLastLeastWeight});
-    for (float& weight : weights) weight = std::max(weight, least);
-    weights.erase(std::unique(weights.begin(), weights.end()), weights.end());
-    return weights;
-}
-
-void BendingSearch::begin_late() {
-    constexpr int kRounds = 3;
-    constexpr float kChosen = 0.01F;
-    rounds_ = kRounds;
-    chosen_ = kChosen;
-}
-
 Fitter::Fitter(Network& network, PointChoice points, const FitOptions& options, ThreadTeam& team)
     : network_(network),
       options_(options),
@@ -127,9 +107,8 @@ Fitter::Fitter(Network& network, PointChoice points, const FitOptions& options, 
       final_vertices_(network.vertex_count()),
       fitted_(std::move(points.fitted)),
       held_out_(std::move(points.held_out)),
-      excludes_layers_(!options.expect_layers) {
-    if (options.fitted_before) bending_.begin_late();
-}
+      excludes_layers_(!options.expect_layers),
+      bending_weight_(options.fitted_before ? kFittedWeight : 0) {}
 
 bool Fitter::untangle_surface(Progress& progress) {
     std::optional<std::vector<SelfCrossing>> left = make_sound(network_, team_, progress);
@@ -283,12 +262,16 @@ void Fitter::silence_strays(const Surface& surface, PointsByFace& points) {
     });
 }
 
+/// A wide range in the first round, later the last choice and one weight on either side.
 std::vector<float> Fitter::choose_weights(const Surface& surface, const PointsByFace& points) {
     const float points_per_vertex = points.per_vertex(network_.vertex_count());
     const float gap = kLikelyGap * mean_edge_length(surface);
     const float least = options_.noise != nullptr ? 0 : noise_variance_ / (gap * gap * points_per_vertex);
-    std::vector<float> weights = bending_.next_weights(least);
-    if (stiff_rounds_ > 0 && layering_ > 0) weights = {kStiffWeight};
+    if (stiff_rounds_ > 0 && layering_ > 0) return {kStiffWeight};
+    std::vector<float> weights{bending_weight_, bending_weight_ / kWeightDown, bending_weight_ * kWeightUp};
+    if (!(bending_weight_ > 0)) weights.assign(std::begin(kFirstWeights), std::end(kFirstWeights));
+    for (float& weight : weights) weight = std::max({weight, least, kLeastWeight});
+    weights.erase(std::unique(weights.begin(), weights.end()), weights.end());
     return weights;
 }
 
@@ -309,7 +292,7 @@ double Fitter::solve(const PointsByFace& points, Surface& surface, float hold) {
         best = i;
         best_error = error;
     }
-    bending_.choose(stiff_rounds_ > 0 ? kWeightAfterStiff : weights[best]);
+    bending_weight_ = stiff_rounds_ > 0 ? kWeightAfterStiff : weights[best];
     surface.positions = solutions[best];
     std::vector<SelfCrossing> crossings = self_crossings(surface, team_);
     if (!guard_.objections(crossings).empty()) {
@@ -379,13 +362,17 @@ void Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
     });
 }
 
-int Fitter::mend_boundary(const Surface& surface, const PointsByFace& points) {
-    if (!surface.has_boundary()) return 0;
+PointsByFace Fitter::mended(Surface& surface) {
+    PointsByFace points = assign_faces(surface);
+    if (!surface.has_boundary()) return points;
     const std::vector<VertexId> notches = find_notches(network_, surface, points);
-    return guarded(surface, [&](const PerVertex<char>& barred) {
+    const int changes = guarded(surface, [&](const PerVertex<char>& barred) {
         const int opened = open_webs(network_, surface, points, barred);
-        return opened + neuralmesh::fill_notches(network_, notches, barred);
+        return opened + fill_notches(network_, notches, barred);
     });
+    if (changes == 0) return points;
+    surface = Surface(network_);
+    return assign_faces(surface);
 }
 
 }  // namespace neuralmesh

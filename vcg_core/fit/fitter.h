@@ -21,23 +21,6 @@
 
 namespace neuralmesh {
 
-/// Chooses the bending weights that a round tries: a wide range in the first round, later the last choice and
-/// one weight on either side. The least weight falls from round to round: in the first rounds points may
-/// still be assigned to wrong faces.
-class BendingSearch {
-public:
-    /// The weights to try, none below \p least, which the noise demands. Starts a round.
-    std::vector<float> next_weights(float least);
-    /// \p weight was the best of them.
-    void choose(float weight) { chosen_ = weight; }
-    /// The points are assigned to the right faces already.
-    void begin_late();
-
-private:
-    int rounds_ = 0;
-    float chosen_ = 0;
-};
-
 /// A network and its state during the fit. fit_to_points() has the order of the steps.
 class Fitter {
 public:
@@ -85,9 +68,9 @@ public:
     /// surface, that of the network, with them. \pre \p points were assigned to \p surface before it moved
     /// last
     void move_to_creases(Surface& surface, const PointsByFace& points);
-    /// Fills the notches of the boundary that hold points, and opens the faces there that hold none. \return
-    /// the number of faces filled and opened
-    int mend_boundary(const Surface& surface, const PointsByFace& points);
+    /// assign_faces(), and if \p surface, that of the network, has a boundary, fills its notches that hold
+    /// points and opens the faces there that hold none. \return the points on the surface after that
+    PointsByFace mended(Surface& surface);
 
     const HeldOut& held_out() const { return held_out_; }
     float noise_variance() const { return noise_variance_; }
@@ -117,8 +100,7 @@ private:
     void set_points_aside(int points_per_vertex);
     bool wants_reduction(int vertices, int at_start, Progress& progress) const;
     bool reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress);
-    bool reduce_by_costs(int vertices, Surface& surface, PointsByFace points, Progress& progress);
-    PointsByFace update_for_removal(Surface& surface, PointsByFace points);
+    bool reduce_by_costs(int vertices, Surface& surface, Progress& progress);
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
 
     Network& network_;
@@ -139,7 +121,7 @@ private:
     float layering_ = 0;                 ///< over most of the surface, see layering()
     double bending_error_ = 0;           ///< of layers: weight of the mean squared gap in squared errors
     int stiff_rounds_ = 0;  ///< still to come: their bending weight lets the surface follow no layer
-    BendingSearch bending_;
+    float bending_weight_ = 0;  ///< the last choice; 0: none yet
     CrossingGuard guard_;  ///< has accepted the present surface
 };
 

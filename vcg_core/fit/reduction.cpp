@@ -45,7 +45,7 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
     set_directions(surface);
     solve(points, surface);
     const bool reduced = options_.by_volume ? reduce_by_volume(vertices, surface, std::move(points), reducing)
-                                            : reduce_by_costs(vertices, surface, std::move(points), reducing);
+                                            : reduce_by_costs(vertices, surface, reducing);
     if (!reduced) return false;
     fitted_.points.insert(fitted_.points.end(), set_aside_.points.begin(), set_aside_.points.end());
     fitted_.weights.insert(fitted_.weights.end(), set_aside_.weights.begin(), set_aside_.weights.end());
@@ -78,17 +78,16 @@ bool Fitter::reduce_by_volume(int vertices, Surface& surface, PointsByFace point
     }));
     if (network_.vertex_count() == vertices) return true;
     surface = Surface(network_);
-    points = assign_faces(surface);
-    return reduce_by_costs(vertices, surface, std::move(points), rest);
+    return reduce_by_costs(vertices, surface, rest);
 }
 
-bool Fitter::reduce_by_costs(int vertices, Surface& surface, PointsByFace points, Progress& progress) {
+bool Fitter::reduce_by_costs(int vertices, Surface& surface, Progress& progress) {
     const int at_start = network_.vertex_count();
     // Not where each round finds the stray points anew.
     const bool dense = at_start > kDenseFrom * vertices && !options_.expect_strays && !skips("dense_collapses");
     while (network_.vertex_count() > vertices) {
         if (!wants_reduction(vertices, at_start, progress)) return false;
-        points = update_for_removal(surface, std::move(points));
+        PointsByFace points = mended(surface);
         const int max_count = std::min(network_.vertex_count() - vertices,
                                        1 + static_cast<int>(kRemovedShare * network_.vertex_count()));
         if (!remove_vertices(surface, points, max_count, dense)) return false;
@@ -106,26 +105,6 @@ bool Fitter::wants_reduction(int vertices, int at_start, Progress& progress) con
     const std::string text = "Fitting to the points: " + std::to_string(left) + " vertices left of " +
                              std::to_string(at_start) + ", to come down to " + std::to_string(vertices);
     return progress(static_cast<double>(at_start - left) / std::max(1, at_start - vertices), text.c_str());
-}
-
-/// \return the points on the surface after the last solution, mended where it has a boundary
-PointsByFace Fitter::update_for_removal(Surface& surface, PointsByFace points) {
-    if (!options_.expect_strays) {
-        points.update_feet(surface, team_);  // the next search follows once the vertices are removed
-        if (!surface.has_boundary()) return points;
-        const Network before = network_;
-        const CrossingGuard guard = guard_;
-        if (mend_boundary(surface, points) == 0) return points;
-        // A face may seem to lack points that are still with the face beside it: search first.
-        network_ = before;
-        guard_ = guard;
-    }
-    points = assign_faces(surface);  // what is astray or missing is told by the surface as it is
-    if (mend_boundary(surface, points) > 0) {
-        surface = Surface(network_);
-        points = assign_faces(surface);
-    }
-    return points;
 }
 
 /// \return whether any vertex was removed

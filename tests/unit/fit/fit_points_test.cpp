@@ -290,18 +290,5 @@ TEST(HeldOut, DoesNotPreferACrumpledSurface) {
               0.97 * other.rms_error(Surface(crumpled), 1, team));
 }
 
-TEST(BendingSearch, NarrowsFromAWideRange) {
-    BendingSearch search;
-    const std::vector<float> first = search.next_weights(0);
-    EXPECT_EQ(first, (std::vector<float>{0.3F, 1, 8, 50})) << "none below the least of the first round";
-    search.choose(8);
-    EXPECT_EQ(search.next_weights(0), (std::vector<float>{8, 1, 20}));
-    search.choose(1);
-    EXPECT_EQ(search.next_weights(0.5F), (std::vector<float>{1, 0.5F, 2.5F}))
-        << "none below what noise demands";
-    search.choose(0.5F);
-    EXPECT_EQ(search.next_weights(2), (std::vector<float>{2})) << "no weight twice";
-}
-
 }  // namespace
 }  // namespace neuralmesh
