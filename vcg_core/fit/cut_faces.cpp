@@ -158,8 +158,7 @@ int collapse_shortest(Network& network, const Triangle& first, const Triangle& s
 
 /// \return the number of faces removed with the one given by its sorted corners
 int remove_face(Network& network, const Triangle& face, Removal kind) {
-    const bool inside = corners_on_boundary(network, face) == 0;
-    if (inside && kind != Removal::inner_faces) return 0;
+    if (kind == Removal::boundary_faces && corners_on_boundary(network, face) == 0) return 0;
     const Faces gone = with_lesser_fans(network, face);
     if (gone.empty() || (kind == Removal::boundary_faces && !keeps_topology(network, gone))) return 0;
     std::vector<Triangle> oriented;
@@ -194,8 +193,7 @@ int remove_once(Network& network, const std::vector<SelfCrossing>& crossings, Re
 }  // namespace
 
 int remove_cut_faces(Network& network, Removal most, std::vector<SelfCrossing>& crossings, ThreadTeam& team) {
-    constexpr std::array<Removal, 4> kInOrder{Removal::boundary_faces, Removal::folds, Removal::strands,
-                                              Removal::inner_faces};
+    constexpr std::array<Removal, 3> kInOrder{Removal::boundary_faces, Removal::folds, Removal::inner_faces};
     const int most_faces = network.face_count() / kKeptPerGone;
     Surface surface(network);
     drop_apparent(surface, crossings);

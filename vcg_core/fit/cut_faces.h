@@ -16,8 +16,7 @@ namespace neuralmesh {
 enum class Removal {
     boundary_faces,  ///< faces along the boundary that leave loops, genus and components as they are
     folds,           ///< vertices in a fold, by half-edge collapses, which keep the topology, too
-    strands,         ///< faces across a strand of surface, whose ends then are apart
-    inner_faces,     ///< which leaves holes
+    inner_faces,     ///< and strands of surface, whose ends then are apart; leaves holes
 };
 
 /// Where the boundary of one sheet meets the inside of another, as a chair meets the floor, signals of the

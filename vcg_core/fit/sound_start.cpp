@@ -13,18 +13,13 @@ namespace neuralmesh {
 
 std::optional<std::vector<SelfCrossing>> make_sound(Network& network, ThreadTeam& team, Progress& progress) {
     unfold(network);
-    std::optional<std::vector<SelfCrossing>> left = untangle(network, kGentle, team, progress);
+    std::optional<std::vector<SelfCrossing>> left = untangle(network, team, progress);
     if (!left || left->empty() || network.boundary_loop_count() == 0 || skips("cut_faces")) return left;
     NoProgress unasked;  // a stop from here on would leave fewer vertices
     const int vertices = network.vertex_count();
-    // What keeps the topology goes before the boundary draws back, which moves vertices away from the points.
     std::vector<SelfCrossing> cuts = *left;
-    const int removed = remove_cut_faces(network, Removal::boundary_faces, cuts, team);
+    const int removed = remove_cut_faces(network, Removal::inner_faces, cuts, team);
     if (removed == 0 && cuts.empty()) return left;  // all of them are apparent
-    if (!cuts.empty()) {
-        cuts = *untangle(network, kThorough, team, unasked);
-        remove_cut_faces(network, Removal::inner_faces, cuts, team);
-    }
     refine(network, vertices, NewVertices::on_edges, unasked);
     return self_crossings(Surface(network), team);
 }

@@ -64,7 +64,7 @@ TEST(CutFaces, AStrandIsBrokenOnlyIfThatIsAllowed) {
     Network network = before;
     EXPECT_FALSE(removed_from(network, Removal::boundary_faces).empty());
     EXPECT_EQ(network.faces(), before.faces());
-    EXPECT_TRUE(removed_from(network, Removal::strands).empty());
+    EXPECT_TRUE(removed_from(network, Removal::inner_faces).empty());
     EXPECT_EQ(network.component_count(), 3);
     EXPECT_EQ(network.genus(), 0);
     for (VertexId v = 0; v < 144; ++v) EXPECT_TRUE(network.alive(v)) << "the sheet stays";
