@@ -66,15 +66,8 @@ constexpr float kLayeredShare = 0.01F;
 /// homer have up to .022, views that overlap on a tenth of the surface .09 and more. Taken for layers, folds
 /// give armadillo 1.4 times the error with 500 vertices.
 constexpr float kLayeredShareOfLagging = 0.03F;
-/// Noise variances that an edge split has to gain. kMinSplitVariances holds where the noise is well below
-/// kSmallNoise of the edge: there the surface crumples little, and right splits win more than wrong ones
-/// lose. kMaxSplitVariances holds for noisier edges: the best of ten thousand splits that follow only noise
-/// seem to gain about this much. Edges longer than the mean one count as of mean length.
-constexpr float kMinSplitVariances = 4;
-constexpr float kMaxSplitVariances = 16;
-constexpr float kSmallNoise = 0.06F;
-/// Noise variances that an edge flip has to gain.
-constexpr float kFlipVariances = 6;
+/// Noise variances that an edge split or flip has to gain.
+constexpr float kLeastGain = 6;
 /// Share of the vertices that one redistribution may move.
 constexpr double kMovedShare = 0.05;
 /// Noise in edges below which points are calm. Clean clouds come to .005 to .02 (curved faces spread their
@@ -342,9 +335,8 @@ bool Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& p
     const int max_pairs =
         std::max(1, static_cast<int>(kMovedShare * static_cast<double>(network_.vertex_count())));
     const std::vector<Collapse> collapses = find_collapses(network_, surface, points, team_);
-    const LeastSplitGain least{kMinSplitVariances, kMaxSplitVariances, 1 / kSmallNoise,
-                               mean_edge_length(surface)};
-    const std::vector<EdgeSplit> splits = find_splits(network_, surface, points, least, team_, variances_);
+    const std::vector<EdgeSplit> splits =
+        find_splits(network_, surface, points, kLeastGain, team_, variances_);
     const VertexMoves done = guarded(surface, [&](const PerVertex<char>& barred) {
         return redistribute(network_, collapses, splits, max_pairs, barred);
     });
@@ -359,7 +351,7 @@ bool Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& p
 void Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
     points.update_feet(surface, team_);
     const std::vector<EdgeFlip> found =
-        find_flips(network_, surface, points, kFlipVariances, team_, variances_);
+        find_flips(network_, surface, points, kLeastGain, team_, variances_);
     guarded(surface, [&](const PerVertex<char>& barred) {
         return neuralmesh::flip_edges(network_, found, barred);
     });
