@@ -72,7 +72,7 @@ FitOptions fit_options(const LearningTask& task, const Settings& settings, const
 void fit(Network& network, const LearningTask& task, const FitOptions& options, const Settings& settings,
          Progress& progress) {
     fit_to_points(network, task.target(), options, settings.threads,
-                         stream_seed(settings.random_seed, Stream::fit), progress);
+                  stream_seed(settings.random_seed, Stream::fit), progress);
 }
 
 /// Before the fit. \p before: the figures of earlier learners.

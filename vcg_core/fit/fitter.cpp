@@ -12,11 +12,11 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
+#include "vcg_core/fit/boundary_mending.h"
 #include "vcg_core/fit/edge_flips.h"
 #include "vcg_core/fit/layers.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/noise.h"
-#include "vcg_core/fit/boundary_mending.h"
 #include "vcg_core/fit/sound_start.h"
 #include "vcg_core/fit/stray_points.h"
 
@@ -46,8 +46,8 @@ constexpr float kFittedWeight = 0.01F;
 /// Likely gap of an edge (see PointToPlaneSystem) on a surface without noise, in edge lengths. By Bayes' rule
 /// it determines the least bending weight under noise.
 constexpr float kLikelyGap = 0.05F;
-/// The same with fewer points per vertex than kFewPerVertex, where it rarely takes a bend for noise. Without it,
-/// clouds of few points have 1.29 times the error.
+/// The same with fewer points per vertex than kFewPerVertex, where it rarely takes a bend for noise. Without
+/// it, clouds of few points have 1.29 times the error.
 constexpr float kLikelyGapOfFew = 0.1F;
 constexpr float kFewPerVertex = 5;
 /// The same where the noise of each place is known. A frame of a depth camera in a room has normals that are
@@ -350,11 +350,9 @@ bool Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& p
 
 void Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
     points.update_feet(surface, team_);
-    const std::vector<EdgeFlip> found =
-        find_flips(network_, surface, points, kLeastGain, team_, variances_);
-    guarded(surface, [&](const PerVertex<char>& barred) {
-        return neuralmesh::flip_edges(network_, found, barred);
-    });
+    const std::vector<EdgeFlip> found = find_flips(network_, surface, points, kLeastGain, team_, variances_);
+    guarded(surface,
+            [&](const PerVertex<char>& barred) { return neuralmesh::flip_edges(network_, found, barred); });
 }
 
 PointsByFace Fitter::mended(Surface& surface) {

@@ -110,13 +110,13 @@ private:
     TrackedPoints fitted_;
     TrackedPoints set_aside_;  ///< fitted points that the reduction does not use
     HeldOut held_out_;
-    float outlier_distance_ = 0;  ///< from the first assignment; fixed, so that errors stay comparable
+    float outlier_distance_ = 0;         ///< from the first assignment; fixed, so that errors stay comparable
     float noise_variance_ = 0;           ///< from the last assignment
     PerVertex<float> variances_;         ///< of the noise around each vertex, from the last assignment
     PerVertex<float> rounding_variances_;  ///< the part that the points of one step share
     PerVertex<float> widest_variances_;  ///< of the points across the surface, so far
     bool layered_places_ = true;         ///< until a search shows none
-    bool excludes_layers_;  ///< the points, or a surface of many more vertices, show none
+    bool excludes_layers_;               ///< the points, or a surface of many more vertices, show none
     bool layered_ = false;               ///< somewhere; from the last exact search, as the next
     float layering_ = 0;                 ///< over most of the surface, see layering()
     double bending_error_ = 0;           ///< of layers: weight of the mean squared gap in squared errors

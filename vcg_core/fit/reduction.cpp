@@ -84,7 +84,8 @@ bool Fitter::reduce_by_volume(int vertices, Surface& surface, PointsByFace point
 bool Fitter::reduce_by_costs(int vertices, Surface& surface, Progress& progress) {
     const int at_start = network_.vertex_count();
     // Not where each round finds the stray points anew.
-    const bool dense = at_start > kDenseFrom * vertices && !options_.expect_strays && !skips("dense_collapses");
+    const bool dense =
+        at_start > kDenseFrom * vertices && !options_.expect_strays && !skips("dense_collapses");
     while (network_.vertex_count() > vertices) {
         if (!wants_reduction(vertices, at_start, progress)) return false;
         PointsByFace points = mended(surface);

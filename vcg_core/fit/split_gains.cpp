@@ -97,8 +97,7 @@ EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const Per
 }  // namespace
 
 std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surface, const PointsByFace& points,
-                                   float least_gain, ThreadTeam& team,
-                                   const PerVertex<float>& variances) {
+                                   float least_gain, ThreadTeam& team, const PerVertex<float>& variances) {
     const auto least_for = [&](VertexId a, VertexId b) {
         return least_gain * (variances.empty() ? 1.0F : (variances[a] + variances[b]) / 2);
     };

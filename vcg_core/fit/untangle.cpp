@@ -13,8 +13,8 @@ namespace neuralmesh {
 namespace {
 
 constexpr int kRounds = 10;
-constexpr float kLongestMove = 1;    ///< of a vertex, in mean edge lengths
-constexpr int kRestoredRings = 6;    ///< around self-crossings that remain; they get their old positions back
+constexpr float kLongestMove = 1;  ///< of a vertex, in mean edge lengths
+constexpr int kRestoredRings = 6;  ///< around self-crossings that remain; they get their old positions back
 constexpr int kSweeps = 2;      ///< of smoothing per round
 constexpr int kMaxPairs = 100;  ///< of overlapping face boxes per face; a smooth surface has six
 constexpr int kMaxRings = 3;    ///< around the self-crossings
@@ -74,8 +74,7 @@ void restore_around(const Network& network, const std::vector<SelfCrossing>& cro
 
 }  // namespace
 
-std::optional<std::vector<SelfCrossing>> untangle(Network& network, ThreadTeam& team,
-                                                  Progress& progress) {
+std::optional<std::vector<SelfCrossing>> untangle(Network& network, ThreadTeam& team, Progress& progress) {
     const auto stopped = [&](int searches) {
         return !progress(static_cast<double>(searches) / (kRounds + 1),
                          "Fitting to the points: smoothing where the surface cuts itself");
@@ -92,8 +91,7 @@ std::optional<std::vector<SelfCrossing>> untangle(Network& network, ThreadTeam& 
         if (stopped(round + 1)) return std::nullopt;
         const Surface before = surface;
         const int rings = std::min(1 + round / 2, kMaxRings);
-        for (int sweep = 0; sweep < kSweeps; ++sweep)
-            smooth(network, crossings, rings, surface.positions);
+        for (int sweep = 0; sweep < kSweeps; ++sweep) smooth(network, crossings, rings, surface.positions);
         limit_moves(start, max_move, surface.positions);
         crossings = update_self_crossings(surface, before, crossings, team);
     }

@@ -14,9 +14,9 @@
 namespace neuralmesh {
 
 /// Laplacian smoothing of \p network around its self-crossings, over neighbourhoods that widen from round to
-/// round; boundary vertices move along the boundary only. Where self-crossings remain, the surface around them
-/// gets its old positions back. No other vertex moves. Gives up, leaving the network unchanged, if more than 100 pairs of face boxes per face overlap. The
-/// result does not depend on the number of threads.
+/// round; boundary vertices move along the boundary only. Where self-crossings remain, the surface around
+/// them gets its old positions back. No other vertex moves. Gives up, leaving the network unchanged, if more
+/// than 100 pairs of face boxes per face overlap. The result does not depend on the number of threads.
 ///
 /// \param progress asked before every round; if it asks to stop, the network stays unchanged
 /// \return the remaining self-crossings, sorted; nothing if stopped

@@ -10,10 +10,10 @@
 
 #include "tests/unit/fit/fit_scene.h"
 #include "tests/unit/support/targets.h"
+#include "vcg_core/fit/boundary_mending.h"
 #include "vcg_core/fit/boundary_targets.h"
 #include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/fit.h"
-#include "vcg_core/fit/boundary_mending.h"
 
 namespace neuralmesh {
 namespace {
@@ -100,8 +100,7 @@ TEST(BoundaryTargets, DoNotReachFarBeyondRows) {
         const FitScene scene(referee::network_of(sheet()), cloud);
         const auto targets = find_boundary_targets(scene.network, scene.surface, scene.points);
         EXPECT_FALSE(targets.empty());
-        for (const BoundaryTarget& target : targets)
-            EXPECT_LT(target.offset, 0.5 * spacing) << rows;
+        for (const BoundaryTarget& target : targets) EXPECT_LT(target.offset, 0.5 * spacing) << rows;
     }
 }
 

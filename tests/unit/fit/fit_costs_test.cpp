@@ -230,10 +230,9 @@ TEST(FindSplits, OmitsGainsBelowTheBound) {
     ThreadTeam team(1);
     const std::vector<EdgeSplit> all = find_splits(scene.network, scene.surface, scene.points, 0, team);
     const float bound = all[all.size() / 2].gain;
-    const std::vector<EdgeSplit> some =
-        find_splits(scene.network, scene.surface, scene.points, bound, team);
-    const auto expected = std::count_if(all.begin(), all.end(),
-                                        [&](const EdgeSplit& split) { return split.gain >= bound; });
+    const std::vector<EdgeSplit> some = find_splits(scene.network, scene.surface, scene.points, bound, team);
+    const auto expected =
+        std::count_if(all.begin(), all.end(), [&](const EdgeSplit& split) { return split.gain >= bound; });
     EXPECT_EQ(static_cast<std::ptrdiff_t>(some.size()), expected);
     EXPECT_LT(some.size(), all.size());
 }

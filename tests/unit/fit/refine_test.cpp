@@ -23,8 +23,7 @@ void expect_refined(const shapes::Shape& shape, int vertices) {
     const Network before = referee::network_of(shape);
     Network network = before;
     NoProgress progress;
-    EXPECT_EQ(refine(network, vertices, NewVertices::curved, progress),
-              vertices - before.vertex_count());
+    EXPECT_EQ(refine(network, vertices, NewVertices::curved, progress), vertices - before.vertex_count());
     EXPECT_EQ(network.vertex_count(), vertices);
     EXPECT_EQ(network.validate(), "");
     EXPECT_EQ(network.genus(), before.genus());
