@@ -21,6 +21,14 @@ constexpr std::size_t kMostTogether = 12;
 /// One face in so many may go in all.
 constexpr int kKeptPerGone = 10;
 
+/// What is removed to be rid of a self-crossing. What is first here is tried first, and again after every
+/// removal.
+enum class Removal {
+    boundary_faces,  ///< faces along the boundary that leave loops, genus and components as they are
+    folds,           ///< vertices in a fold, by half-edge collapses, which keep the topology, too
+    any_faces,       ///< also across strands of surface, whose ends then are apart, or leaving holes
+};
+
 /// By their sorted corners.
 using Faces = std::set<Triangle>;
 
@@ -192,13 +200,13 @@ int remove_once(Network& network, const std::vector<SelfCrossing>& crossings, Re
 
 }  // namespace
 
-int remove_cut_faces(Network& network, Removal most, std::vector<SelfCrossing>& crossings, ThreadTeam& team) {
-    constexpr std::array<Removal, 3> kInOrder{Removal::boundary_faces, Removal::folds, Removal::inner_faces};
+int remove_cut_faces(Network& network, std::vector<SelfCrossing>& crossings, ThreadTeam& team) {
+    constexpr std::array<Removal, 3> kInOrder{Removal::boundary_faces, Removal::folds, Removal::any_faces};
     const int most_faces = network.face_count() / kKeptPerGone;
     Surface surface(network);
     drop_apparent(surface, crossings);
     int removed = 0;
-    for (std::size_t level = 0; level < kInOrder.size() && kInOrder[level] <= most && !crossings.empty();) {
+    for (std::size_t level = 0; level < kInOrder.size() && !crossings.empty();) {
         const int now = remove_once(network, crossings, kInOrder[level], most_faces - removed);
         removed += now;
         level = now > 0 ? 0 : level + 1;

@@ -60,7 +60,7 @@ std::optional<std::vector<SelfCrossing>> make_sound(Network& network, ThreadTeam
     NoProgress unasked;  // a stop from here on would leave fewer vertices
     const int vertices = network.vertex_count();
     std::vector<SelfCrossing> cuts = *left;
-    const int removed = remove_cut_faces(network, Removal::inner_faces, cuts, team);
+    const int removed = remove_cut_faces(network, cuts, team);
     if (removed == 0 && cuts.empty()) return left;  // all of them are apparent
     refine(network, vertices, NewVertices::on_edges, unasked);
     return self_crossings(Surface(network), team);
