@@ -70,21 +70,10 @@ constexpr float kLayeredShareOfLagging = 0.03F;
 constexpr float kLeastGain = 6;
 /// Share of the vertices that one redistribution may move.
 constexpr double kMovedShare = 0.05;
-/// Noise in edges below which points are calm. Clean clouds come to .005 to .02 (curved faces spread their
-/// points, too), clouds with noise of .3 % of the diagonal to .12 to .17 with 2,000 vertices.
-constexpr float kCalmNoise = 0.05F;
-/// The same for precise points, and how many there are of them for each vertex. Holding the surface at noise
-/// of .04, or at two points per vertex, raises the error by 1 to 6 %.
+/// Noise of precise points, in edges, and how many there are of them for each vertex. Holding the surface at
+/// noise of .04, or at two points per vertex, raises the error by 1 to 6 %.
 constexpr float kPreciseNoise = 0.035F;
 constexpr float kPrecisePoints = 8;
-/// Where the points are calm and the surface is closed, this many of those held out judge as well as all:
-/// clean, bunny, koala, fandisk and rocker-arm have .99 to 1.00 of the error with 10,000. Under noise they do
-/// not: fandisk with noise of 0.3 % and 2,000 vertices has 1.18 of the error.
-constexpr std::size_t kCalmHeldOut = 3000;
-/// Surfaces with boundary need more: so many for each vertex that stays. With 3,000 points for 2,000
-/// vertices, fandisk, block and genus3 have 1.03 (cut by a sphere) and 1.1 (three planes) of the error.
-constexpr std::size_t kCalmHeldOutPerVertex = 6;
-
 float outlier_distance(const Surface& surface, const std::vector<Hit>& hits) {
     std::vector<float> distances(hits.size());
     for (std::size_t i = 0; i < hits.size(); ++i) distances[i] = std::sqrt(hits[i].foot.squared_distance);
@@ -99,7 +88,6 @@ Fitter::Fitter(Network& network, PointChoice points, const FitOptions& options, 
     : network_(network),
       options_(options),
       team_(team),
-      final_vertices_(network.vertex_count()),
       fitted_(std::move(points.fitted)),
       held_out_(std::move(points.held_out)),
       excludes_layers_(!options.expect_layers),
@@ -115,10 +103,6 @@ PointsByFace Fitter::locate_points(const Surface& surface, bool lags) {
     const std::vector<Hit> hits = nearest_by_tree(surface, fitted_, team_);
     if (!(outlier_distance_ > 0)) outlier_distance_ = outlier_distance(surface, hits);
     PointsByFace points = assign(surface, hits);
-    if (noise_in_edges(surface) < kCalmNoise)
-        held_out_.keep_at_most(surface.has_boundary()
-                                   ? kCalmHeldOutPerVertex * static_cast<std::size_t>(final_vertices_)
-                                   : kCalmHeldOut);
     held_out_.locate(surface, team_);
     examine_layers(surface, points, lags);
     return points;

@@ -106,7 +106,6 @@ private:
     Network& network_;
     const FitOptions options_;
     ThreadTeam& team_;
-    int final_vertices_;  ///< after the reduction
     TrackedPoints fitted_;
     TrackedPoints set_aside_;  ///< fitted points that the reduction does not use
     HeldOut held_out_;

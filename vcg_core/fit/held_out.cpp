@@ -38,18 +38,6 @@ float squared_distance_along(const Vector3& direction, const Surface& surface, c
 
 }  // namespace
 
-void HeldOut::keep_at_most(std::size_t count) {
-    const std::size_t n = tracked_.points.size();
-    if (n <= count) return;
-    TrackedPoints kept;
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t from = i * n / count;
-        kept.points.push_back(tracked_.points[from]);
-        if (!tracked_.weights.empty()) kept.weights.push_back(tracked_.weights[from]);
-    }
-    tracked_ = std::move(kept);
-}
-
 void HeldOut::locate(const Surface& surface, ThreadTeam& team) {
     group_by_face(surface, tracked_, nearest_by_tree(surface, tracked_, team), team);
 }

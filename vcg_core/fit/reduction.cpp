@@ -38,7 +38,6 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
     PartOf reducing(progress, 0, 0.9);
     PartOf untangling(progress, 0.9, 1);
     if (!wants_reduction(vertices, network_.vertex_count(), reducing)) return false;
-    final_vertices_ = vertices;
     set_points_aside(kReducingPointsPerVertex);
     Surface surface(network_);
     PointsByFace points = locate_points(surface, options_.by_volume);

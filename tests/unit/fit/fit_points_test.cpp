@@ -59,25 +59,6 @@ TEST(PrecisePoints, AreManyForEachVertexAndWithoutNoise) {
     EXPECT_FALSE(precise(10000, 0.02)) << "up to an eighth of an edge off";
 }
 
-TEST(HeldOut, KeepsPointsFromTheirWholeOrder) {
-    TrackedPoints points;
-    for (int i = 0; i < 1000; ++i) {
-        points.points.emplace_back(static_cast<float>(i), 0.0F, 0.0F);
-        points.weights.push_back(static_cast<float>(i));
-    }
-    HeldOut held_out(points);
-    held_out.keep_at_most(1000);
-    EXPECT_EQ(held_out.tracked().points.size(), 1000U);
-    held_out.keep_at_most(300);
-    const TrackedPoints& kept = held_out.tracked();
-    ASSERT_EQ(kept.points.size(), 300U);
-    ASSERT_EQ(kept.weights.size(), 300U);
-    for (std::size_t i = 0; i < kept.points.size(); ++i) {
-        EXPECT_EQ(kept.points[i][0], kept.weights[i]);
-        EXPECT_NEAR(kept.points[i][0], static_cast<double>(i) * 1000 / 300, 1);
-    }
-}
-
 /// Sums over the points of a choice above and below the plane z = 0.
 struct Halves {
     double upper = 0;
