@@ -67,7 +67,7 @@ constexpr float kLayeredShare = 0.01F;
 /// give armadillo 1.4 times the error with 500 vertices.
 constexpr float kLayeredShareOfLagging = 0.03F;
 /// Noise variances that an edge split or flip has to gain.
-constexpr float kLeastGain = 6;
+constexpr float kGainVariances = 6;
 /// Share of the vertices that one redistribution may move.
 constexpr double kMovedShare = 0.05;
 /// Noise of precise points, in edges, and how many there are of them for each vertex. Holding the surface at
@@ -320,7 +320,7 @@ bool Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& p
         std::max(1, static_cast<int>(kMovedShare * static_cast<double>(network_.vertex_count())));
     const std::vector<Collapse> collapses = find_collapses(network_, surface, points, team_);
     const std::vector<EdgeSplit> splits =
-        find_splits(network_, surface, points, kLeastGain, team_, variances_);
+        find_splits(network_, surface, points, kGainVariances, team_, variances_);
     const VertexMoves done = guarded(surface, [&](const PerVertex<char>& barred) {
         return redistribute(network_, collapses, splits, max_pairs, barred);
     });
@@ -334,7 +334,8 @@ bool Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& p
 
 void Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
     points.update_feet(surface, team_);
-    const std::vector<EdgeFlip> found = find_flips(network_, surface, points, kLeastGain, team_, variances_);
+    const std::vector<EdgeFlip> found =
+        find_flips(network_, surface, points, kGainVariances, team_, variances_);
     guarded(surface,
             [&](const PerVertex<char>& barred) { return neuralmesh::flip_edges(network_, found, barred); });
 }
