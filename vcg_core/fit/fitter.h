@@ -120,6 +120,7 @@ private:
     float layering_ = 0;                 ///< over most of the surface, see layering()
     double bending_error_ = 0;           ///< of layers: weight of the mean squared gap in squared errors
     int stiff_rounds_ = 0;  ///< still to come: their bending weight lets the surface follow no layer
+    float least_weight_;    ///< of bending; falls, as in the first rounds points may be with wrong faces
     float bending_weight_ = 0;  ///< the last choice; 0: none yet
     CrossingGuard guard_;  ///< has accepted the present surface
 };
