@@ -22,8 +22,11 @@ constexpr float kDamping = 2e-3F;
 constexpr float kRetreat = 8.0F;
 /// A boundary vertex has few points around it, which may miss as many by chance.
 constexpr float kByChance = 1.5F;
-/// Pull of a boundary edge to where the points end, in points per vertex. Chosen by open_table.py.
+/// Pull of a boundary edge to where the points end, in points per vertex. Chosen by open_table.py, as the
+/// next.
 constexpr float kBoundaryPull = 0.3F;
+/// Weight of the bending of the boundary, in points per vertex.
+constexpr float kBoundaryBending = 0.05F;
 /// An edge counts as a crease from this many times the median gap.
 constexpr float kCrease = 4.0F;
 
@@ -98,6 +101,7 @@ PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& su
     });
     add_bending(surface, noise, team);
     for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) add_target(target);
+    add_boundary_bending(surface);
 }
 
 void PointToPlaneSystem::gather(const ChunksOfSums& sums, const Surface& surface, VertexId v) {
@@ -214,6 +218,45 @@ void PointToPlaneSystem::add_target(const BoundaryTarget& target) {
         row(v)[network_.ring(v).find(other)].add(direction, weight / 4);
         force_[v] += weight / 2 * target.offset * target.outward;
     }
+}
+
+/// The gap of a boundary vertex: from the place on the line between its neighbours along the boundary that
+/// divides it as the vertex divides the boundary.
+void PointToPlaneSystem::add_boundary_bending(const Surface& surface) {
+    std::vector<float> turns;
+    for (VertexId v : network_.vertices()) {
+        const Ring& ring = network_.ring(v);
+        if (ring.open == 0) continue;
+        const VertexId a = ring[0];
+        const VertexId b = ring[ring.valence - 1];
+        const Vector3 to_a = surface.positions[a] - surface.positions[v];
+        const Vector3 to_b = surface.positions[b] - surface.positions[v];
+        const float length = to_a.norm() + to_b.norm();
+        if (!(length > 0)) continue;
+        const float t = to_a.norm() / length;
+        const Vector3 gap = (t - 1) * to_a - t * to_b;
+        boundary_terms_.push_back({{v, a, b, v}, {1, t - 1, -t, 0}, gap, 1});
+        turns.push_back(gap.norm() / length);
+        centre_along((to_b - to_a).normalized(), 0.5F * (to_a + to_b), v);
+    }
+    if (turns.empty()) return;
+    const float crease = std::max(kCrease * median(turns), 1e-9F);
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+        BendingTerm& term = boundary_terms_[i];
+        term.weight = kBoundaryBending * points_per_vertex_ / (1 + (turns[i] / crease) * (turns[i] / crease));
+        for (std::size_t k = 0; k < 3; ++k) {
+            const float c = term.coefficient[k];
+            diagonal_[term.corner[k]].add_identity(term.weight * c * c);
+            force_[term.corner[k]] -= term.weight * c * term.gap;
+        }
+    }
+}
+
+/// Pulls boundary vertex \p v along the boundary, by the part of \p away in the unit vector \p direction.
+void PointToPlaneSystem::centre_along(const Vector3& direction, const Vector3& away, VertexId v) {
+    const float centring = kCentring * points_per_vertex_;
+    diagonal_[v].add(Symmetric3::outer(direction), centring);
+    force_[v] += centring * away.dot(direction) * direction;
 }
 
 }  // namespace neuralmesh

@@ -67,7 +67,8 @@ struct VertexNoise {
 /// + sum over edges     (lambda + s_e) c_e |gap_e(x + u)|^2 bending; s_e: stiffness, the mean at the corners
 /// + sum over vertices  centring within the tangent plane, and damping, both weak
 /// + sum over vertices  a pull to the middle of the ring, for those that lack points
-/// + sum over boundary edges     the squared distance from where the points end, outward
+/// + sum over boundary edges     the squared distance of each part from where the points end, outward
+/// + sum over boundary vertices  c_v |gap_v(x + u)|^2: the bending of the boundary, which lambda leaves alone
 ///
 /// where a point p has influence w and foot sum_k b_k x_k, and n is the normal of its face, or the direction
 /// of e if the foot is on the face's border. n.e is, to first order, the distance of the point from the moved
@@ -77,7 +78,7 @@ struct VertexNoise {
 /// keep. gap_e is the vector between the points where the two diagonals of the edge's quad cross when the
 /// quad is unfolded into the plane: 0 exactly where the surface is flat, whatever the shape of the triangles.
 /// c_e falls where the gap is large among the gaps of the mesh, so that creases are not rounded, and longer
-/// than the deviation of the points there, which is no crease.
+/// than the deviation of the points there, which is no crease; c_v does the same at corners of the boundary.
 /// Points beyond a boundary edge count by their distance from the plane of its face only: the mean of their
 /// distances from the edge would leave it short of their end.
 class PointToPlaneSystem {
@@ -138,6 +139,8 @@ private:
     void add_bending(const Surface& surface, const VertexNoise& noise, ThreadTeam& team);
     void stiffen(BendingTerm& term, float stiffness);
     void add_target(const BoundaryTarget& target);
+    void add_boundary_bending(const Surface& surface);
+    void centre_along(const Vector3& direction, const Vector3& away, VertexId v);
     Symmetric3* row(VertexId v) { return block_.data() + row_[v]; }
     const Symmetric3* row(VertexId v) const { return block_.data() + row_[v]; }
 
@@ -150,6 +153,7 @@ private:
     PerVertex<Vector3> force_;
     // B by terms, its diagonal, and g.
     std::vector<BendingTerm> bending_terms_;
+    std::vector<BendingTerm> boundary_terms_;  ///< of boundary vertices, with three corners; part of A
     PerVertex<float> bending_diagonal_;
     PerVertex<float> stiff_diagonal_;  ///< of the stiffness
     PerVertex<Vector3> bending_force_;

@@ -99,6 +99,13 @@ void PointToPlaneSystem::Solver::multiply_rows(const Part& part, float lambda, c
         for (std::size_t k = 0; k < 4; ++k)
             if (part.holds(term.corner[k])) result[term.corner[k]] += c[k] * force;
     }
+    for (const BendingTerm& term : system_.boundary_terms_) {  // their squares are in the diagonal
+        const auto& c = term.coefficient;
+        const Vector3 gap = c[0] * u[term.corner[0]] + c[1] * u[term.corner[1]] + c[2] * u[term.corner[2]];
+        for (std::size_t k = 0; k < 3; ++k)
+            if (part.holds(term.corner[k]))
+                result[term.corner[k]] += (term.weight * c[k]) * (gap - c[k] * u[term.corner[k]]);
+    }
 }
 
 PerVertex<Vector3> PointToPlaneSystem::Solver::solution(float lambda, const Accuracy& accuracy) const {
