@@ -4,21 +4,33 @@
 // Where the points end along the boundary of an open surface.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "vcg_core/fit/points_by_face.h"
 
 namespace neuralmesh {
 
-/// Where points end beside the boundary edge from \p a to \p b.
+/// Where points end beside the boundary edge from \p a to \p b. The edge is divided into equal parts.
 struct BoundaryTarget {
+    static constexpr int kMostParts = 4;
+
     VertexId a, b;
+    int face;         ///< of the edge
     Vector3 outward;  ///< unit vector in the plane of the edge's face, at right angles to the edge
+    float length;     ///< of the edge
+    float density;    ///< points per area
     float weight;     ///< in (0, 1], less than 1 where there are few points
-    float offset;     ///< how far it ought to move outward; negative: the points end before the edge
+    int parts;
+    /// How far the middle of each part ought to move outward; negative: the points end before the edge.
+    std::array<float, kMostParts> offsets;
+
+    /// The place of the middle of part \p i: 0 at a, 1 at b.
+    float share(int i) const { return (static_cast<float>(i) + 0.5F) / static_cast<float>(parts); }
+    float offset(int i) const { return offsets[static_cast<std::size_t>(i)]; }
 };
 
-/// The targets of the boundary edges. In front of each edge, points are followed outward, from one
+/// The targets of the boundary edges. In front of each part of an edge, points are followed outward, from one
 /// height of the edge's face before the edge, up to a gap that the density of the points makes unlikely. The
 /// surface ends beyond the last points by the width that as many points fill at that density, but hardly
 /// beyond the very last. O(boundary edges + their points).

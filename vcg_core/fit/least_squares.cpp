@@ -211,12 +211,17 @@ void PointToPlaneSystem::stiffen(BendingTerm& term, float stiffness) {
 
 void PointToPlaneSystem::add_target(const BoundaryTarget& target) {
     const Symmetric3 direction = Symmetric3::outer(target.outward);
-    const float weight = kBoundaryPull * points_per_vertex_ * target.weight;
-    for (const VertexId v : {target.a, target.b}) {
-        const VertexId other = v == target.a ? target.b : target.a;
-        diagonal_[v].add(direction, weight / 4);
-        row(v)[network_.ring(v).find(other)].add(direction, weight / 4);
-        force_[v] += weight / 2 * target.offset * target.outward;
+    const float weight =
+        kBoundaryPull * points_per_vertex_ * target.weight / static_cast<float>(target.parts);
+    for (int i = 0; i < target.parts; ++i) {
+        const float b = target.share(i);
+        const float a = 1 - b;
+        diagonal_[target.a].add(direction, weight * a * a);
+        diagonal_[target.b].add(direction, weight * b * b);
+        row(target.a)[network_.ring(target.a).find(target.b)].add(direction, weight * a * b);
+        row(target.b)[network_.ring(target.b).find(target.a)].add(direction, weight * a * b);
+        force_[target.a] += weight * a * target.offset(i) * target.outward;
+        force_[target.b] += weight * b * target.offset(i) * target.outward;
     }
 }
 

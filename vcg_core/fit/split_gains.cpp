@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "vcg_core/base/parallel_for.h"
+#include "vcg_core/fit/boundary_targets.h"
 
 namespace neuralmesh {
 
@@ -94,6 +95,44 @@ EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const Per
     return {enough ? gain : -1, a, b, middle + way};
 }
 
+float cubed(float x) { return x * x * x; }
+
+/// Adds to the split of a boundary edge what the new vertex gains by moving outward or inward, beyond what
+/// the edge's ends would gain. The points between an edge and where they end, or as many missing ones, add up
+/// to squared distances of density x offset^3 / 3 per length.
+void add_boundary_gain(EdgeSplit& split, const BoundaryTarget& target) {
+    const auto parts = static_cast<float>(target.parts);
+    const auto from_middle = [&](int i) { return target.share(i) - 0.5F; };
+    float mean = 0;
+    float slope = 0;
+    float phi_mean = 0;
+    float squares = 0;
+    const auto phi = [&](int i) { return 1 - 2 * std::abs(from_middle(i)); };
+    for (int i = 0; i < target.parts; ++i) {
+        mean += target.offset(i) / parts;
+        slope += target.offset(i) * from_middle(i);
+        squares += from_middle(i) * from_middle(i);
+        phi_mean += phi(i) / parts;
+    }
+    if (squares > 0) slope /= squares;
+    const auto rest = [&](int i) { return target.offset(i) - mean - slope * from_middle(i); };
+    float phi_rest = 0;
+    float phi_phi = 0;
+    for (int i = 0; i < target.parts; ++i) {
+        phi_rest += (phi(i) - phi_mean) * rest(i);
+        phi_phi += (phi(i) - phi_mean) * (phi(i) - phi_mean);
+    }
+    if (!(phi_phi > 0)) return;  // fewer than three parts
+    const float bound = kMaxOffset * target.length;
+    const float offset = std::min(std::max(phi_rest / phi_phi, -bound), bound);
+    float drop = 0;
+    for (int i = 0; i < target.parts; ++i)
+        drop += cubed(std::abs(rest(i))) - cubed(std::abs(rest(i) - (phi(i) - phi_mean) * offset));
+    if (!(drop > 0)) return;
+    split.gain = std::max(split.gain, 0.0F) + drop * target.density * target.length / (3 * parts);
+    split.position += (1 - phi_mean) * offset * target.outward;
+}
+
 }  // namespace
 
 std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surface, const PointsByFace& points,
@@ -107,15 +146,20 @@ std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surfac
         if (!network.alive(a)) return;
         const Ring& ring = network.ring(a);
         for (int i = 0; i < ring.valence; ++i) {
-            // A boundary edge as its face has it, so from one of its ends alone.
-            const bool is_last = ring.open != 0 && i + 1 == ring.valence;
-            if (is_last || (ring[i] < a && !(ring.open != 0 && i == 0))) continue;
+            const bool on_boundary = ring.open != 0 && (i == 0 || i + 1 == ring.valence);
+            if (ring[i] < a || on_boundary) continue;
             const EdgeSplit split = split_of(surface, points, sums, least_for(a, ring[i]), a, ring[i]);
             if (split.gain >= 0) found.push_back(split);
         }
     };
     std::vector<EdgeSplit> splits =
         parallel_collect<EdgeSplit>(network.slot_count(), kSplitChunk, team, find);
+    for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) {
+        EdgeSplit split = split_of(surface, points, sums, 0, target.a, target.b);
+        add_boundary_gain(split, target);
+        if (split.gain >= least_for(target.a, target.b) * points.mean_weight(target.face, target.face))
+            splits.push_back(split);
+    }
     std::stable_sort(splits.begin(), splits.end(),
                      [](const EdgeSplit& x, const EdgeSplit& y) { return x.gain > y.gain; });
     return splits;

@@ -21,7 +21,8 @@ struct EdgeSplit {
 /// The splits of edges that gain at least \p least_gain, in points of weight 1, times the mean of
 /// \p variances at the edge's ends (empty: 1), most gain first, by linear least
 /// squares over the offset of the new vertex from the middle of its edge, along the mean normal of the edge's
-/// faces. \p surface is
+/// faces. The new vertex of a boundary edge also follows the edge's BoundaryTarget, which counts the distance
+/// between the boundary and where the points end; such an edge is that of a face (a, b, c). \p surface is
 /// that of the network. O(points + vertices).
 /// The result does not depend on the number of threads.
 std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surface, const PointsByFace& points,

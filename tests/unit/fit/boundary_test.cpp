@@ -76,16 +76,21 @@ TEST_P(TargetsOfASheet, LieWhereThePointsEnd) {
     double sum = 0;
     int count = 0;
     for (const BoundaryTarget& target : targets) {
+        EXPECT_EQ(target.parts, BoundaryTarget::kMostParts);
         EXPECT_EQ(target.weight, 1);
-        const Vector3 at = (scene.surface.positions[target.a] + scene.surface.positions[target.b]) / 2;
-        // At the corners the points of the other side may be missing.
-        if (std::min(std::abs(at[0]), std::abs(at[1])) > 3) continue;
-        EXPECT_GT(target.outward.dot(at), 0);
-        EXPECT_NEAR(target.offset, half - 4, 0.12);
-        sum += static_cast<double>(target.offset);
-        ++count;
+        for (int i = 0; i < target.parts; ++i) {
+            const Vector3& a = scene.surface.positions[target.a];
+            const Vector3& b = scene.surface.positions[target.b];
+            const Vector3 at = (1 - target.share(i)) * a + target.share(i) * b;
+            // At the corners the points of the other side may be missing.
+            if (std::min(std::abs(at[0]), std::abs(at[1])) > 3) continue;
+            EXPECT_GT(target.outward.dot(at), 0);
+            EXPECT_NEAR(target.offset(i), half - 4, 0.12);
+            sum += static_cast<double>(target.offset(i));
+            ++count;
+        }
     }
-    EXPECT_NEAR(sum / count, half - 4, 0.015);  // a strip of that width holds 3 points in front of an edge
+    EXPECT_NEAR(sum / count, half - 4, 0.015);  // a strip of that width holds .8 points in front of a part
 }
 
 INSTANTIATE_TEST_SUITE_P(Reaching, TargetsOfASheet, testing::Values(3.7, 3.9, 4.0, 4.1, 4.3));
@@ -100,7 +105,8 @@ TEST(BoundaryTargets, DoNotReachFarBeyondRows) {
         const FitScene scene(referee::network_of(sheet()), cloud);
         const auto targets = find_boundary_targets(scene.network, scene.surface, scene.points);
         EXPECT_FALSE(targets.empty());
-        for (const BoundaryTarget& target : targets) EXPECT_LT(target.offset, 0.5 * spacing) << rows;
+        for (const BoundaryTarget& target : targets)
+            for (int i = 0; i < target.parts; ++i) EXPECT_LT(target.offset(i), 0.5 * spacing) << rows;
     }
 }
 
@@ -109,7 +115,7 @@ TEST(BoundaryTargets, StopAtAGap) {
     for (int i = 0; i < 20; ++i) cloud.emplace_back(4.5, 0.05 * i, 0);  // outliers beyond
     const FitScene scene(referee::network_of(sheet()), cloud);
     for (const BoundaryTarget& target : find_boundary_targets(scene.network, scene.surface, scene.points))
-        EXPECT_LT(target.offset, 0);
+        for (int i = 0; i < target.parts; ++i) EXPECT_LT(target.offset(i), 0);
 }
 
 TEST(BoundaryTargets, AreNoneOnClosedSurfaces) {
