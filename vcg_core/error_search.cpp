@@ -11,7 +11,7 @@
 namespace neuralmesh {
 namespace {
 
-/// Of a sketch.
+/// The first trial: as many vertices as come at once, and have the shape of most things.
 constexpr int kFirst = 1000;
 /// Errors from .9 to 1.05 of what is asked for are as asked: they vary by as much with the seed.
 constexpr double kLeastShare = 0.9, kMostShare = 1.05, kAim = 0.97;
@@ -79,11 +79,9 @@ int ErrorSearch::extrapolated(const Trial& from, double exponent, int low, int h
     return std::clamp(static_cast<int>(std::lround(vertices)), low, high);
 }
 
-int ErrorSearch::first() const { return std::min(std::max(kFirst, least_), most_); }
-
 int ErrorSearch::next() const {
     if (least_ > most_ || trials_.size() == kMostTrials) return 0;
-    if (trials_.empty()) return extrapolated(guess_, kUsual, least_, most_);
+    if (trials_.empty()) return std::clamp(kFirst, least_, most_);
     const std::size_t fine = enough(), count = trials_.size();
     const auto usual = [](double p) { return std::clamp(p, kFlattest, kSteepest); };
     if (fine == count) {

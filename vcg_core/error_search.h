@@ -21,12 +21,7 @@ public:
     /// \pre wanted > 0, 0 < least <= most
     ErrorSearch(double wanted, int least, int most) : wanted_(wanted), least_(least), most_(most) {}
 
-    /// For a sketch of a mesh, before the first trial: as many as come at once, and have the shape of most
-    /// things.
-    int first() const;
-    /// \p vertices are likely to have \p error.
-    void guess(int vertices, double error) { guess_ = {vertices, error}; }
-    /// The number to try next; 0: enough were tried. \pre guess() has been called
+    /// The number to try next; 0: enough were tried.
     int next() const;
     /// \pre \p vertices was not tried before
     void add(int vertices, double error);
@@ -52,7 +47,6 @@ private:
 
     double wanted_;
     int least_, most_;
-    Trial guess_{};
     std::vector<Trial> trials_;  ///< in ascending order of vertices
 };
 

@@ -124,11 +124,12 @@ bool fits_a_network(const IndexedMesh<float>& mesh) {
 /// The hull with \p vertices vertices, the new ones \p where that says. \pre fits_a_network()
 Hull finer(const Hull& hull, int vertices, NewVertices where) {
     Network network(hull.mesh.positions, hull.mesh.faces);
-    PerVertex<VertexId> sources = own_sources(network);
+    const Network before = network;
     NoProgress progress;
     flip_edges_for_shape(network, kFlat);
-    refine(network, vertices, where, sources, progress);
+    refine(network, vertices, where, progress);
     flip_edges_for_shape(network, kFlat);
+    const PerVertex<VertexId> sources = nearest_vertices(before, network);
     Hull result{{{}, network.faces()}, {}};
     for (const VertexId v : network.vertices()) {
         result.mesh.positions.push_back(network.position(v));

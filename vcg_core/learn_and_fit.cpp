@@ -8,6 +8,7 @@
 
 #include "vcg_core/base/random.h"
 #include "vcg_core/fit/fit.h"
+#include "vcg_core/fit/sources.h"
 #include "vcg_core/mesh/simplify.h"
 #include "vcg_core/mesh/vertex_order.h"
 
@@ -68,10 +69,10 @@ FitOptions fit_options(const LearningTask& task, const Settings& settings, const
     return options;
 }
 
-FitReport fit(Network& network, const LearningTask& task, const FitOptions& options, const Settings& settings,
-              Progress& progress) {
-    return fit_to_points(network, task.target(), options, settings.threads,
-                         stream_seed(settings.random_seed, Stream::fit), progress);
+void fit(Network& network, const LearningTask& task, const FitOptions& options, const Settings& settings,
+         Progress& progress) {
+    fit_to_points(network, task.target(), options, settings.threads,
+                  stream_seed(settings.random_seed, Stream::fit), progress);
 }
 
 /// Before the fit. \p before: the figures of earlier learners.
@@ -160,7 +161,7 @@ StopReason Learning::learn(const Settings& settings, const Plan& plan, Progress&
     return learner_->run(goes_on ? 0 : task_.landing_signals, progress);
 }
 
-LearnedNetwork Learning::with(int vertices, MonotoneProgress& progress, int rounds) {
+LearnedNetwork Learning::with(int vertices, MonotoneProgress& progress) {
     const Settings settings = settings_for(vertices);
     if (task_.is_known) return observed(task_, settings, progress);
     const Plan plan = plan_for(settings);
@@ -169,17 +170,14 @@ LearnedNetwork Learning::with(int vertices, MonotoneProgress& progress, int roun
     const StopReason reason = learn(settings, plan, learning);
     LearnedNetwork result = learned_by(*learner_, reason, before_);
     thickening_.take_back(result.network, team_);
-    FitReport report;
-    FitOptions options = fit_options(task_, settings, plan);
-    options.rounds = rounds;
-    if (settings.fit_to_points && !progress.stopped())
-        report = fit(result.network, task_, options, settings, fitting);
+    const Network learned = result.network;
+    const bool fits = settings.fit_to_points && !progress.stopped();
+    if (fits) fit(result.network, task_, fit_options(task_, settings, plan), settings, fitting);
     if (progress.stopped()) result.stop_reason = StopReason::cancelled;
     finish(result.network, vertices);
-    const bool moved = report.improved || report.inserted > 0;
-    // If the rounds of the fit were discarded, no vertex has moved to the place of another.
-    result.measures = measures_of(*learner_, learner_->crease_measure(), result.network,
-                                  moved ? report.sources : PerVertex<VertexId>(), settings);
+    result.measures =
+        measures_of(*learner_, learner_->crease_measure(), result.network,
+                    fits ? nearest_vertices(learned, result.network) : PerVertex<VertexId>(), settings);
     if (plan.carried < vertices)
         result.carried = static_cast<int>(carried_by_points(task_, settings_.target_vertices));
     return result;
@@ -192,11 +190,12 @@ LearnedNetwork Learning::reduced(const LearnedNetwork& finer, int vertices,
     const Settings settings = settings_for(vertices);
     FitOptions options = fit_options(task_, settings, plan_for(settings));
     options.fitted_before = true;
-    const FitReport report = fit(result.network, task_, options, settings, progress);
+    fit(result.network, task_, options, settings, progress);
     if (progress.stopped()) result.stop_reason = StopReason::cancelled;
     finish(result.network, vertices);
-    result.measures.normal_counters = taken_over(finer.measures.normal_counters, report.sources);
-    result.measures.creases = taken_over(finer.measures.creases, report.sources);
+    const PerVertex<VertexId> sources = nearest_vertices(finer.network, result.network);
+    result.measures.normal_counters = taken_over(finer.measures.normal_counters, sources);
+    result.measures.creases = taken_over(finer.measures.creases, sources);
     return result;
 }
 

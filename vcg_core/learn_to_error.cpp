@@ -146,18 +146,14 @@ public:
     double learn(int vertices, Progress& progress) {
         MonotoneProgress monotone(progress);
         const auto finer = meshes_.lower_bound(vertices);
-        if (finer == meshes_.end() || !settings_.redistributes_vertices())
-            return learn(vertices, 0, monotone);
-        const Run& run = *finer->second.run;
-        check(run.task, vertices);
-        return add(vertices, {&run, run.learning.reduced(finer->second.learned, vertices, monotone)});
-    }
-    /// The same with a brief fit. \return the error that a longer one is likely to leave
-    double sketch(int vertices, Progress& progress) {
-        constexpr int kRounds = 1;
-        constexpr double kLeft = 0.9;  // closed surfaces; open ones may come to half the error
-        MonotoneProgress monotone(progress);
-        return kLeft * learn(vertices, kRounds, monotone);
+        if (finer != meshes_.end() && settings_.redistributes_vertices()) {
+            const Run& run = *finer->second.run;
+            check(run.task, vertices);
+            return add(vertices, {&run, run.learning.reduced(finer->second.learned, vertices, monotone)});
+        }
+        if (runs_.empty() || vertices > kServes * runs_.back().made_for) prepare(vertices, monotone);
+        Run& run = runs_.back();
+        return add(vertices, {&run, run.learning.with(vertices, monotone)});
     }
     NeuralMesh finish(int vertices) const {
         const Mesh& mesh = meshes_.at(vertices);
@@ -177,11 +173,6 @@ private:
         LearnedNetwork learned;
     };
 
-    double learn(int vertices, int rounds, MonotoneProgress& progress) {
-        if (runs_.empty() || vertices > kServes * runs_.back().made_for) prepare(vertices, progress);
-        Run& run = runs_.back();
-        return add(vertices, {&run, run.learning.with(vertices, progress, rounds)});
-    }
     void check(const LearningTask& task, int vertices) const {
         if (vertices < std::min(task.vertices_needed, settings_.target_vertices))
             throw SettingError("The components and handles of the cloud need more vertices.");
@@ -223,18 +214,13 @@ NeuralMesh learn_to_error(const TargetSpace& given, const Settings& settings, Pr
     }
     ErrorSearch search(settings.target_error, kLeast, settings.target_vertices);
     double done = 0;
-    bool sketched = false;
-    while (const int vertices = sketched ? search.next() : search.first()) {
+    while (const int vertices = search.next()) {
         PartOf part(monotone, done, done + kShare * (1 - done));
         done += kShare * (1 - done);
         try {
-            const double error = sketched ? trials.learn(vertices, part) : trials.sketch(vertices, part);
+            const double error = trials.learn(vertices, part);
             if (monotone.stopped()) return trials.finish(vertices);
-            if (sketched)
-                search.add(vertices, error);
-            else
-                search.guess(vertices, error);
-            sketched = true;
+            search.add(vertices, error);
         } catch (const SettingError&) {  // too few for the components and handles
             if (vertices == settings.target_vertices) throw;
             search.too_few(vertices);

@@ -17,7 +17,6 @@ using ErrorOf = std::function<double(int vertices)>;
 /// Runs \p search on \p error. \return the number of trials
 int run(ErrorSearch& search, const ErrorOf& error) {
     int trials = 0;
-    search.guess(search.first(), error(search.first()));
     for (int n = search.next(); n != 0; n = search.next(), ++trials) search.add(n, error(n));
     return trials;
 }
@@ -70,14 +69,12 @@ TEST(ErrorSearch, KeepsToTheLeastAndTheMost) {
     EXPECT_EQ(coarse.best().vertices, 50);
     run(only, power(1, 1));
     EXPECT_EQ(only.best().vertices, 4);
-    none.guess(none.first(), 1);
     EXPECT_EQ(none.next(), 0);
 }
 
 TEST(ErrorSearch, TriesNoNumberThatWasTooFew) {
     ErrorSearch search(20, 4, 10000);
     int trials = 0;
-    search.guess(search.first(), power(1, 1)(search.first()));
     for (int n = search.next(); n != 0 && trials < 20; n = search.next(), ++trials) {
         if (n < 300) {
             search.too_few(n);

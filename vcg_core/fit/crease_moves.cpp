@@ -20,7 +20,6 @@ namespace {
 constexpr float kCreaseReach = 1;   ///< a point this far has a quarter of the weight
 constexpr float kFarthest = 0.35F;  ///< from the vertex to the line
 constexpr float kAlike = 0.9F;      ///< cosine above which two planes are one
-constexpr float kOpposite = -0.9F;  ///< and below which they are the two sides of a thin part
 constexpr float kTight = 0.03F;  ///< largest distance of the points from their planes, root mean square ...
 constexpr float kNoiseShare = 1.2F;   ///< ... besides this share of the variance of the noise
 constexpr float kNoisiest = 0.15F;    ///< with more noise nothing moves: planes follow it off the points
@@ -101,7 +100,7 @@ private:
         for (std::size_t i = 1; i < sides_.size(); ++i)
             for (std::size_t j = 0; j < i; ++j) {
                 const float cosine = sides_[i].normal.dot(sides_[j].normal);
-                if (cosine > kAlike || cosine < kOpposite) continue;
+                if (cosine > kAlike) continue;
                 const float difference = sides_[i].area * sides_[j].area * (1 - cosine) * (1 - cosine);
                 if (difference <= best) continue;
                 best = difference;

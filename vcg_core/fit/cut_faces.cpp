@@ -19,6 +19,14 @@ constexpr std::size_t kMostTogether = 12;
 /// One face in so many may go in all.
 constexpr int kKeptPerGone = 10;
 
+/// What is removed to be rid of a self-crossing. What is first here is tried first, and again after every
+/// removal.
+enum class Removal {
+    boundary_faces,  ///< faces along the boundary that leave loops, genus and components as they are
+    folds,           ///< vertices in a fold, by half-edge collapses, which keep the topology, too
+    any_faces,       ///< also across strands of surface, whose ends then are apart, or leaving holes
+};
+
 /// By their sorted corners.
 using Faces = std::set<Triangle>;
 
@@ -156,8 +164,7 @@ int collapse_shortest(Network& network, const Triangle& first, const Triangle& s
 
 /// \return the number of faces removed with the one given by its sorted corners
 int remove_face(Network& network, const Triangle& face, Removal kind) {
-    const bool inside = corners_on_boundary(network, face) == 0;
-    if (inside && kind != Removal::inner_faces) return 0;
+    if (kind == Removal::boundary_faces && corners_on_boundary(network, face) == 0) return 0;
     const Faces gone = with_lesser_fans(network, face);
     if (gone.empty() || (kind == Removal::boundary_faces && !keeps_topology(network, gone))) return 0;
     std::vector<Triangle> oriented;
@@ -191,13 +198,12 @@ int remove_once(Network& network, const std::vector<SelfCrossing>& crossings, Re
 
 }  // namespace
 
-int remove_cut_faces(Network& network, Removal most, std::vector<SelfCrossing>& crossings, ThreadTeam& team) {
-    constexpr std::array<Removal, 4> kInOrder{Removal::boundary_faces, Removal::folds, Removal::strands,
-                                              Removal::inner_faces};
+int remove_cut_faces(Network& network, std::vector<SelfCrossing>& crossings, ThreadTeam& team) {
+    constexpr std::array<Removal, 3> kInOrder{Removal::boundary_faces, Removal::folds, Removal::any_faces};
     const int most_faces = network.face_count() / kKeptPerGone;
     Surface surface(network);
     int removed = 0;
-    for (std::size_t level = 0; level < kInOrder.size() && kInOrder[level] <= most && !crossings.empty();) {
+    for (std::size_t level = 0; level < kInOrder.size() && !crossings.empty();) {
         const int now = remove_once(network, crossings, kInOrder[level], most_faces - removed);
         removed += now;
         level = now > 0 ? 0 : level + 1;

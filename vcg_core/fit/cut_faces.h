@@ -12,25 +12,16 @@
 
 namespace neuralmesh {
 
-/// What may be removed to be rid of a self-crossing; each includes those before it.
-enum class Removal {
-    boundary_faces,  ///< faces along the boundary that leave loops, genus and components as they are
-    folds,           ///< vertices in a fold, by half-edge collapses, which keep the topology, too
-    strands,         ///< faces across a strand of surface, whose ends then are apart
-    inner_faces,     ///< which leaves holes
-};
-
 /// Where the boundary of one sheet meets the inside of another, as a chair meets the floor, signals of the
 /// other sheet draw the boundary through it. Removes faces that cut others until none do, or none can be
 /// removed. Of two that cut each other the one goes that has more corners on the boundary, or else the longer
 /// edges. Faces that would be left in a lesser fan at a vertex go with it. In a fold the shortest edge is
-/// collapsed. What is first in the list above is tried first, and again after every removal. At most a tenth
+/// collapsed. Faces whose removal keeps the topology go first, then folds, then others. At most a tenth
 /// of the faces go: a surface that needs more is tangled beyond repair. Vertices without faces go, too.
 ///
-/// \param most what may be removed
 /// \param[in,out] crossings the self-crossings of the network, sorted
 /// \return the number of faces removed. The result does not depend on the number of threads.
 /// Cost: that of update_self_crossings() per pass; every pass but the last of each kind removes faces.
-int remove_cut_faces(Network& network, Removal most, std::vector<SelfCrossing>& crossings, ThreadTeam& team);
+int remove_cut_faces(Network& network, std::vector<SelfCrossing>& crossings, ThreadTeam& team);
 
 }  // namespace neuralmesh

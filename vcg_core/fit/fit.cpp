@@ -12,7 +12,6 @@
 #include "vcg_core/base/random.h"
 #include "vcg_core/fit/fitter.h"
 #include "vcg_core/fit/refine.h"
-#include "vcg_core/fit/sources.h"
 
 namespace neuralmesh {
 
@@ -33,40 +32,23 @@ constexpr double kCrumpling = 3;
 /// The first round with a redistribution, and the number of rounds at the end without one.
 constexpr int kFirstRedistribution = 1;
 constexpr int kQuietRounds = 3;
-/// The first round after which vertices move to creases: before, they are too far from the points. Without
-/// such moves, straight creases are twice as far from the mesh with 5,000 vertices.
-constexpr int kFirstCreases = 1;
-/// The fit ends when two rounds lower the error by less than this share, but not in the first ones. The
-/// second of each pair is for fits after a reduction by volume, where rounds gain little: models with 1,000
-/// and 2,000 vertices have the same error with them, in .92 to .96 of the time.
-constexpr double kLeastProgress = 0.001, kLeastAfterVolume = 0.005;
-constexpr int kFirstRounds = 5, kFirstAfterVolume = 4;
+/// The fit ends when two rounds lower the error by less than this share, but not in the first ones.
+constexpr double kLeastProgress = 0.005;
+constexpr int kFirstRounds = 4;
 
 /// Rounds after the insertion of vertices that the points do not carry: by then the mesh is near the points.
 constexpr int kRefinedRounds = 4;
 
-/// With precise points (Fitter::has_precise_points()), and up to so many vertices, there are ten rounds at
-/// least, and from the fifth on the points hold the surface. By then it is near them, and solutions that let
-/// it slide may take it away again: block, clean, 5,000 vertices, by up to 20 % of the error in a round.
+/// With precise points (Fitter::has_precise_points()) the points hold the surface from the fifth round on. By
+/// then it is near them, and solutions that let it slide may take it away again: block, clean, 5,000
+/// vertices, by up to 20 % of the error in a round.
 /// Open surfaces are left free, because their boundary has to slide to where the points end. So are sheets
 /// that are closed around both sides, where each point would hold the layer that it is nearer to by chance.
-constexpr int kRoundsWithHold = 10;
-constexpr int kMostVerticesToHold = 10000;
 constexpr int kFirstHold = 4;
 constexpr float kHold = 0.3F;
 
 /// 20 rounds for small meshes, where a round is cheap and every vertex counts.
 int automatic_rounds(int vertices) { return std::min(20, std::max(8, 40000 / std::max(vertices, 1))); }
-
-/// For every inserted vertex the vertex of \p before at whose place it lies, found from the vertex beside
-/// which it was inserted. So a counter stays where it was learned.
-void find_sources(const Network& before, const Network& after, PerVertex<VertexId>& sources) {
-    for (VertexId v = 0; v < after.slot_count(); ++v) {
-        if (!after.alive(v)) sources[v] = -1;
-        if (after.alive(v) && sources[v] != v)
-            sources[v] = nearest_by_steps(before, sources[v], after.position(v));
-    }
-}
 
 /// The rounds of a fit and the best mesh so far.
 class FitRounds {
@@ -97,8 +79,7 @@ public:
         const double error = fitter_.error_at(at_start_, fitted);
         const double edge = static_cast<double>(mean_edge_length(fitted));
         const double variance = static_cast<double>(fitter_.noise_variance());
-        const double optimism =
-            variance * (learned_share + kCrumpling * variance / (edge * edge)) + fitter_.rounding_variance();
+        const double optimism = variance * (learned_share + kCrumpling * variance / (edge * edge));
         report_.improved =
             error * error < report_.rms_unfitted * report_.rms_unfitted + optimism || skips("held_out");
         if (report_.improved) report_.rms_fitted = error;
@@ -117,10 +98,8 @@ private:
         Surface surface(network_);
         PointsByFace points = fitter_.locate_points(surface);
         // Sheets that are closed around both sides are not redistributed.
-        holds_ = options_.redistribute && !surface.has_boundary() &&
-                 network_.vertex_count() <= kMostVerticesToHold && fitter_.has_precise_points(surface) &&
+        holds_ = options_.redistribute && !surface.has_boundary() && fitter_.has_precise_points(surface) &&
                  !skips("hold");
-        if (holds_ && options_.rounds == 0) rounds_ = std::max(rounds_, kRoundsWithHold);
         fitter_.set_directions(surface);
         at_start_ = fitter_.held_out();
         report_.rms_unfitted = report_.rms_fitted = fitter_.held_out_error(surface);
@@ -129,15 +108,9 @@ private:
 
     bool next_round(int round) {
         Surface surface(network_);
-        PointsByFace points = fitter_.assign_faces(surface);
-        if (fitter_.mend_boundary(surface, points) > 0) {
-            surface = Surface(network_);
-            points = fitter_.assign_faces(surface);
-        }
+        PointsByFace points = fitter_.mended(surface);
         if (options_.redistribute && round >= kFirstRedistribution && round + kQuietRounds < rounds_) {
-            const int moved = fitter_.redistribute_vertices(surface, points);
-            report_.moved_vertices += moved;
-            if (moved > 0) {
+            if (fitter_.redistribute_vertices(surface, points)) {
                 surface = Surface(network_);
                 points = fitter_.assign_faces(surface);
             }
@@ -152,18 +125,14 @@ private:
         if (round == 0 || error < best_error_) {
             best_ = network_;
             best_error_ = error;
-            report_.sources = fitter_.sources();
             report_.rounds = round + 1;
         }
-        const bool by_volume = fitter_.reduced_by_volume();
-        const int first_rounds = by_volume ? kFirstAfterVolume : kFirstRounds;
-        const double least_progress = by_volume ? kLeastAfterVolume : kLeastProgress;
-        if (round >= first_rounds && error > (1 - least_progress) * error_before_last_) return true;
+        if (round >= kFirstRounds && error > (1 - kLeastProgress) * error_before_last_) return true;
         error_before_last_ = last_error_;
         last_error_ = error;
         if (options_.flip_edges && round + 1 < rounds_) {
-            if (round >= kFirstCreases) fitter_.move_to_creases(surface, points);
-            report_.flips += fitter_.flip_edges(surface, points);
+            fitter_.move_to_creases(surface, points);
+            fitter_.flip_edges(surface, points);
         }
         return false;
     }
@@ -172,7 +141,7 @@ private:
     Fitter& fitter_;
     const FitOptions& options_;
     FitReport& report_;
-    int rounds_;
+    const int rounds_;
     bool holds_ = false;  ///< in later rounds the points hold the surface
     HeldOut at_start_;  ///< with the directions of the mesh before the rounds
     Network best_;
@@ -189,14 +158,6 @@ PointChoice points_for(int vertices, const TargetSpace& target, const FitOptions
     return choose_points(target, wanted, random);
 }
 
-/// What is known of the points before the fit.
-void tell_of_points(Fitter& fitter, const FitOptions& options) {
-    if (options.noise != nullptr) fitter.know_noise(*options.noise);
-    if (options.expect_strays) fitter.expect_strays();
-    if (!options.expect_layers) fitter.exclude_layers();
-    if (options.fitted_before) fitter.expect_fitted();
-}
-
 double learned_share_of(const Network& network, const TargetSpace& target) {
     if (target.has_faces()) return 0;
     return kLearnedShare * network.vertex_count() / static_cast<double>(target.positions().size());
@@ -205,19 +166,16 @@ double learned_share_of(const Network& network, const TargetSpace& target) {
 /// Inserts vertices and bends the finer mesh through the points. The points do not tell where the vertices
 /// should be, so none is redistributed.
 void refine_and_fit(Network& network, const TargetSpace& target, const FitOptions& options, ThreadTeam& team,
-                    std::uint64_t seed, Progress& progress, FitReport& report) {
+                    std::uint64_t seed, Progress& progress) {
     const double learned_share = learned_share_of(network, target);
     PartOf inserting(progress, 0, 0.1);
-    const int inserted = refine(network, options.refine_to, NewVertices::curved, report.sources, inserting);
-    report.inserted += inserted;
+    const int inserted = refine(network, options.refine_to, NewVertices::curved, inserting);
     PointChoice points = points_for(network.vertex_count(), target, options, seed);
     if (inserted == 0 || points.fitted.points.size() < kMinPoints) return;
-    Fitter fitter(network, std::move(points), team);
-    tell_of_points(fitter, options);
+    Fitter fitter(network, std::move(points), options, team);
     PartOf untangling(progress, 0.1, 0.2);
     PartOf fitting(progress, 0.2, 1);
     if (!fitter.untangle_surface(untangling)) return;
-    report.sources = chained(report.sources, chained(fitter.origins(), own_sources(network)));
     const Network before = network;
     FitOptions of_refined = options;
     of_refined.rounds = kRefinedRounds;
@@ -233,36 +191,23 @@ void refine_and_fit(Network& network, const TargetSpace& target, const FitOption
 FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitOptions& options,
                          ThreadTeam& team, std::uint64_t seed, Progress& progress) {
     FitReport report;
-    report.sources = own_sources(network);
     const bool reduces = options.reduce_to > 0 && options.reduce_to < network.vertex_count();
     const int vertices = reduces ? options.reduce_to : network.vertex_count();
     PointChoice points = points_for(vertices, target, options, seed);
     if (points.fitted.points.size() < kMinPoints || network.face_count() == 0) return report;
     const double learned_share = learned_share_of(network, target);
-    Fitter fitter(network, std::move(points), team);
-    tell_of_points(fitter, options);
+    Fitter fitter(network, std::move(points), options, team);
     // By time: the reduction takes about as long as the rounds.
     PartOf untangling(progress, 0, 0.1);
     PartOf reducing(progress, 0.1, 0.5);
     PartOf fitting(progress, reduces ? 0.5 : 0.1, 1);
     if (!fitter.untangle_surface(untangling)) return report;
-    const bool reduced = !reduces || fitter.reduce_to(vertices, options, reducing);
-    const PerVertex<VertexId> origins = chained(fitter.origins(), own_sources(network));
-    report.sources = origins;
-    if (!reduced) return report;
-    for (VertexId v : network.vertices()) report.inserted += origins[v] != v ? 1 : 0;
+    if (reduces && !fitter.reduce_to(vertices, reducing)) return report;
     const Network before = network;
     FitRounds rounds(network, fitter, options, report);
     rounds.run(fitting);
     rounds.judge(learned_share, team);
-    if (report.improved) {
-        network = std::move(rounds.best());
-        find_sources(before, network, report.sources);
-        report.sources = chained(origins, std::move(report.sources));
-    } else {
-        network = before;
-        report.sources = origins;
-    }
+    network = report.improved ? std::move(rounds.best()) : before;
     return report;
 }
 
@@ -275,7 +220,7 @@ FitReport fit_to_points(Network& network, const TargetSpace& target, const FitOp
     PartOf refining(progress, 0.6, 1);
     FitReport report = reduce_and_fit(network, target, options, team, seed, fitting);
     if (options.refine_to > network.vertex_count() && refining(0, "Fitting to the points: more vertices"))
-        refine_and_fit(network, target, options, team, seed, refining, report);
+        refine_and_fit(network, target, options, team, seed, refining);
     return report;
 }
 

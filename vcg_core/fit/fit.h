@@ -16,7 +16,7 @@ namespace neuralmesh {
 /// What the fit may change. The defaults were chosen by tests/experiments/accuracy.
 struct FitOptions {
     /// Most rounds of least squares, each with new nearest faces. 0: 20 up to 2,000 vertices, falling to 8
-    /// from 5,000 on; with precise points at least 10 up to 10,000.
+    /// from 5,000 on.
     int rounds = 0;
     bool flip_edges = true;
     /// Move vertices from where they matter little to where the error is large (Hoppe et al. 1993). Turn it
@@ -27,8 +27,7 @@ struct FitOptions {
     int reduce_to = 0;
     /// The network is the result of another fit.
     bool fitted_before = false;
-    /// Reduce by the shape of the fitted mesh (volume_collapse.h), if a third of the vertices or more are to
-    /// go, and end the fit with rounds that gain little.
+    /// Reduce by the shape of the fitted mesh (volume_collapse.h).
     bool by_volume = false;
     /// Leave out stray points (stray_points.h). For clouds that had outliers: those close to the surface are
     /// still there.
@@ -54,16 +53,9 @@ struct FitReport {
     double rms_unfitted = 0;
     double rms_fitted = 0;  ///< of the mesh that was kept
     int rounds = 0;
-    int flips = 0;
-    int moved_vertices = 0;  ///< removed in one place and inserted in another
-    /// Vertices added because of options.refine_to, or for those removed with faces that cut others.
-    int inserted = 0;
     /// False: the result of the rounds was discarded. What comes before them stays: the smoothing of a mesh
     /// that cuts itself, and the reduction.
     bool improved = false;
-    /// For every slot the vertex, by its id before the fit, whose counters belong to it: itself, or for an
-    /// inserted vertex the one at whose place it lies. -1 for free slots.
-    PerVertex<VertexId> sources;
 };
 
 /// Moves the vertices of \p network to lower the sum of squared distances of the points of \p target. Some

@@ -12,15 +12,13 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
+#include "vcg_core/fit/boundary_mending.h"
 #include "vcg_core/fit/edge_flips.h"
 #include "vcg_core/fit/layers.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/noise.h"
-#include "vcg_core/fit/notches.h"
 #include "vcg_core/fit/sound_start.h"
-#include "vcg_core/fit/sources.h"
 #include "vcg_core/fit/stray_points.h"
-#include "vcg_core/fit/webs.h"
 
 namespace neuralmesh {
 
@@ -33,7 +31,6 @@ constexpr float kOutlierEdges = 0.5F;
 /// Points are astray from this many times the spread around them; see StrayPoints. Chosen by
 /// tests/experiments/accuracy/scan_table.py --groups outliers.
 constexpr float kStrayDeviations = 4;
-constexpr float kFirstStrayDeviations = 2.5F;
 constexpr int kFitChunk = 128;
 /// Bending weights of the first round, and factors from the last choice to those on either side of it.
 constexpr float kFirstWeights[] = {0.01F, 0.1F, 1.0F, 8.0F, 50.0F};
@@ -43,14 +40,18 @@ constexpr float kWeightUp = 2.5F;
 /// them apart. Points vary about a mesh that follows them less than they do about the surface, but not by so
 /// much.
 constexpr float kMostOfLocal = 2;
-/// The least bending weight falls by this factor from round to round.
+/// The least bending weight falls by this factor from round to round. Without that few points have 1.04
+/// to 1.08 times the error.
 constexpr float kFirstLeastWeight = 0.3F;
 constexpr float kLeastWeightDecay = 0.1F;
 constexpr float kLastLeastWeight = 1e-3F;
+/// That with which a network begins that another fit has brought to the points.
+constexpr float kFittedWeight = 0.01F;
 /// Likely gap of an edge (see PointToPlaneSystem) on a surface without noise, in edge lengths. By Bayes' rule
 /// it determines the least bending weight under noise.
 constexpr float kLikelyGap = 0.05F;
-/// The same with fewer points per vertex than kFewPerVertex, where it rarely takes a bend for noise.
+/// The same with fewer points per vertex than kFewPerVertex, where it rarely takes a bend for noise. Without
+/// it, clouds of few points have 1.29 times the error.
 constexpr float kLikelyGapOfFew = 0.1F;
 constexpr float kFewPerVertex = 5;
 /// The same where the noise of each place is known. A frame of a depth camera in a room has normals that are
@@ -69,32 +70,14 @@ constexpr float kLayeredShare = 0.01F;
 /// homer have up to .022, views that overlap on a tenth of the surface .09 and more. Taken for layers, folds
 /// give armadillo 1.4 times the error with 500 vertices.
 constexpr float kLayeredShareOfLagging = 0.03F;
-/// Noise variances that an edge split has to gain. kMinSplitVariances holds where the noise is well below
-/// kSmallNoise of the edge: there the surface crumples little, and right splits win more than wrong ones
-/// lose. kMaxSplitVariances holds for noisier edges: the best of ten thousand splits that follow only noise
-/// seem to gain about this much. Edges longer than the mean one count as of mean length.
-constexpr float kMinSplitVariances = 4;
-constexpr float kMaxSplitVariances = 16;
-constexpr float kSmallNoise = 0.06F;
-/// Noise variances that an edge flip has to gain.
-constexpr float kFlipVariances = 6;
+/// Noise variances that an edge split or flip has to gain.
+constexpr float kGainVariances = 6;
 /// Share of the vertices that one redistribution may move.
 constexpr double kMovedShare = 0.05;
-/// Noise in edges below which points are calm. Clean clouds come to .005 to .02 (curved faces spread their
-/// points, too), clouds with noise of .3 % of the diagonal to .12 to .17 with 2,000 vertices.
-constexpr float kCalmNoise = 0.05F;
-/// The same for precise points, and how many there are of them for each vertex. Holding the surface at noise
-/// of .04, or at two points per vertex, raises the error by 1 to 6 %.
+/// Noise of precise points, in edges, and how many there are of them for each vertex. Holding the surface at
+/// noise of .04, or at two points per vertex, raises the error by 1 to 6 %.
 constexpr float kPreciseNoise = 0.035F;
 constexpr float kPrecisePoints = 8;
-/// Where the points are calm and the surface is closed, this many of those held out judge as well as all:
-/// clean, bunny, koala, fandisk and rocker-arm have .99 to 1.00 of the error with 10,000. Under noise they do
-/// not: fandisk with noise of 0.3 % and 2,000 vertices has 1.18 of the error.
-constexpr std::size_t kCalmHeldOut = 3000;
-/// Surfaces with boundary need more: so many for each vertex that stays. With 3,000 points for 2,000
-/// vertices, fandisk, block and genus3 have 1.03 (cut by a sphere) and 1.1 (three planes) of the error.
-constexpr std::size_t kCalmHeldOutPerVertex = 6;
-
 float outlier_distance(const Surface& surface, const std::vector<Hit>& hits) {
     std::vector<float> distances(hits.size());
     for (std::size_t i = 0; i < hits.size(); ++i) distances[i] = std::sqrt(hits[i].foot.squared_distance);
@@ -105,38 +88,19 @@ float outlier_distance(const Surface& surface, const std::vector<Hit>& hits) {
 
 }  // namespace
 
-std::vector<float> BendingSearch::next_weights(float least) {
-    std::vector<float> weights{chosen_, chosen_ / kWeightDown, chosen_ * kWeightUp};
-    if (rounds_ == 0) weights.assign(std::begin(kFirstWeights), std::end(kFirstWeights));
-    float least_of_round = kFirstLeastWeight;
-    for (int i = 0; i < rounds_; ++i) least_of_round *= kLeastWeightDecay;
-    ++rounds_;
-    least = std::max({least, least_of_round, kLastLeastWeight});
-    for (float& weight : weights) weight = std::max(weight, least);
-    weights.erase(std::unique(weights.begin(), weights.end()), weights.end());
-    return weights;
-}
-
-void BendingSearch::begin_late() {
-    constexpr int kRounds = 3;
-    constexpr float kChosen = 0.01F;
-    rounds_ = kRounds;
-    chosen_ = kChosen;
-}
-
-Fitter::Fitter(Network& network, PointChoice points, ThreadTeam& team)
+Fitter::Fitter(Network& network, PointChoice points, const FitOptions& options, ThreadTeam& team)
     : network_(network),
+      options_(options),
       team_(team),
-      final_vertices_(network.vertex_count()),
       fitted_(std::move(points.fitted)),
       held_out_(std::move(points.held_out)),
-      origins_(own_sources(network)),
-      sources_(origins_) {}
+      excludes_layers_(!options.expect_layers),
+      least_weight_(options.fitted_before ? kLastLeastWeight : kFirstLeastWeight),
+      bending_weight_(options.fitted_before ? kFittedWeight : 0) {}
 
 bool Fitter::untangle_surface(Progress& progress) {
-    std::optional<std::vector<SelfCrossing>> left = make_sound(network_, origins_, team_, progress);
+    std::optional<std::vector<SelfCrossing>> left = make_sound(network_, team_, progress);
     if (left) guard_ = CrossingGuard(std::move(*left));
-    sources_ = own_sources(network_);
     return left.has_value();
 }
 
@@ -144,10 +108,6 @@ PointsByFace Fitter::locate_points(const Surface& surface, bool lags) {
     const std::vector<Hit> hits = nearest_by_tree(surface, fitted_, team_);
     if (!(outlier_distance_ > 0)) outlier_distance_ = outlier_distance(surface, hits);
     PointsByFace points = assign(surface, hits);
-    if (noise_in_edges(surface) < kCalmNoise)
-        held_out_.keep_at_most(surface.has_boundary()
-                                   ? kCalmHeldOutPerVertex * static_cast<std::size_t>(final_vertices_)
-                                   : kCalmHeldOut);
     held_out_.locate(surface, team_);
     examine_layers(surface, points, lags);
     return points;
@@ -239,19 +199,19 @@ PointsByFace Fitter::assign(const Surface& surface, const std::vector<Hit>& hits
     PointsByFace points = group_by_face(surface, fitted_, hits, team_);
     measure_noise(surface, points);
     weaken_outliers(surface, points);
-    if (expects_strays_ && !skips("strays")) silence_strays(surface, points);
+    if (options_.expect_strays && !skips("strays")) silence_strays(surface, points);
     return points;
 }
 
 void Fitter::measure_noise(const Surface& surface, const PointsByFace& points) {
     noise_variance_ = neuralmesh::noise_variance(surface, points, team_);
     variances_.assign(network_.slot_count(), noise_variance_);
-    if (noise_ == nullptr) return;
+    if (options_.noise == nullptr) return;
     rounding_variances_.assign(network_.slot_count(), 0);
     const PerVertex<float> about_faces = local_variances(network_, surface, points);
     parallel_for(network_.slot_count(), kFitChunk, team_, [&](VertexId v) {
         if (!network_.alive(v)) return;
-        const NoiseByPlace::Noise& surveyed = noise_->at(network_.position(v));
+        const NoiseByPlace::Noise& surveyed = options_.noise->at(network_.position(v));
         variances_[v] = surveyed.variance;
         rounding_variances_[v] = surveyed.rounding_variance;
         if (about_faces[v] > 0) variances_[v] = std::min(variances_[v], kMostOfLocal * about_faces[v]);
@@ -259,18 +219,10 @@ void Fitter::measure_noise(const Surface& surface, const PointsByFace& points) {
     });
 }
 
-double Fitter::rounding_variance() const {
-    if (noise_ == nullptr) return 0;
-    double sum = 0;
-    for (const Vector3& p : held_out_.points())
-        sum += static_cast<double>(noise_->at(to_vcg(p)).rounding_variance);
-    return sum / static_cast<double>(held_out_.points().size());
-}
-
 /// By Bayes' rule: what gaps of likely length weigh, in points per vertex. At places with layers more.
 VertexNoise Fitter::noise_around(const Surface& surface, const PointsByFace& points) {
     VertexNoise noise;
-    if (noise_ != nullptr) {
+    if (options_.noise != nullptr) {
         const float gap = kLikelyGapByPlace * mean_edge_length(surface);
         const float points_per_vertex = points.per_vertex(network_.vertex_count());
         noise = {variances_, variances_};
@@ -286,24 +238,27 @@ VertexNoise Fitter::noise_around(const Surface& surface, const PointsByFace& poi
     return noise;
 }
 
-/// A vertex that a stray point has drawn to itself would find it close by. So before vertices move for the
-/// first time points are left out sooner; those that turn out to be near the surface come back.
 void Fitter::silence_strays(const Surface& surface, PointsByFace& points) {
-    const StrayPoints strays(network_, surface, points, solved_ ? kStrayDeviations : kFirstStrayDeviations,
-                             team_);
+    const StrayPoints strays(network_, surface, points, kStrayDeviations, team_);
     parallel_for(surface.face_count(), kFitChunk, team_, [&](int face) {
         for (PointsByFace::Assignment& a : points.of(face))
             if (strays.contain(a, face)) a.influence = 0;
     });
 }
 
+/// A wide range in the first round, later the last choice and one weight on either side.
 std::vector<float> Fitter::choose_weights(const Surface& surface, const PointsByFace& points) {
     const float points_per_vertex = points.per_vertex(network_.vertex_count());
     const float gap =
         (points_per_vertex < kFewPerVertex ? kLikelyGapOfFew : kLikelyGap) * mean_edge_length(surface);
-    const float least = noise_ != nullptr ? 0 : noise_variance_ / (gap * gap * points_per_vertex);
-    std::vector<float> weights = bending_.next_weights(least);
-    if (stiff_rounds_ > 0 && layering_ > 0) weights = {kStiffWeight};
+    const float by_noise = options_.noise != nullptr ? 0 : noise_variance_ / (gap * gap * points_per_vertex);
+    const float least = std::max(by_noise, least_weight_);
+    least_weight_ = std::max(kLeastWeightDecay * least_weight_, kLastLeastWeight);
+    if (stiff_rounds_ > 0 && layering_ > 0) return {kStiffWeight};
+    std::vector<float> weights{bending_weight_, bending_weight_ / kWeightDown, bending_weight_ * kWeightUp};
+    if (!(bending_weight_ > 0)) weights.assign(std::begin(kFirstWeights), std::end(kFirstWeights));
+    for (float& weight : weights) weight = std::max(weight, least);
+    weights.erase(std::unique(weights.begin(), weights.end()), weights.end());
     return weights;
 }
 
@@ -324,8 +279,7 @@ double Fitter::solve(const PointsByFace& points, Surface& surface, float hold) {
         best = i;
         best_error = error;
     }
-    solved_ = true;
-    bending_.choose(stiff_rounds_ > 0 ? kWeightAfterStiff : weights[best]);
+    bending_weight_ = stiff_rounds_ > 0 ? kWeightAfterStiff : weights[best];
     surface.positions = solutions[best];
     std::vector<SelfCrossing> crossings = self_crossings(surface, team_);
     if (!guard_.objections(crossings).empty()) {
@@ -358,13 +312,6 @@ void Fitter::move_to_creases(Surface& surface, const PointsByFace& points) {
     place_vertices(surface);
 }
 
-LeastSplitGain Fitter::least_split_gain(const Surface& surface) const {
-    if (noise_ != nullptr)
-        return {kMinSplitVariances, kMaxSplitVariances, 1 / kSmallNoise, mean_edge_length(surface)};
-    return {kMinSplitVariances * noise_variance_, kMaxSplitVariances * noise_variance_,
-            std::sqrt(noise_variance_) / kSmallNoise, mean_edge_length(surface)};
-}
-
 /// Moves the starts of walks from removed vertices to the vertices they were collapsed into.
 void Fitter::redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses) {
     PerVertex<VertexId> survivor(network_.slot_count());
@@ -375,42 +322,42 @@ void Fitter::redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>&
         for (WalkStart& start : tracked->last_hit) start.vertex = survivor[start.vertex];
 }
 
-int Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& points) {
+bool Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& points) {
     const int max_pairs =
         std::max(1, static_cast<int>(kMovedShare * static_cast<double>(network_.vertex_count())));
     const std::vector<Collapse> collapses = find_collapses(network_, surface, points, team_);
     const std::vector<EdgeSplit> splits =
-        find_splits(network_, surface, points, least_split_gain(surface), team_, by_place());
+        find_splits(network_, surface, points, kGainVariances, team_, variances_);
     const VertexMoves done = guarded(surface, [&](const PerVertex<char>& barred) {
         return redistribute(network_, collapses, splits, max_pairs, barred);
     });
-    if (done.collapses.empty()) return 0;
+    if (done.collapses.empty()) return false;
     redirect_to_survivors(done.collapses);
     widest_variances_.resize(network_.slot_count(), 0);
-    for (const VertexMoves::Insertion& insertion : done.insertions) {
-        sources_[insertion.added] = sources_[insertion.beside];
+    for (const VertexMoves::Insertion& insertion : done.insertions)
         widest_variances_[insertion.added] = widest_variances_[insertion.beside];
-    }
-    return static_cast<int>(done.collapses.size());
+    return true;
 }
 
-int Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
+void Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
     points.update_feet(surface, team_);
     const std::vector<EdgeFlip> found =
-        find_flips(network_, surface, points,
-                   noise_ != nullptr ? kFlipVariances : kFlipVariances * noise_variance_, team_, by_place());
-    return guarded(surface, [&](const PerVertex<char>& barred) {
-        return neuralmesh::flip_edges(network_, found, barred);
-    });
+        find_flips(network_, surface, points, kGainVariances, team_, variances_);
+    guarded(surface,
+            [&](const PerVertex<char>& barred) { return neuralmesh::flip_edges(network_, found, barred); });
 }
 
-int Fitter::mend_boundary(const Surface& surface, const PointsByFace& points) {
-    if (!surface.has_boundary()) return 0;
+PointsByFace Fitter::mended(Surface& surface) {
+    PointsByFace points = assign_faces(surface);
+    if (!surface.has_boundary()) return points;
     const std::vector<VertexId> notches = find_notches(network_, surface, points);
-    return guarded(surface, [&](const PerVertex<char>& barred) {
+    const int changes = guarded(surface, [&](const PerVertex<char>& barred) {
         const int opened = open_webs(network_, surface, points, barred);
-        return opened + neuralmesh::fill_notches(network_, notches, barred);
+        return opened + fill_notches(network_, notches, barred);
     });
+    if (changes == 0) return points;
+    surface = Surface(network_);
+    return assign_faces(surface);
 }
 
 }  // namespace neuralmesh

@@ -21,37 +21,11 @@
 
 namespace neuralmesh {
 
-/// Chooses the bending weights that a round tries: a wide range in the first round, later the last choice and
-/// one weight on either side. The least weight falls from round to round: in the first rounds points may
-/// still be assigned to wrong faces.
-class BendingSearch {
-public:
-    /// The weights to try, none below \p least, which the noise demands. Starts a round.
-    std::vector<float> next_weights(float least);
-    /// \p weight was the best of them.
-    void choose(float weight) { chosen_ = weight; }
-    /// The points are assigned to the right faces already.
-    void begin_late();
-
-private:
-    int rounds_ = 0;
-    float chosen_ = 0;
-};
-
 /// A network and its state during the fit. fit_to_points() has the order of the steps.
 class Fitter {
 public:
     /// Keeps references to \p network and \p team. \pre neither part of \p points is empty
-    Fitter(Network& network, PointChoice points, ThreadTeam& team);
-
-    /// From now on takes the noise of the points, place by place, from \p noise, which must outlive this.
-    void know_noise(const NoiseByPlace& noise) { noise_ = &noise; }
-    /// From now on leaves out points that StrayPoints tells, anew with each assignment.
-    void expect_strays() { expects_strays_ = true; }
-    /// From now on does not look for layers of points.
-    void exclude_layers() { excludes_layers_ = true; }
-    /// The network is the result of another fit.
-    void expect_fitted() { bending_.begin_late(); }
+    Fitter(Network& network, PointChoice points, const FitOptions& options, ThreadTeam& team);
 
     /// Removes self-crossings, see make_sound(), and from then on lets no step add any. \return false if
     /// \p progress asks to stop; then the network is unchanged.
@@ -60,9 +34,7 @@ public:
     /// rounds that each end with a least-squares solution; with FitOptions::by_volume they are those of
     /// collapse_by_volume(), after a few such solutions. \return false if \p progress asks to stop or no more
     /// vertices can go \pre the network has more than \p vertices vertices
-    bool reduce_to(int vertices, const FitOptions& options, Progress& progress);
-    /// Whether reduce_to() went by FitOptions::by_volume, for which there must be many more vertices.
-    bool reduced_by_volume() const { return reduced_by_volume_; }
+    bool reduce_to(int vertices, Progress& progress);
 
     /// Assigns the fitted points to their nearest faces and finds the held-out points, all by exact search.
     /// \param lags the surface is behind the points, as learning with few signals leaves it
@@ -87,31 +59,21 @@ public:
     /// part has layers, the last of them competes
     /// \param hold see PointToPlaneSystem
     double solve(const PointsByFace& points, Surface& surface, float hold = PointToPlaneSystem::kSliding);
-    /// Collapses vertices that matter little and inserts as many where the error is large. \return their
-    /// number
-    int redistribute_vertices(const Surface& surface, const PointsByFace& points);
-    /// Computes the feet of \p points again, then flips edges where that brings the points closer. \return
-    /// the number of flips
-    int flip_edges(const Surface& surface, PointsByFace& points);
+    /// Collapses vertices that matter little and inserts as many where the error is large. \return whether
+    /// there were any
+    bool redistribute_vertices(const Surface& surface, const PointsByFace& points);
+    /// Computes the feet of \p points again, then flips edges where that brings the points closer.
+    void flip_edges(const Surface& surface, PointsByFace& points);
     /// Moves the vertices beside creases onto them, so that flip_edges() gives the creases edges. Moves \p
     /// surface, that of the network, with them. \pre \p points were assigned to \p surface before it moved
     /// last
     void move_to_creases(Surface& surface, const PointsByFace& points);
-    /// Fills the notches of the boundary that hold points, and opens the faces there that hold none. \return
-    /// the number of faces filled and opened
-    int mend_boundary(const Surface& surface, const PointsByFace& points);
+    /// assign_faces(), and if \p surface, that of the network, has a boundary, fills its notches that hold
+    /// points and opens the faces there that hold none. \return the points on the surface after that
+    PointsByFace mended(Surface& surface);
 
     const HeldOut& held_out() const { return held_out_; }
-    /// For every slot of the network: itself, or for a vertex inserted since untangle_surface() one that was
-    /// near it.
-    const PerVertex<VertexId>& sources() const { return sources_; }
-    /// For every slot after untangle_surface(): itself, or for a vertex that it inserted one that was near
-    /// it.
-    const PerVertex<VertexId>& origins() const { return origins_; }
     float noise_variance() const { return noise_variance_; }
-    /// The part of the noise that the held-out points share with their neighbours, which are on the same
-    /// steps of the coordinates. O(held-out points x log places).
-    double rounding_variance() const;
 
 private:
     PointsByFace assign(const Surface& surface, const std::vector<Hit>& hits);
@@ -121,17 +83,11 @@ private:
     double with_bending(double error, const Surface& surface) const;
     void examine_layers(const Surface& surface, const PointsByFace& points, bool lags);
     void measure_noise(const Surface& surface, const PointsByFace& points);
-    /// The variances around the vertices where they are known; else none.
-    const PerVertex<float>& by_place() const {
-        static const PerVertex<float> none;
-        return noise_ != nullptr ? variances_ : none;
-    }
     VertexNoise noise_around(const Surface& surface, const PointsByFace& points);
     PerVertex<float> examine_variances(const Surface& surface, const PointsByFace& points);
     PerVertex<float> stiffness_by(const PerVertex<float>& variances, const Surface& surface,
                                   const PointsByFace& points) const;
     std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
-    LeastSplitGain least_split_gain(const Surface& surface) const;
     /// The standard deviation of the noise in mean edge lengths of \p surface.
     float noise_in_edges(const Surface& surface) const;
     /// Carries out \p change(barred) on the network, whose surface is \p surface. If the guard objects to the
@@ -144,34 +100,28 @@ private:
     void set_points_aside(int points_per_vertex);
     bool wants_reduction(int vertices, int at_start, Progress& progress) const;
     bool reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress);
-    bool reduce_by_costs(int vertices, Surface& surface, PointsByFace points, Progress& progress);
-    PointsByFace update_for_removal(Surface& surface, PointsByFace points);
+    bool reduce_by_costs(int vertices, Surface& surface, Progress& progress);
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
 
     Network& network_;
+    const FitOptions options_;
     ThreadTeam& team_;
-    int final_vertices_;  ///< after the reduction
     TrackedPoints fitted_;
     TrackedPoints set_aside_;  ///< fitted points that the reduction does not use
     HeldOut held_out_;
-    float outlier_distance_ = 0;  ///< from the first assignment; fixed, so that errors stay comparable
-    const NoiseByPlace* noise_ = nullptr;
+    float outlier_distance_ = 0;         ///< from the first assignment; fixed, so that errors stay comparable
     float noise_variance_ = 0;           ///< from the last assignment
     PerVertex<float> variances_;         ///< of the noise around each vertex, from the last assignment
     PerVertex<float> rounding_variances_;  ///< the part that the points of one step share
     PerVertex<float> widest_variances_;  ///< of the points across the surface, so far
     bool layered_places_ = true;         ///< until a search shows none
-    bool excludes_layers_ = false;       ///< the points, or a surface of many more vertices, show none
+    bool excludes_layers_;               ///< the points, or a surface of many more vertices, show none
     bool layered_ = false;               ///< somewhere; from the last exact search, as the next
     float layering_ = 0;                 ///< over most of the surface, see layering()
     double bending_error_ = 0;           ///< of layers: weight of the mean squared gap in squared errors
     int stiff_rounds_ = 0;  ///< still to come: their bending weight lets the surface follow no layer
-    bool expects_strays_ = false;
-    bool reduced_by_volume_ = false;
-    bool solved_ = false;  ///< vertices have moved
-    BendingSearch bending_;
-    PerVertex<VertexId> origins_;
-    PerVertex<VertexId> sources_;
+    float least_weight_;    ///< of bending; falls, as in the first rounds points may be with wrong faces
+    float bending_weight_ = 0;  ///< the last choice; 0: none yet
     CrossingGuard guard_;  ///< has accepted the present surface
 };
 

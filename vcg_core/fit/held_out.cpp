@@ -23,39 +23,20 @@ PerVertex<Vector3> smoothed_normals(const Network& network, const Surface& surfa
     return normals;
 }
 
-/// Squared distance from \p p to \p surface along the unit vector \p direction. Alternates between two
-/// projections: of a point of the line onto the surface, and of the result onto the line. This approaches the
-/// point where the line meets the surface. Beyond the boundary, what lacks to meet it counts, too.
+/// Squared distance from \p p to \p surface along the unit vector \p direction: that of the nearest foot.
+/// Beyond the boundary, what lacks to meet it counts, too.
 float squared_distance_along(const Vector3& direction, const Surface& surface, const Vector3& p,
                              WalkStart near) {
-    constexpr int kSteps = 2;
-    float along = 0;
-    for (int step = 0; step < kSteps; ++step) {
-        const Vector3 from = p + along * direction;
-        const Hit hit = walk_to_nearest(surface, from, near);
-        if (is_beyond_boundary(surface, hit)) return along * along + hit.foot.squared_distance;
-        near = walk_start_of(surface, hit);
-        Vector3 foot = Vector3::Zero();
-        for (int k = 0; k < 3; ++k)
-            foot += hit.foot.weights[static_cast<std::size_t>(k)] * surface.corner(hit.face, k);
-        along += (foot - from).dot(direction);
-    }
+    const Hit hit = walk_to_nearest(surface, p, near);
+    if (is_beyond_boundary(surface, hit)) return hit.foot.squared_distance;
+    Vector3 foot = Vector3::Zero();
+    for (int k = 0; k < 3; ++k)
+        foot += hit.foot.weights[static_cast<std::size_t>(k)] * surface.corner(hit.face, k);
+    const float along = (foot - p).dot(direction);
     return along * along;
 }
 
 }  // namespace
-
-void HeldOut::keep_at_most(std::size_t count) {
-    const std::size_t n = tracked_.points.size();
-    if (n <= count) return;
-    TrackedPoints kept;
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t from = i * n / count;
-        kept.points.push_back(tracked_.points[from]);
-        if (!tracked_.weights.empty()) kept.weights.push_back(tracked_.weights[from]);
-    }
-    tracked_ = std::move(kept);
-}
 
 void HeldOut::locate(const Surface& surface, ThreadTeam& team) {
     group_by_face(surface, tracked_, nearest_by_tree(surface, tracked_, team), team);

@@ -18,9 +18,6 @@ class HeldOut {
 public:
     explicit HeldOut(TrackedPoints points) : tracked_(std::move(points)) {}
 
-    /// Keeps \p count of the points, spread over their order, or all if there are no more. locate() must
-    /// follow.
-    void keep_at_most(std::size_t count);
     /// Finds the points on \p surface, exactly, and reorders them; set_directions() must follow.
     /// O(points x log faces).
     void locate(const Surface& surface, ThreadTeam& team);

@@ -11,29 +11,6 @@ namespace neuralmesh {
 
 namespace {
 
-/// Sums over the points of a face: their squared distances from its mean height, and their number less one.
-struct Spread {
-    float squares = 0;
-    float count = 0;
-    Spread& operator+=(const Spread& other) {
-        squares += other.squares;
-        count += other.count;
-        return *this;
-    }
-};
-
-Spread spread_of(const Surface& surface, const PointsByFace& points, int face, const Vector3& normal) {
-    float sum = 0;
-    float squares = 0;
-    for (const PointsByFace::Assignment& a : points.of(face)) {
-        const float height = normal.dot(a.point - surface.corner(face, 0));
-        sum += height;
-        squares += height * height;
-    }
-    const auto n = static_cast<float>(points.of(face).size());
-    return {std::max(0.0F, squares - sum * sum / n), n - 1};
-}
-
 /// Between these spreads layers begin to matter, in mean edges. Below, learning hardly follows them.
 constexpr float kNear = 0.15F, kFar = 0.25F;
 
@@ -84,26 +61,6 @@ float unevenness(const Spreads& spreads, float points_per_vertex) {
 }
 
 }  // namespace
-
-PerVertex<float> local_variances(const Network& network, const Surface& surface, const PointsByFace& points) {
-    constexpr int kMinPoints = 3;
-    constexpr int kRingsOfNormals = 2;
-    constexpr int kSpreads = 1;
-    const PerVertex<Vector3> normals = area_vectors_around(network, surface, kRingsOfNormals);
-    PerVertex<Spread> spreads(surface.positions.size());
-    for (int f = 0; f < surface.face_count(); ++f) {
-        if (points.of(f).size() < kMinPoints) continue;
-        const Triangle& t = surface.faces[f];
-        const Vector3 normal = (normals[t[0]] + normals[t[1]] + normals[t[2]]).normalized();
-        const Spread spread = spread_of(surface, points, f, normal);
-        for (const VertexId v : t) spreads[v] += spread;
-    }
-    spread_over_rings(network, spreads, kSpreads);
-    PerVertex<float> variances(spreads.size(), 0);
-    for (const VertexId v : network.vertices())
-        if (spreads[v].count > 0) variances[v] = spreads[v].squares / spreads[v].count;
-    return variances;
-}
 
 float layering(const Network& network, const Surface& surface, const PerVertex<float>& variances,
                float points_per_vertex) {

@@ -14,10 +14,6 @@
 
 namespace neuralmesh {
 
-/// The variance of the points across the surface around each vertex, about the mean of each face, along
-/// smoothed normals: those of a mesh that follows the layers stand askew. O(points + vertices).
-PerVertex<float> local_variances(const Network& network, const Surface& surface, const PointsByFace& points);
-
 /// How surely the points lie in layers over most of the surface, in [0, 1], by the \p variances of
 /// local_variances(): 0 if they are close to the surface, spread evenly, or fill a space. O(vertices).
 /// \param points_per_vertex the variances of few points differ by chance

@@ -102,17 +102,6 @@ PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& su
     add_bending(surface, noise, team);
     for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) add_target(target);
     add_boundary_bending(surface);
-    find_coupled();
-}
-
-void PointToPlaneSystem::find_coupled() {
-    coupled_.assign(network_.slot_count(), 0);
-    for (VertexId v = 0; v < network_.slot_count(); ++v)
-        coupled_[v] = std::any_of(block_.begin() + static_cast<std::ptrdiff_t>(row_[v]),
-                                  block_.begin() + static_cast<std::ptrdiff_t>(row_[v + 1]),
-                                  [](const Symmetric3& block) { return !block.is_zero(); })
-                          ? 1
-                          : 0;
 }
 
 void PointToPlaneSystem::gather(const ChunksOfSums& sums, const Surface& surface, VertexId v) {

@@ -5,6 +5,8 @@
 // each point keeping its nearest face.
 #pragma once
 
+#include <Eigen/LU>
+
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -12,10 +14,45 @@
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/fit/boundary_targets.h"
 #include "vcg_core/fit/points_by_face.h"
-#include "vcg_core/fit/symmetric3.h"
 #include "vcg_core/mesh/surface.h"
 
 namespace neuralmesh {
+
+/// A symmetric 3x3 matrix: the entries on and above the diagonal, in six floats where Eigen's takes nine.
+struct Symmetric3 {
+    float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+
+    /// n n^T
+    static Symmetric3 outer(const Vector3& n) {
+        return {n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2], n[2] * n[2]};
+    }
+    /// Adds \p s b.
+    void add(const Symmetric3& b, float s) {
+        xx += s * b.xx;
+        xy += s * b.xy;
+        xz += s * b.xz;
+        yy += s * b.yy;
+        yz += s * b.yz;
+        zz += s * b.zz;
+    }
+    /// Adds \p s to the diagonal.
+    void add_identity(float s) {
+        xx += s;
+        yy += s;
+        zz += s;
+    }
+    Vector3 operator*(const Vector3& v) const {
+        return {xx * v[0] + xy * v[1] + xz * v[2], xy * v[0] + yy * v[1] + yz * v[2],
+                xz * v[0] + yz * v[1] + zz * v[2]};
+    }
+    /// \pre regular
+    Symmetric3 inverse() const {
+        Eigen::Matrix3f m;
+        m << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+        m = m.inverse().eval();
+        return {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)};
+    }
+};
 
 /// The noise of the points around each vertex, and how stiff it makes the surface there. Either may be empty:
 /// 0.
@@ -102,7 +139,6 @@ private:
     void add_bending(const Surface& surface, const VertexNoise& noise, ThreadTeam& team);
     void stiffen(BendingTerm& term, float stiffness);
     void add_target(const BoundaryTarget& target);
-    void find_coupled();
     void add_boundary_bending(const Surface& surface);
     void centre_along(const Vector3& direction, const Vector3& away, VertexId v);
     Symmetric3* row(VertexId v) { return block_.data() + row_[v]; }
@@ -113,7 +149,6 @@ private:
     // A by block rows, and f.
     PerVertex<std::size_t> row_;  ///< row(v)[i] is the block of v and its neighbour at ring position i
     std::vector<Symmetric3> block_;
-    PerVertex<char> coupled_;  ///< 0 for rows of zeros: of vertices around which no points are
     PerVertex<Symmetric3> diagonal_;
     PerVertex<Vector3> force_;
     // B by terms, its diagonal, and g.

@@ -87,8 +87,7 @@ void PointToPlaneSystem::Solver::multiply_rows(const Part& part, float lambda, c
         const Ring& ring = system_.network_.ring(v);
         Vector3 sum = system_.diagonal_[v] * u[v];
         const Symmetric3* block = system_.row(v);
-        if (system_.coupled_[v] != 0)
-            for (int i = 0; i < ring.valence; ++i) sum += block[i] * u[ring[i]];
+        for (int i = 0; i < ring.valence; ++i) sum += block[i] * u[ring[i]];
         result[v] = sum;
     }
     for (const int t : part.terms) {

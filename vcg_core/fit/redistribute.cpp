@@ -107,13 +107,11 @@ VertexMoves redistribute(Network& network, const std::vector<Collapse>& collapse
     return result;
 }
 
-std::vector<VertexMoves::Insertion> insert(Network& network, const std::vector<EdgeSplit>& splits,
-                                           int max_count) {
+int insert(Network& network, const std::vector<EdgeSplit>& splits, int max_count) {
     PerVertex<char> touched(network.slot_count(), 0);
-    std::vector<VertexMoves::Insertion> insertions;
-    for (const EdgeSplit& split : choose_splits(network, splits, max_count, touched))
-        insertions.push_back(carry_out(network, split));
-    return insertions;
+    const std::vector<EdgeSplit> chosen = choose_splits(network, splits, max_count, touched);
+    for (const EdgeSplit& split : chosen) carry_out(network, split);
+    return static_cast<int>(chosen.size());
 }
 
 std::vector<VertexMoves::DoneCollapse> reduce(Network& network, const std::vector<Collapse>& collapses,

@@ -32,9 +32,8 @@ VertexMoves redistribute(Network& network, const std::vector<Collapse>& collapse
                          const std::vector<EdgeSplit>& splits, int max_pairs, const PerVertex<char>& barred);
 
 /// Carries out the best \p splits, at most \p max_count. No two have a corner of their faces in common. The
-/// topology stays.
-std::vector<VertexMoves::Insertion> insert(Network& network, const std::vector<EdgeSplit>& splits,
-                                           int max_count);
+/// topology stays. \return their number
+int insert(Network& network, const std::vector<EdgeSplit>& splits, int max_count);
 
 /// Carries out the cheapest \p collapses, at most \p max_count. No two have a vertex in common, and none has
 /// a \p barred one. The topology stays.

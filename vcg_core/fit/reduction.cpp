@@ -10,7 +10,6 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/fitter.h"
-#include "vcg_core/fit/sources.h"
 #include "vcg_core/fit/volume_collapse.h"
 
 namespace neuralmesh {
@@ -28,8 +27,6 @@ constexpr std::size_t kMinReducingVertices = 1000;
 /// instead of 8 %. Clean, bunny, koala, fandisk, block, kitten and feline then have .98, 1.01 and 1.00 of the
 /// error at 500, 1,000 and 2,000 vertices. From twice the vertices on, 10,000 would have 1.01.
 constexpr int kDenseFrom = 2;
-/// From this many times the vertices wanted on, meshes are reduced by volume.
-constexpr double kByVolumeFrom = 1.5;
 /// Solutions before that, with edge flips between them. The learned mesh lags behind the points and has its
 /// vertices beside sharp edges, and the collapses keep what it shows. With three, 500 and 2,000 vertices have
 /// 1.02 and 1.01 times the error; with four, 500 and 1,000 have 1.01.
@@ -37,26 +34,22 @@ constexpr int kSolutionsBefore = 5;
 
 }  // namespace
 
-bool Fitter::reduce_to(int vertices, const FitOptions& options, Progress& progress) {
+bool Fitter::reduce_to(int vertices, Progress& progress) {
     PartOf reducing(progress, 0, 0.9);
     PartOf untangling(progress, 0.9, 1);
     if (!wants_reduction(vertices, network_.vertex_count(), reducing)) return false;
-    final_vertices_ = vertices;
-    reduced_by_volume_ = options.by_volume && network_.vertex_count() >= kByVolumeFrom * vertices;
     set_points_aside(kReducingPointsPerVertex);
     Surface surface(network_);
-    PointsByFace points = locate_points(surface, reduced_by_volume_);
+    PointsByFace points = locate_points(surface, options_.by_volume);
     set_directions(surface);
     solve(points, surface);
-    const bool reduced = reduced_by_volume_ ? reduce_by_volume(vertices, surface, std::move(points), reducing)
-                                            : reduce_by_costs(vertices, surface, std::move(points), reducing);
+    const bool reduced = options_.by_volume ? reduce_by_volume(vertices, surface, std::move(points), reducing)
+                                            : reduce_by_costs(vertices, surface, reducing);
     if (!reduced) return false;
     fitted_.points.insert(fitted_.points.end(), set_aside_.points.begin(), set_aside_.points.end());
     fitted_.weights.insert(fitted_.weights.end(), set_aside_.weights.begin(), set_aside_.weights.end());
     set_aside_ = {};
-    if (!guard_.accepted().empty()) return untangle_surface(untangling);
-    sources_ = own_sources(network_);
-    return true;
+    return guard_.accepted().empty() || untangle_surface(untangling);
 }
 
 bool Fitter::reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress) {
@@ -79,28 +72,22 @@ bool Fitter::reduce_by_volume(int vertices, Surface& surface, PointsByFace point
     flip_edges(surface, points);
     surface = Surface(network_);
     const auto edge = static_cast<double>(mean_edge_length(surface));
-    const Network before = network_;
     redirect_to_survivors(guarded(surface, [&](const PerVertex<char>& barred) {
         return collapse_by_volume(network_, vertices, barred, edge);
     }));
-    // Vertices have moved by up to an edge.
-    PerVertex<VertexId> sources = own_sources(network_);
-    for (const VertexId v : network_.vertices())
-        sources[v] = nearest_by_steps(before, v, network_.position(v));
-    origins_ = chained(origins_, std::move(sources));
     if (network_.vertex_count() == vertices) return true;
     surface = Surface(network_);
-    points = assign_faces(surface);
-    return reduce_by_costs(vertices, surface, std::move(points), rest);
+    return reduce_by_costs(vertices, surface, rest);
 }
 
-bool Fitter::reduce_by_costs(int vertices, Surface& surface, PointsByFace points, Progress& progress) {
+bool Fitter::reduce_by_costs(int vertices, Surface& surface, Progress& progress) {
     const int at_start = network_.vertex_count();
     // Not where each round finds the stray points anew.
-    const bool dense = at_start > kDenseFrom * vertices && !expects_strays_ && !skips("dense_collapses");
+    const bool dense =
+        at_start > kDenseFrom * vertices && !options_.expect_strays && !skips("dense_collapses");
     while (network_.vertex_count() > vertices) {
         if (!wants_reduction(vertices, at_start, progress)) return false;
-        points = update_for_removal(surface, std::move(points));
+        PointsByFace points = mended(surface);
         const int max_count = std::min(network_.vertex_count() - vertices,
                                        1 + static_cast<int>(kRemovedShare * network_.vertex_count()));
         if (!remove_vertices(surface, points, max_count, dense)) return false;
@@ -118,26 +105,6 @@ bool Fitter::wants_reduction(int vertices, int at_start, Progress& progress) con
     const std::string text = "Fitting to the points: " + std::to_string(left) + " vertices left of " +
                              std::to_string(at_start) + ", to come down to " + std::to_string(vertices);
     return progress(static_cast<double>(at_start - left) / std::max(1, at_start - vertices), text.c_str());
-}
-
-/// \return the points on the surface after the last solution, mended where it has a boundary
-PointsByFace Fitter::update_for_removal(Surface& surface, PointsByFace points) {
-    if (!expects_strays_) {
-        points.update_feet(surface, team_);  // the next search follows once the vertices are removed
-        if (!surface.has_boundary()) return points;
-        const Network before = network_;
-        const CrossingGuard guard = guard_;
-        if (mend_boundary(surface, points) == 0) return points;
-        // A face may seem to lack points that are still with the face beside it: search first.
-        network_ = before;
-        guard_ = guard;
-    }
-    points = assign_faces(surface);  // what is astray or missing is told by the surface as it is
-    if (mend_boundary(surface, points) > 0) {
-        surface = Surface(network_);
-        points = assign_faces(surface);
-    }
-    return points;
 }
 
 /// \return whether any vertex was removed

@@ -74,21 +74,17 @@ std::vector<EdgeSplit> splits_of_edges(const Network& network, NewVertices where
 
 }  // namespace
 
-int refine(Network& network, int vertices, NewVertices where, PerVertex<VertexId>& sources,
-           Progress& progress) {
+int refine(Network& network, int vertices, NewVertices where, Progress& progress) {
     const int before = network.vertex_count();
     while (network.vertex_count() < vertices) {
         const double done_share = static_cast<double>(network.vertex_count()) / vertices;
         if (!progress(done_share, "Fitting to the points: more vertices")) break;
         const int missing = vertices - network.vertex_count();
-        std::vector<VertexMoves::Insertion> done;
+        int done = 0;
         // The ends of the longest edges may have as many neighbours as a vertex can: then shorter ones.
-        for (float share = kLong; done.empty() && share > kShortest; share *= kLong)
+        for (float share = kLong; done == 0 && share > kShortest; share *= kLong)
             done = insert(network, splits_of_edges(network, where, share), missing);
-        if (done.empty()) break;
-        sources.resize(network.slot_count(), -1);
-        for (const VertexMoves::Insertion& insertion : done)
-            sources[insertion.added] = sources[insertion.beside];
+        if (done == 0) break;
     }
     return network.vertex_count() - before;
 }

@@ -17,10 +17,8 @@ enum class NewVertices {
 };
 
 /// Splits edges of \p network, the longest first, until it has \p vertices vertices or no edge can be
-/// split. \p sources, of own_sources() and FitReport, gets an entry for each new vertex: that of an end of
-/// its edge. O(n log n) for every doubling of the vertices. \p progress is asked before each pass. \return
-/// the number of vertices inserted
-int refine(Network& network, int vertices, NewVertices where, PerVertex<VertexId>& sources,
-           Progress& progress);
+/// split. O(n log n) for every doubling of the vertices. \p progress is asked before each pass. \return the
+/// number of vertices inserted
+int refine(Network& network, int vertices, NewVertices where, Progress& progress);
 
 }  // namespace neuralmesh

@@ -30,7 +30,7 @@ float total_length(const PerVertex<Vector3>& moves) {
 
 void move_soundly(Network& network, PerVertex<Vector3> moves, ThreadTeam& team) {
     NoProgress progress;
-    CrossingGuard guard(*untangle(network, kGentle, team, progress));
+    CrossingGuard guard(*untangle(network, team, progress));
     Surface surface(network);
     float left = total_length(moves);
     for (int step = 0; step < kMostSteps && left > 0; ++step) {

@@ -3,31 +3,24 @@
 
 #include "vcg_core/fit/sources.h"
 
-#include <utility>
+#include <vector>
+
+#include "vcg_core/target/nearest_points.h"
 
 namespace neuralmesh {
 
-PerVertex<VertexId> own_sources(const Network& network) {
-    PerVertex<VertexId> sources(network.slot_count(), -1);
-    for (VertexId v : network.vertices()) sources[v] = v;
-    return sources;
-}
-
-VertexId nearest_by_steps(const Network& before, VertexId from, const vcg::Point3f& place) {
-    const auto distance = [&](VertexId u) { return (before.position(u) - place).SquaredNorm(); };
-    VertexId nearest = from;
-    do {
-        from = nearest;
-        for (VertexId u : before.ring(from))
-            if (distance(u) < distance(nearest)) nearest = u;
-    } while (nearest != from);
+PerVertex<VertexId> nearest_vertices(const Network& before, const Network& after) {
+    std::vector<VertexId> ids;
+    std::vector<vcg::Point3f> places;
+    for (const VertexId v : before.vertices()) {
+        ids.push_back(v);
+        places.push_back(before.position(v));
+    }
+    const NearestPoints search(places);
+    PerVertex<VertexId> nearest(after.slot_count(), -1);
+    for (const VertexId v : after.vertices())
+        nearest[v] = ids[search.index(search.nearest_to(after.position(v)))];
     return nearest;
-}
-
-PerVertex<VertexId> chained(const PerVertex<VertexId>& first, PerVertex<VertexId> second) {
-    for (VertexId& v : second)
-        if (v >= 0) v = first[v];
-    return second;
 }
 
 }  // namespace neuralmesh

@@ -136,11 +136,9 @@ void add_boundary_gain(EdgeSplit& split, const BoundaryTarget& target) {
 }  // namespace
 
 std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surface, const PointsByFace& points,
-                                   const LeastSplitGain& least_gain, ThreadTeam& team,
-                                   const PerVertex<float>& variances) {
+                                   float least_gain, ThreadTeam& team, const PerVertex<float>& variances) {
     const auto least_for = [&](VertexId a, VertexId b) {
-        const float variance = variances.empty() ? 1.0F : (variances[a] + variances[b]) / 2;
-        return least_gain.of((surface.positions[a] - surface.positions[b]).squaredNorm(), variance);
+        return least_gain * (variances.empty() ? 1.0F : (variances[a] + variances[b]) / 2);
     };
     PerFace<FaceHatSums> sums(surface.face_count());
     parallel_for(sums.size(), kSplitChunk, team, [&](int f) { sums[f] = hat_sums(surface, points, f); });

@@ -46,7 +46,7 @@ float spread_at(const Surface& surface, const PointsByFace& points, VertexId v) 
 
 StrayPoints::StrayPoints(const Network& network, const Surface& surface, const PointsByFace& points,
                          float deviations, ThreadTeam& team)
-    : network_(network), surface_(surface), points_(points), limit_(surface.positions.size(), 0) {
+    : surface_(surface), points_(points), limit_(surface.positions.size(), 0) {
     PerVertex<float> spread(surface.positions.size(), 0);
     parallel_for(spread.size(), kStrayChunk, team,
                  [&](VertexId v) { spread[v] = spread_at(surface, points, v); });
@@ -64,15 +64,8 @@ StrayPoints::StrayPoints(const Network& network, const Surface& surface, const P
 bool StrayPoints::contain(const PointsByFace::Assignment& point, int face) const {
     const Triangle& f = surface_.faces[face];
     const float limit = std::max({limit_[f[0]], limit_[f[1]], limit_[f[2]]});
-    return point.foot.squared_distance > limit * limit && !is_beyond_boundary(point, face) &&
+    return point.foot.squared_distance > limit * limit && !is_beyond_boundary(surface_, {face, point.foot}) &&
            !has_company(point, face);
-}
-
-bool StrayPoints::is_beyond_boundary(const PointsByFace::Assignment& point, int face) const {
-    bool beyond = true;
-    for (std::size_t k = 0; k < 3; ++k)
-        beyond = beyond && (!(point.foot.weights[k] > 0) || network_.ring(surface_.faces[face][k]).open != 0);
-    return beyond;
 }
 
 /// The distance from the surface, negative below \p face.

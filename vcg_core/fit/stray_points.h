@@ -19,7 +19,7 @@ namespace neuralmesh {
 class StrayPoints {
 public:
     /// Points are astray from \p deviations times the spread on, if the noise is normal in standard
-    /// deviations. Keeps references to the first three. O(points + vertices).
+    /// deviations. Keeps references to \p surface and \p points. O(points + vertices).
     StrayPoints(const Network& network, const Surface& surface, const PointsByFace& points, float deviations,
                 ThreadTeam& team);
 
@@ -28,11 +28,9 @@ public:
     bool contain(const PointsByFace::Assignment& point, int face) const;
 
 private:
-    bool is_beyond_boundary(const PointsByFace::Assignment& point, int face) const;
     float height(const PointsByFace::Assignment& point, int face) const;
     bool has_company(const PointsByFace::Assignment& point, int face) const;
 
-    const Network& network_;
     const Surface& surface_;
     const PointsByFace& points_;
     PerVertex<float> limit_;  ///< least distance of stray points

@@ -12,6 +12,9 @@ namespace neuralmesh {
 
 namespace {
 
+constexpr int kRounds = 10;
+constexpr float kLongestMove = 1;  ///< of a vertex, in mean edge lengths
+constexpr int kRestoredRings = 6;  ///< around self-crossings that remain; they get their old positions back
 constexpr int kSweeps = 2;      ///< of smoothing per round
 constexpr int kMaxPairs = 100;  ///< of overlapping face boxes per face; a smooth surface has six
 constexpr int kMaxRings = 3;    ///< around the self-crossings
@@ -31,9 +34,9 @@ PerVertex<char> surroundings(const Network& network, const std::vector<SelfCross
     return inside;
 }
 
-/// On a boundary that does not draw back, the middle of the two neighbours there.
-Vector3 middle_of_ring(const Ring& ring, const PerVertex<Vector3>& positions, bool draws_back) {
-    if (ring.open != 0 && !draws_back) return (positions[ring[0]] + positions[ring[ring.valence - 1]]) / 2;
+/// On a boundary, the middle of the two neighbours there.
+Vector3 middle_of_ring(const Ring& ring, const PerVertex<Vector3>& positions) {
+    if (ring.open != 0) return (positions[ring[0]] + positions[ring[ring.valence - 1]]) / 2;
     Vector3 middle = Vector3::Zero();
     for (VertexId u : ring) middle += positions[u];
     return middle / static_cast<float>(ring.valence);
@@ -41,14 +44,14 @@ Vector3 middle_of_ring(const Ring& ring, const PerVertex<Vector3>& positions, bo
 
 /// Smooths the \p rings rings around the \p crossings. Boundary vertices move only if they are corners of
 /// crossings: the others are where the points end.
-void smooth(const Network& network, const std::vector<SelfCrossing>& crossings, int rings, bool draws_back,
+void smooth(const Network& network, const std::vector<SelfCrossing>& crossings, int rings,
             PerVertex<Vector3>& positions) {
     const PerVertex<char> corners = surroundings(network, crossings, 0);
     const PerVertex<char> near = surroundings(network, crossings, rings);
     const PerVertex<Vector3> before = positions;
     for (VertexId v : network.vertices()) {
         const bool moves = network.ring(v).open != 0 ? corners[v] != 0 : near[v] != 0;
-        if (moves) positions[v] += kStep * (middle_of_ring(network.ring(v), before, draws_back) - before[v]);
+        if (moves) positions[v] += kStep * (middle_of_ring(network.ring(v), before) - before[v]);
     }
 }
 
@@ -71,10 +74,9 @@ void restore_around(const Network& network, const std::vector<SelfCrossing>& cro
 
 }  // namespace
 
-std::optional<std::vector<SelfCrossing>> untangle(Network& network, const Untangling& how, ThreadTeam& team,
-                                                  Progress& progress) {
+std::optional<std::vector<SelfCrossing>> untangle(Network& network, ThreadTeam& team, Progress& progress) {
     const auto stopped = [&](int searches) {
-        return !progress(static_cast<double>(searches) / (how.rounds + 1),
+        return !progress(static_cast<double>(searches) / (kRounds + 1),
                          "Fitting to the points: smoothing where the surface cuts itself");
     };
     if (stopped(0)) return std::nullopt;
@@ -83,20 +85,19 @@ std::optional<std::vector<SelfCrossing>> untangle(Network& network, const Untang
     std::int64_t pairs = 0;
     std::vector<SelfCrossing> at_start = self_crossings(surface, team, &pairs);
     if (at_start.empty() || pairs > std::int64_t{kMaxPairs} * surface.face_count()) return at_start;
-    const float max_move = how.longest_move * mean_edge_length(surface);
+    const float max_move = kLongestMove * mean_edge_length(surface);
     std::vector<SelfCrossing> crossings = at_start;
-    for (int round = 0; round < how.rounds && !crossings.empty(); ++round) {
+    for (int round = 0; round < kRounds && !crossings.empty(); ++round) {
         if (stopped(round + 1)) return std::nullopt;
         const Surface before = surface;
         const int rings = std::min(1 + round / 2, kMaxRings);
-        for (int sweep = 0; sweep < kSweeps; ++sweep)
-            smooth(network, crossings, rings, how.draws_back, surface.positions);
+        for (int sweep = 0; sweep < kSweeps; ++sweep) smooth(network, crossings, rings, surface.positions);
         limit_moves(start, max_move, surface.positions);
         crossings = update_self_crossings(surface, before, crossings, team);
     }
     if (!crossings.empty()) {
         const Surface before = surface;
-        restore_around(network, crossings, how.restored_rings, start, surface.positions);
+        restore_around(network, crossings, kRestoredRings, start, surface.positions);
         crossings = update_self_crossings(surface, before, crossings, team);
     }
     if (!CrossingGuard(at_start).objections(crossings).empty()) return at_start;

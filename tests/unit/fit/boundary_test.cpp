@@ -10,11 +10,10 @@
 
 #include "tests/unit/fit/fit_scene.h"
 #include "tests/unit/support/targets.h"
+#include "vcg_core/fit/boundary_mending.h"
 #include "vcg_core/fit/boundary_targets.h"
 #include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/fit.h"
-#include "vcg_core/fit/notches.h"
-#include "vcg_core/fit/webs.h"
 
 namespace neuralmesh {
 namespace {

@@ -177,7 +177,7 @@ TEST(FindSplits, GainIsTheMeasuredDrop) {
     const double edge = static_cast<double>(mean_edge_length(scene.surface));
     const auto least = static_cast<float>(1e-3 * edge * edge);
     const std::vector<EdgeSplit> splits =
-        find_splits(scene.network, scene.surface, scene.points, {least, least}, team);
+        find_splits(scene.network, scene.surface, scene.points, least, team);
     ASSERT_GT(splits.size(), 50U);
     int measured = 0;
     float last = std::numeric_limits<float>::max();
@@ -209,22 +209,13 @@ TEST(FindSplits, GainIsTheMeasuredDrop) {
 TEST(FindSplits, OmitsGainsBelowTheBound) {
     const FitScene scene = wave_scene();
     ThreadTeam team(1);
-    const std::vector<EdgeSplit> all = find_splits(scene.network, scene.surface, scene.points, {}, team);
+    const std::vector<EdgeSplit> all = find_splits(scene.network, scene.surface, scene.points, 0, team);
     const float bound = all[all.size() / 2].gain;
-    const float edge = mean_edge_length(scene.surface);
-    const auto length = [&](const EdgeSplit& split) {
-        return (scene.surface.positions[split.a] - scene.surface.positions[split.b]).norm();
-    };
-    for (const LeastSplitGain least :
-         {LeastSplitGain{bound, bound}, LeastSplitGain{0.5F * bound, 2 * bound, edge, 2 * edge}}) {
-        const std::vector<EdgeSplit> some =
-            find_splits(scene.network, scene.surface, scene.points, least, team);
-        const auto expected = std::count_if(all.begin(), all.end(), [&](const EdgeSplit& split) {
-            return split.gain >= least.of(length(split) * length(split));
-        });
-        EXPECT_EQ(static_cast<std::ptrdiff_t>(some.size()), expected);
-        EXPECT_LT(some.size(), all.size());
-    }
+    const std::vector<EdgeSplit> some = find_splits(scene.network, scene.surface, scene.points, bound, team);
+    const auto expected =
+        std::count_if(all.begin(), all.end(), [&](const EdgeSplit& split) { return split.gain >= bound; });
+    EXPECT_EQ(static_cast<std::ptrdiff_t>(some.size()), expected);
+    EXPECT_LT(some.size(), all.size());
 }
 
 /// The scene of a torus whose points weigh \p upper above the plane z = 0 and \p lower below it.
@@ -248,7 +239,7 @@ TEST(Weights, ScaleCostsAndGainsWhereTheyAre) {
     const FitScene uneven = weighted_torus_scene(4, 0.5F);
     ThreadTeam team(1);
     const auto splits = [&](const FitScene& scene, float least) {
-        return find_splits(scene.network, scene.surface, scene.points, {least, least}, team);
+        return find_splits(scene.network, scene.surface, scene.points, least, team);
     };
     const std::vector<EdgeSplit> unweighted = splits(even, 0.002F);
     const std::vector<EdgeSplit> weighted = splits(uneven, 0.002F);

@@ -43,7 +43,7 @@ TEST(PrecisePoints, AreManyForEachVertexAndWithoutNoise) {
         const TargetSpace target = soundness::target_of(shapes::sphere_cloud(count, noise));
         Network network = targets::network_in_frame(target, shapes::icosphere(3));
         Random random(1);
-        Fitter fitter(network, choose_points(target, 100000, random), team);
+        Fitter fitter(network, choose_points(target, 100000, random), FitOptions(), team);
         const Surface surface(network);
         fitter.locate_points(surface);
         return fitter.has_precise_points(surface);
@@ -51,25 +51,6 @@ TEST(PrecisePoints, AreManyForEachVertexAndWithoutNoise) {
     EXPECT_TRUE(precise(10000, 0));
     EXPECT_FALSE(precise(5000, 0)) << "seven for each of 642 vertices";
     EXPECT_FALSE(precise(10000, 0.02)) << "up to an eighth of an edge off";
-}
-
-TEST(HeldOut, KeepsPointsFromTheirWholeOrder) {
-    TrackedPoints points;
-    for (int i = 0; i < 1000; ++i) {
-        points.points.emplace_back(static_cast<float>(i), 0.0F, 0.0F);
-        points.weights.push_back(static_cast<float>(i));
-    }
-    HeldOut held_out(points);
-    held_out.keep_at_most(1000);
-    EXPECT_EQ(held_out.tracked().points.size(), 1000U);
-    held_out.keep_at_most(300);
-    const TrackedPoints& kept = held_out.tracked();
-    ASSERT_EQ(kept.points.size(), 300U);
-    ASSERT_EQ(kept.weights.size(), 300U);
-    for (std::size_t i = 0; i < kept.points.size(); ++i) {
-        EXPECT_EQ(kept.points[i][0], kept.weights[i]);
-        EXPECT_NEAR(kept.points[i][0], static_cast<double>(i) * 1000 / 300, 1);
-    }
 }
 
 /// Sums over the points of a choice above and below the plane z = 0.

@@ -12,6 +12,7 @@
 #include "tests/unit/fit/fit_scene.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/fit/fit.h"
+#include "vcg_core/fit/noise.h"
 
 namespace neuralmesh {
 namespace {

@@ -30,7 +30,7 @@ TEST(Redistribute, KeepsTheVertexCountAndTheTopology) {
     ThreadTeam team(2);
     const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
     const std::vector<EdgeSplit> splits =
-        find_splits(scene.network, scene.surface, scene.points, {1e-3F, 1e-3F}, team);
+        find_splits(scene.network, scene.surface, scene.points, 1e-3F, team);
     for (int max_pairs : {0, 1, 10, 1000}) {
         Network network = scene.network;
         const VertexMoves moves =
@@ -60,7 +60,7 @@ TEST(Redistribute, StopsWhereASplitGainsLessThanTheCollapseCosts) {
     ThreadTeam team(1);
     std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
     const std::vector<EdgeSplit> splits =
-        find_splits(scene.network, scene.surface, scene.points, {1e-3F, 1e-3F}, team);
+        find_splits(scene.network, scene.surface, scene.points, 1e-3F, team);
     for (Collapse& collapse : collapses) collapse.cost = splits.front().gain;
     Network network = scene.network;
     const PerVertex<char> none(network.slot_count(), 0);
@@ -73,7 +73,7 @@ TEST(Redistribute, LeavesBarredVerticesAlone) {
     ThreadTeam team(1);
     const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
     const std::vector<EdgeSplit> splits =
-        find_splits(scene.network, scene.surface, scene.points, {1e-3F, 1e-3F}, team);
+        find_splits(scene.network, scene.surface, scene.points, 1e-3F, team);
     PerVertex<char> barred(scene.network.slot_count(), 0);
     for (VertexId v = 0; v < barred.size(); v += 7) barred[v] = 1;
     Network network = scene.network;

@@ -22,20 +22,18 @@ namespace {
 void expect_refined(const shapes::Shape& shape, int vertices) {
     const Network before = referee::network_of(shape);
     Network network = before;
-    PerVertex<VertexId> sources = own_sources(network);
     NoProgress progress;
-    EXPECT_EQ(refine(network, vertices, NewVertices::curved, sources, progress),
-              vertices - before.vertex_count());
+    EXPECT_EQ(refine(network, vertices, NewVertices::curved, progress), vertices - before.vertex_count());
     EXPECT_EQ(network.vertex_count(), vertices);
     EXPECT_EQ(network.validate(), "");
     EXPECT_EQ(network.genus(), before.genus());
     EXPECT_EQ(network.component_count(), before.component_count());
     EXPECT_EQ(network.boundary_loop_count(), before.boundary_loop_count());
+    const PerVertex<VertexId> sources = nearest_vertices(before, network);
     for (const VertexId v : before.vertices()) {
         EXPECT_EQ(network.position(v), before.position(v));
         EXPECT_EQ(sources[v], v);
     }
-    for (const VertexId v : network.vertices()) EXPECT_TRUE(before.alive(sources[v]));
 }
 
 TEST(Refine, ReachesTheNumberAndKeepsTopologyAndVertices) {
@@ -49,9 +47,8 @@ TEST(Refine, SplitsBoundaryEdgesToo) {
     expect_refined(shapes::grid(5, 5), 2000);
     expect_refined(shapes::tube(8, 3), 1000);
     Network network = referee::network_of(shapes::grid(5, 5));
-    PerVertex<VertexId> sources = own_sources(network);
     NoProgress progress;
-    refine(network, 2000, NewVertices::curved, sources, progress);
+    refine(network, 2000, NewVertices::curved, progress);
     float longest = 0;  // a boundary edge was .25 or more; edges of an even mesh are about .024
     for (const VertexId v : network.vertices())
         for (const VertexId u : network.ring(v))
@@ -61,9 +58,8 @@ TEST(Refine, SplitsBoundaryEdgesToo) {
 
 TEST(Refine, LeavesEnoughVerticesAlone) {
     Network network = referee::network_of(shapes::icosphere(2));
-    PerVertex<VertexId> sources = own_sources(network);
     NoProgress progress;
-    EXPECT_EQ(refine(network, 100, NewVertices::curved, sources, progress), 0);
+    EXPECT_EQ(refine(network, 100, NewVertices::curved, progress), 0);
     EXPECT_EQ(network.vertex_count(), 162);
 }
 
@@ -74,8 +70,7 @@ TEST(Refine, EndsWhenProgressAsksToStop) {
         int calls = 0;
     } once;
     Network network = referee::network_of(shapes::icosphere(2));
-    PerVertex<VertexId> sources = own_sources(network);
-    EXPECT_GT(refine(network, 5000, NewVertices::curved, sources, once), 0);
+    EXPECT_GT(refine(network, 5000, NewVertices::curved, once), 0);
     EXPECT_EQ(once.calls, 2);
     EXPECT_LT(network.vertex_count(), 5000);
     EXPECT_EQ(network.validate(), "");
@@ -83,18 +78,16 @@ TEST(Refine, EndsWhenProgressAsksToStop) {
 
 TEST(Refine, CurvesTheSurface) {
     Network network = referee::network_of(shapes::icosphere(1));
-    PerVertex<VertexId> sources = own_sources(network);
     NoProgress progress;
-    refine(network, 500, NewVertices::curved, sources, progress);
+    refine(network, 500, NewVertices::curved, progress);
     for (const VertexId v : network.vertices())
         EXPECT_NEAR(network.position(v).Norm(), 1, 0.02) << "middles of edges are up to .05 inside";
 }
 
 TEST(Refine, EvensTheEdges) {
     Network network = referee::network_of(shapes::icosphere(1));
-    PerVertex<VertexId> sources = own_sources(network);
     NoProgress progress;
-    refine(network, 1000, NewVertices::curved, sources, progress);
+    refine(network, 1000, NewVertices::curved, progress);
     float shortest = 1;
     float longest = 0;
     for (const VertexId v : network.vertices())

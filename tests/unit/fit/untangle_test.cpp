@@ -23,7 +23,7 @@ using shapes::Shape;
 std::vector<SelfCrossing> smoothed_out(Network& network, int threads) {
     ThreadTeam team(threads);
     NoProgress progress;
-    return *untangle(network, kGentle, team, progress);
+    return *untangle(network, team, progress);
 }
 
 TEST(CrossingGuard, ObjectsToNewCrossingsIfMoreFacesCross) {
@@ -111,7 +111,7 @@ TEST(Untangle, CancelledItLeavesTheMeshUnchanged) {
     for (;; ++last) {
         Network network = before;
         Patience progress(last);
-        if (untangle(network, kGentle, team, progress)) break;
+        if (untangle(network, team, progress)) break;
         EXPECT_EQ(progress.calls, last);
         EXPECT_TRUE(same_positions(network, before));
     }
@@ -127,7 +127,7 @@ TEST(Untangle, GivesUpIfEveryFaceIsNearManyOthers) {
     const Network before = network;
     ThreadTeam team(1);
     Patience progress(99);
-    EXPECT_EQ(*untangle(network, kGentle, team, progress), crossings(Surface(before), 1));
+    EXPECT_EQ(*untangle(network, team, progress), crossings(Surface(before), 1));
     EXPECT_EQ(progress.calls, 1);
     EXPECT_TRUE(same_positions(network, before));
 }
