@@ -13,7 +13,7 @@
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/settings.h"
 #include "vcg_core/shell/shell.h"
-#include "vcg_core/target/noise_by_place.h"
+#include "vcg_core/target/surface_survey.h"
 #include "vcg_core/target/target_space.h"
 #include "vcg_core/topology/topology_rules.h"
 
@@ -41,8 +41,9 @@ struct LearningTask {
     /// Noise of the points in mean edges of the mesh asked for (SurfaceSurvey::noise_in_edges()); 0 for
     /// layers with faces.
     double noise = 0;
-    /// Of target(). Nothing if the points are exact, too few, or show no surface anywhere.
-    std::optional<NoiseByPlace> noise_by_place;
+    /// Of target(), to judge its noise place by place. Nothing if the start mesh is closed, or the points are
+    /// exact or show no surface anywhere.
+    std::optional<SurfaceSurvey> noise_by_place;
     TopologyRules topology_rules;    ///< with settings.learn_topology
     double topology_confidence = 0;  ///< as in Report
     int parts_faced_by_normals = 0;  ///< components of the network that face the side of the points' normals

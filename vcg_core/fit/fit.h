@@ -8,7 +8,7 @@
 
 #include "vcg_core/base/progress.h"
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/target/noise_by_place.h"
+#include "vcg_core/target/surface_survey.h"
 #include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
@@ -38,7 +38,7 @@ struct FitOptions {
     /// vertices than the points carry. 0, or at most the number then: none.
     int refine_to = 0;
     /// The noise of the points; null: as the first mesh shows it, the same everywhere.
-    const NoiseByPlace* noise = nullptr;
+    const SurfaceSurvey* noise = nullptr;
     /// Number of points used: this many per vertex, at least min_points, at most all of a cloud.
     int points_per_vertex = 100;
     int min_points = 100000;

@@ -211,9 +211,9 @@ void Fitter::measure_noise(const Surface& surface, const PointsByFace& points) {
     const PerVertex<float> about_faces = local_variances(network_, surface, points);
     parallel_for(network_.slot_count(), kFitChunk, team_, [&](VertexId v) {
         if (!network_.alive(v)) return;
-        const NoiseByPlace::Noise& surveyed = options_.noise->at(network_.position(v));
-        variances_[v] = surveyed.variance;
-        rounding_variances_[v] = surveyed.rounding_variance;
+        const SurveyedPlace& surveyed = options_.noise->at(network_.position(v));
+        variances_[v] = surveyed.variance();
+        rounding_variances_[v] = surveyed.rounding_variance();
         if (about_faces[v] > 0) variances_[v] = std::min(variances_[v], kMostOfLocal * about_faces[v]);
         variances_[v] = std::max(variances_[v], rounding_variances_[v]);
     });

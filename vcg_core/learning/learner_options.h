@@ -4,7 +4,7 @@
 // The constants of the learning, with the paper's symbols.
 #pragma once
 
-#include "vcg_core/target/noise_by_place.h"
+#include "vcg_core/target/surface_survey.h"
 #include "vcg_core/topology/topology_rules.h"
 
 namespace neuralmesh {
@@ -38,7 +38,7 @@ struct LearnerOptions {
     int min_wins_per_split = 30;
     /// Vertices whose mean edge is as short as the points carry there are not split; growth ends when none is
     /// left. Null: as far as grow_to.
-    const NoiseByPlace* noise = nullptr;
+    const SurfaceSurvey* noise = nullptr;
     int settling_signals_per_vertex = 60;  ///< signals after the last split
     bool observe_creases = false;          ///< settling fills Learner::crease_measure()
     bool learn_topology = false;           ///< growth gives up membranes, see topology/learned_topology.h

@@ -84,10 +84,10 @@ bool split_along_longest_edge(LearningState& state, VertexId v) {
 
 /// Whether the edges of \p v are as short as the noise of the points allows.
 bool is_fine_enough(const LearningState& state, VertexId v) {
-    const NoiseByPlace* noise = state.options.noise;
+    const SurfaceSurvey* noise = state.options.noise;
     return noise != nullptr &&
            squared_mean_edge(state.network, v) <
-               static_cast<double>(noise->least_squared_edge_at(state.network.position(v)));
+               static_cast<double>(noise->at(state.network.position(v)).least_squared_edge());
 }
 
 }  // namespace

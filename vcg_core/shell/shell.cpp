@@ -25,7 +25,6 @@
 #include "vcg_core/shell/local_width.h"
 #include "vcg_core/shell/outliers.h"
 #include "vcg_core/shell/region.h"
-#include "vcg_core/target/noise_by_place.h"
 #include "vcg_core/target/opposite_layers.h"
 #include "vcg_core/target/surface_survey.h"
 

@@ -188,4 +188,16 @@ double SurfaceSurvey::noise_in_edges(double points_per_vertex) const {
     return static_cast<double>(median(std::move(in_spacings))) / spacings_per_edge;
 }
 
+std::size_t SurfaceSurvey::carried_by(std::size_t points) const {
+    double vertices_per_point = 0;
+    for (const SurveyedPlace& place : places_) {
+        if (place.clutter) continue;
+        const auto point = static_cast<double>(place.spacing) * static_cast<double>(place.spacing);
+        const double edges = kAreaPerVertex * static_cast<double>(place.least_squared_edge());
+        vertices_per_point += point / std::max(static_cast<double>(kPointsPerCarried) * point, edges);
+    }
+    const double orderly = (1 - clutter()) * static_cast<double>(places_.size());
+    return static_cast<std::size_t>(vertices_per_point / orderly * static_cast<double>(points));
+}
+
 }  // namespace neuralmesh

@@ -23,6 +23,11 @@ constexpr float kLeastSpacings = 2, kLeastDeviations = 5;
 /// A quadric takes the points within so many radii, which grow in steps until these show a surface.
 constexpr float kSupport = 1.6F, kGrowth = 1.35F;
 
+/// With fewer points per vertex, learning and fit follow the accidents of the points; a vertex that has to
+/// share its points costs more than its absence. Chosen by the points of
+/// tests/experiments/accuracy/scan_table.py.
+constexpr std::size_t kPointsPerCarried = 2;
+
 /// One of the places that were looked at. Lengths in the frame of the points.
 struct SurveyedPlace {
     NearestPoints::Place place = 0;  ///< in the cloud
@@ -44,6 +49,12 @@ struct SurveyedPlace {
     /// closed models have a kurtosis of 2.8 to 3, a sheet of two noisy views 1.9, a cup whose wall is as thin
     /// as the points are apart 1.4 to 1.7. Layers closer than a fiftieth of the spacing are rounding.
     bool two_layers() const { return kurtosis < 1.75F && spread > 0.02F * spacing; }
+
+    float variance() const { return deviation * deviation; }
+    float rounding_variance() const { return rounding * rounding; }
+    /// The square of the shortest edge that is not bent by the noise alone: within so many deviations a
+    /// network that learns shows no direction along the surface, as the points do not.
+    float least_squared_edge() const { return kLeastDeviations * kLeastDeviations * variance(); }
 };
 
 /// Medians over the places of a cloud.
@@ -77,6 +88,9 @@ public:
     /// the points lie a tenth of an edge off the surface. Two layers are no noise. 0 if no place shows a
     /// surface. O(places)
     double noise_in_edges(double points_per_vertex) const;
+    /// How many vertices \p points points carry where they show a surface: each with the area of edges that
+    /// the noise does not bend, and two points. O(places). \pre clutter() < 1
+    std::size_t carried_by(std::size_t points) const;
 
 private:
     double share(bool SurveyedPlace::*what) const;

@@ -86,6 +86,18 @@ TEST(SurfaceSurvey, TellsTheNoiseOfEachPlace) {
     EXPECT_FALSE(survey.layers().two);
 }
 
+TEST(SurfaceSurvey, LetsNoisyPointsCarryFewerVertices) {
+    constexpr int kPoints = 20000;
+    constexpr float kSpacing = 0.0070711F;
+    const auto carried = [&](float noise) {
+        const auto half = [noise](float x) { return x < 0.5F ? 0.0F : noise; };
+        return static_cast<double>(survey_of(sheet(kPoints, 0, half)).carried_by(kPoints));
+    };
+    EXPECT_NEAR(carried(0), kPoints / 2, 0.02 * kPoints);
+    EXPECT_LT(carried(kSpacing), 0.32 * kPoints) << "hardly any on the noisy half";
+    EXPECT_GT(carried(kSpacing), 0.2 * kPoints) << "as many as before on the other";
+}
+
 TEST(SurfaceSurvey, TellsSpacingsOfUnevenPoints) {
     Random random(2);
     std::vector<Point3f> points;
