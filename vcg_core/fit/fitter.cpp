@@ -211,7 +211,7 @@ void Fitter::measure_noise(const Surface& surface, const PointsByFace& points) {
     const PerVertex<float> about_faces = local_variances(network_, surface, points);
     parallel_for(network_.slot_count(), kFitChunk, team_, [&](VertexId v) {
         if (!network_.alive(v)) return;
-        const SurveyedPlace& surveyed = options_.noise->at(network_.position(v));
+        const SurveyedPlace& surveyed = options_.noise->orderly_at(network_.position(v));
         variances_[v] = surveyed.variance();
         rounding_variances_[v] = surveyed.rounding_variance();
         if (about_faces[v] > 0) variances_[v] = std::min(variances_[v], kMostOfLocal * about_faces[v]);

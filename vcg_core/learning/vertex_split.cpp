@@ -87,7 +87,7 @@ bool is_fine_enough(const LearningState& state, VertexId v) {
     const SurfaceSurvey* noise = state.options.noise;
     return noise != nullptr &&
            squared_mean_edge(state.network, v) <
-               static_cast<double>(noise->at(state.network.position(v)).least_squared_edge());
+               static_cast<double>(noise->orderly_at(state.network.position(v)).least_squared_edge());
 }
 
 }  // namespace

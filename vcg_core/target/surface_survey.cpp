@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "vcg_core/base/even_mesh.h"
 #include "vcg_core/base/median.h"
@@ -105,23 +104,6 @@ void smooth(const std::vector<std::vector<Place>>& around, std::vector<SurveyedP
     for (std::size_t i = 0; i < places.size(); ++i) places[i].*number = smoothed[i];
 }
 
-/// Gives clutter the noise of the nearest place that is none: that of its points is no noise of a surface.
-void take_noise_over(std::vector<SurveyedPlace>& places) {
-    std::vector<Point3f> positions;
-    std::vector<SurveyedPlace> orderly;
-    std::copy_if(places.begin(), places.end(), std::back_inserter(orderly),
-                 [](const SurveyedPlace& place) { return !place.clutter; });
-    if (orderly.empty()) return;
-    for (const SurveyedPlace& place : orderly) positions.push_back(place.position);
-    const NearestPoints index(positions);
-    for (SurveyedPlace& place : places) {
-        if (!place.clutter) continue;
-        const SurveyedPlace& near = orderly[index.index(index.nearest_to(place.position))];
-        place.deviation = near.deviation;
-        place.rounding = near.rounding;
-    }
-}
-
 /// The radius by its spacing alone that a quarter of the surface, its sparsest part, exceeds.
 float radius_of_sparse_part(const std::vector<SurveyedPlace>& places) {
     constexpr double kBelow = 0.75;
@@ -172,7 +154,13 @@ SurfaceSurvey::SurfaceSurvey(const CloudSurvey& survey, ThreadTeam& team)
     smooth(around, places_, &SurveyedPlace::radius);
     smooth(around, places_, &SurveyedPlace::deviation);
     smooth(around, places_, &SurveyedPlace::rounding);
-    take_noise_over(places_);
+    std::vector<Point3f> positions;
+    for (const SurveyedPlace& p : places_) {
+        if (p.clutter) continue;
+        orderly_.push_back(static_cast<std::size_t>(&p - places_.data()));
+        positions.push_back(p.position);
+    }
+    if (!positions.empty()) orderly_index_.emplace(positions);
 }
 
 double SurfaceSurvey::share(bool SurveyedPlace::*what) const {

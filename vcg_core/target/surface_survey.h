@@ -74,7 +74,11 @@ public:
     const std::vector<SurveyedPlace>& places() const { return places_; }
     /// The surveyed place nearest to \p p. O(log places).
     const SurveyedPlace& at(const vcg::Point3f& p) const { return places_[index_at(p)]; }
-    /// Its index in places().
+    /// The nearest one that shows a surface: the points of clutter say nothing of noise. \pre clutter() < 1
+    const SurveyedPlace& orderly_at(const vcg::Point3f& p) const {
+        return places_[orderly_[orderly_index_->index(orderly_index_->nearest_to(p))]];
+    }
+    /// The index of at(\p p) in places().
     std::size_t index_at(const vcg::Point3f& p) const { return index_.nearest_to(p); }
     /// The shares of the places that are clutter, and of those that lie on curves.
     double clutter() const { return share(&SurveyedPlace::clutter); }
@@ -98,6 +102,8 @@ private:
     float sparse_radius_ = 0;
     std::vector<SurveyedPlace> places_;  ///< in the order of index_
     NearestPoints index_;
+    std::vector<std::size_t> orderly_;  ///< the places that are no clutter
+    std::optional<NearestPoints> orderly_index_;
 };
 
 /// Both surveys of a cloud, each made when it is first asked for.
