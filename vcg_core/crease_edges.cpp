@@ -26,6 +26,24 @@ constexpr int kLongestDouble = 6;      ///< edges of one of two lines between th
 
 }  // namespace
 
+/// Of three edges that form a triangle, cuts the one with the largest value(a, b).
+template <class Value>
+void CreaseEdges::open_loops_by(const Value& value) {
+    for (const VertexId a : network_.vertices()) {
+        const std::vector<VertexId> around = joined_[a];
+        for (const VertexId b : around)
+            for (const VertexId c : around) {
+                if (!(a < b && b < c && are_joined(a, b) && are_joined(b, c) && are_joined(c, a))) continue;
+                const std::array<Edge, 3> edges{{{a, b}, {b, c}, {c, a}}};
+                const auto less = [&](const Edge& x, const Edge& y) {
+                    return value(x[0], x[1]) < value(y[0], y[1]);
+                };
+                const Edge& largest = *std::max_element(edges.begin(), edges.end(), less);
+                cut(largest[0], largest[1]);
+            }
+    }
+}
+
 void CreaseEdges::add_sharp_edges() {
     for (const VertexId a : network_.vertices())
         for (const VertexId b : network_.ring(a))
@@ -34,16 +52,7 @@ void CreaseEdges::add_sharp_edges() {
 }
 
 void CreaseEdges::open_triangles() {
-    for (const VertexId a : network_.vertices()) {
-        const Ring& ring = network_.ring(a);
-        for (int i = 0; i < ring.face_count(); ++i) {
-            const VertexId b = ring[i];
-            const VertexId c = ring.next(i);
-            if (a < b && a < c && are_joined(a, b) && are_joined(b, c) && are_joined(c, a))
-                cut_largest({{{a, b}, {b, c}, {c, a}}},
-                            [this](VertexId v, VertexId u) { return cosine(v, u); });
-        }
-    }
+    open_loops_by([this](VertexId v, VertexId u) { return cosine(v, u); });
 }
 
 void CreaseEdges::bridge_gaps(float reach) {
@@ -88,14 +97,7 @@ void CreaseEdges::contract_below(float least) {
 }
 
 void CreaseEdges::open_loops() {
-    for (const VertexId a : network_.vertices()) {
-        const std::vector<VertexId> around = joined_[a];
-        for (const VertexId b : around)
-            for (const VertexId c : around)
-                if (a < b && b < c && are_joined(a, b) && are_joined(b, c) && are_joined(c, a))
-                    cut_largest({{{a, b}, {b, c}, {c, a}}},
-                                [this](VertexId v, VertexId u) { return length(v, u); });
-    }
+    open_loops_by([this](VertexId v, VertexId u) { return length(v, u); });
 }
 
 void CreaseEdges::join_ends(float reach) {
@@ -169,15 +171,6 @@ void CreaseEdges::contract(VertexId gone, VertexId kept) {
 
 float CreaseEdges::length(VertexId a, VertexId b) const {
     return (network_.position(b) - network_.position(a)).Norm();
-}
-
-/// Cuts the edge with the largest value(a, b).
-template <class Value>
-void CreaseEdges::cut_largest(const std::array<Edge, 3>& edges, const Value& value) {
-    const Edge& largest = *std::max_element(edges.begin(), edges.end(), [&](const Edge& x, const Edge& y) {
-        return value(x[0], x[1]) < value(y[0], y[1]);
-    });
-    cut(largest[0], largest[1]);
 }
 
 /// Of the angle between the faces at an edge; 1 on a boundary.

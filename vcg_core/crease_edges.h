@@ -59,7 +59,7 @@ private:
     void cut(VertexId a, VertexId b);
     void cut(const Line& line);
     template <class Value>
-    void cut_largest(const std::array<Edge, 3>& edges, const Value& value);
+    void open_loops_by(const Value& value);
     void contract(VertexId gone, VertexId kept);
     bool drop_double_at(VertexId a);
     VertexId joined_before(VertexId v, float least) const;

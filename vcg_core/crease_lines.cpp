@@ -4,7 +4,9 @@
 #include "vcg_core/crease_lines.h"
 
 #include <algorithm>
+#include <set>
 
+#include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/crease_edges.h"
 #include "vcg_core/learning/two_planes.h"
 #include "vcg_core/mesh/surface.h"
@@ -24,28 +26,15 @@ constexpr float kShortest = 0.5F;     ///< of the edges of lines, in mean edges 
 /// A bridge may join two spurs, and what a spur leaves may be bridged.
 constexpr int kPasses = 3;
 
-/// The lines that have neither corners nor ends.
-int closed_lines(const CreaseEdges& chosen, const std::vector<VertexId>& vertices, int slots) {
-    PerVertex<char> seen(slots, 0);
-    int closed = 0;
-    for (const VertexId start : vertices) {
-        bool is_line = true;
-        std::vector<VertexId> open{start};
-        if (seen[start] != 0) continue;
-        seen[start] = 1;
-        while (!open.empty()) {
-            const VertexId v = open.back();
-            open.pop_back();
-            is_line = is_line && chosen.degree(v) == 2;
-            for (const VertexId u : chosen.joined(v))
-                if (seen[u] == 0) {
-                    seen[u] = 1;
-                    open.push_back(u);
-                }
-        }
-        closed += is_line ? 1 : 0;
-    }
-    return closed;
+/// How many lines have neither corners nor ends.
+int closed_lines(const CreaseEdges& chosen, const CreaseGraph& graph) {
+    DisjointSets parts(static_cast<int>(graph.vertices.size()));
+    for (const auto& [i, j] : graph.edges) parts.join(i, j);
+    std::set<int> all, ended;
+    for (int i = 0; i < static_cast<int>(graph.vertices.size()); ++i)
+        (chosen.degree(graph.vertices[at(i)]) == 2 ? all : ended).insert(parts.find(i));
+    return static_cast<int>(
+        std::count_if(all.begin(), all.end(), [&](int part) { return ended.count(part) == 0; }));
 }
 
 /// The place of \p v on the line where two planes meet, if that is near and no farther from the mesh than
@@ -101,7 +90,7 @@ CreaseGraph crease_lines(const Network& network, const PerVertex<float>& measure
         for (const VertexId u : chosen.joined(v))
             if (v < u) graph.edges.push_back({index[v], index[u]});
     std::sort(graph.edges.begin(), graph.edges.end());
-    graph.lines = ends / 2 + closed_lines(chosen, graph.vertices, network.slot_count());
+    graph.lines = ends / 2 + closed_lines(chosen, graph);
     return graph;
 }
 
