@@ -17,6 +17,13 @@ namespace neuralmesh {
 namespace {
 
 constexpr int kFlipChunk = 256;
+/// Rise of the cosine between the normals of folded neighbours that makes a flip worth while by itself.
+constexpr float kUnfolding = 0.3F;
+/// Where the quad is flat, by the cosine between its normals, and the distances rise by less than this share
+/// of the least gain, a flip is made if it raises the smaller quality by this factor.
+constexpr float kFlat = 0.995F;
+constexpr float kIndifferent = 0.25F;
+constexpr float kBetterShape = 1.2F;
 
 /// An inner edge a-b with its faces f = (a, b, c) and g = (b, a, d). The flip makes them (c, d, b) and
 /// (d, c, a).
@@ -35,12 +42,15 @@ public:
     float gain(const Quad& q, float least_gain) const {
         least_gain *= points_.mean_weight(q.f, q.g);
         const Shape shape = shape_of(q);
-        if (shape.turns_over) return -1;
+        if (!shape.unfolds && shape.turns_over) return -1;
         if (kFlipRules.folds(shape.old_fold, shape.new_fold)) return -1;
         if (kFlipRules.is_sliver(shape.old_quality, shape.new_quality)) return -1;
         const float drop = distance_drop(q);
         if (drop == -Support::kForbidden) return -1;
-        return drop > least_gain ? drop : -1;
+        if (shape.unfolds) return std::max(drop, least_gain);
+        if (drop > least_gain) return drop;
+        const bool indifferent = drop > -kIndifferent * least_gain && shape.flat;
+        return indifferent && shape.new_quality > kBetterShape * shape.old_quality ? 0.0F : -1.0F;
     }
 
 private:
@@ -48,7 +58,7 @@ private:
     struct Shape {
         float old_fold, new_fold;
         float old_quality, new_quality;
-        bool turns_over;
+        bool turns_over, unfolds, flat;
     };
 
     Shape shape_of(const Quad& q) const {
@@ -77,6 +87,8 @@ private:
                    (surface_.turns_away(old_f, n, a) && surface_.turns_away(old_g, n, a));
         };
         shape.turns_over = turns(new_f) || turns(new_g);
+        shape.unfolds = kFlipRules.is_folded(shape.old_fold) && shape.new_fold > shape.old_fold + kUnfolding;
+        shape.flat = old_f.dot(old_g) > kFlat && new_f.dot(new_g) > kFlat;
         return shape;
     }
 
