@@ -25,7 +25,7 @@ INERT = [
      r"kLeastPerThread|:kLeastOrdered$|:kLeastOutOfCache$|:k\w*Ahead$|:kPrefetchDistance$|"
      r"base/cheapest_first\.h:", "speed: the same result"),
     (r"engine/(winner_search|tournament|scaled_numbers|eight_steps)|mesh/(face_tree|face_packets|vertex_order)|"
-     r"target/nearest_points|shell/clearance",
+     r"cloud/nearest_points|start/clearance",
      "a search or an order: an exact result, found faster"),
     (r"base/(logarithm|random|packed_normal|even_mesh)\.h:|:k(PiF|White|DegreesPerRadian|DeviationPerMedian|UnitBallVolume|"
      r"Ln2|Pi)$|:kWithin30Degrees$", "mathematics"),

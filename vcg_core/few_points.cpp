@@ -17,11 +17,11 @@ NEURALMESH_END_UNINITIALIZED();
 #include <utility>
 #include <vector>
 
+#include "vcg_core/cloud/nearest_points.h"
 #include "vcg_core/fit/refine.h"
 #include "vcg_core/fit/sources.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/shape_flips.h"
-#include "vcg_core/target/nearest_points.h"
 
 namespace neuralmesh {
 namespace {

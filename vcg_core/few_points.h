@@ -6,8 +6,8 @@
 
 #include <optional>
 
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/mesh/indexed_mesh.h"
-#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 

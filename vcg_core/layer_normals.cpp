@@ -4,8 +4,8 @@
 #include "vcg_core/layer_normals.h"
 
 #include "vcg_core/base/text.h"
-#include "vcg_core/shell/facing.h"
-#include "vcg_core/target/normal_survey.h"
+#include "vcg_core/cloud/normal_survey.h"
+#include "vcg_core/start/facing.h"
 
 namespace neuralmesh {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/thread_team.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/feature_measures.h"
 #include "vcg_core/learning/learner.h"
 #include "vcg_core/learning/learner_options.h"
@@ -16,7 +17,6 @@
 #include "vcg_core/plan.h"
 #include "vcg_core/result.h"
 #include "vcg_core/settings.h"
-#include "vcg_core/target/target_space.h"
 #include "vcg_core/thickening.h"
 
 namespace neuralmesh {

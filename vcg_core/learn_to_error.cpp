@@ -18,9 +18,9 @@
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/text.h"
+#include "vcg_core/cloud/surface_survey.h"
 #include "vcg_core/error_search.h"
 #include "vcg_core/fit/rms_error.h"
-#include "vcg_core/target/surface_survey.h"
 
 namespace neuralmesh {
 namespace {

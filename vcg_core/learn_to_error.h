@@ -8,11 +8,11 @@
 #include <functional>
 
 #include "vcg_core/base/progress.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/learn_and_fit.h"
 #include "vcg_core/learning_task.h"
 #include "vcg_core/result.h"
 #include "vcg_core/settings.h"
-#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 

@@ -10,15 +10,15 @@
 
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/base/text.h"
+#include "vcg_core/cloud/outlier_removal.h"
 #include "vcg_core/few_points.h"
 #include "vcg_core/layer_normals.h"
 #include "vcg_core/open_or_closed.h"
 #include "vcg_core/plan.h"
 #include "vcg_core/rounded_coordinates.h"
-#include "vcg_core/shell/given_start.h"
-#include "vcg_core/shell/open_start.h"
-#include "vcg_core/shell/shell.h"
-#include "vcg_core/target/outlier_removal.h"
+#include "vcg_core/start/given_start.h"
+#include "vcg_core/start/open_start.h"
+#include "vcg_core/start/shell.h"
 
 namespace neuralmesh {
 

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "vcg_core/base/progress.h"
+#include "vcg_core/cloud/surface_survey.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/mesh/indexed_mesh.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/settings.h"
-#include "vcg_core/shell/shell.h"
-#include "vcg_core/target/surface_survey.h"
-#include "vcg_core/target/target_space.h"
+#include "vcg_core/start/shell.h"
 #include "vcg_core/topology/topology_rules.h"
 
 namespace neuralmesh {

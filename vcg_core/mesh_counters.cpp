@@ -14,7 +14,7 @@
 #include "vcg_core/learning/learner.h"
 #include "vcg_core/learning_task.h"
 #include "vcg_core/mesh/vertex_order.h"
-#include "vcg_core/shell/given_start.h"
+#include "vcg_core/start/given_start.h"
 
 namespace neuralmesh {
 

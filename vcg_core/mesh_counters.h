@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "vcg_core/base/progress.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/mesh/indexed_mesh.h"
 #include "vcg_core/result.h"
 #include "vcg_core/settings.h"
-#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 

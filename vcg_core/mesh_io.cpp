@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vcg_core/target/float_steps.h"
+#include "vcg_core/cloud/float_steps.h"
 
 namespace neuralmesh::detail {
 

@@ -19,11 +19,11 @@
 
 #include "vcg_core/base/color.h"
 #include "vcg_core/base/packed_normal.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/mesh/indexed_mesh.h"
 #include "vcg_core/mesh_counters.h"
 #include "vcg_core/result.h"
 #include "vcg_core/settings.h"
-#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 

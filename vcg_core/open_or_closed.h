@@ -6,10 +6,10 @@
 
 #include <string>
 
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/settings.h"
-#include "vcg_core/shell/open_start.h"
-#include "vcg_core/shell/shell.h"
-#include "vcg_core/target/target_space.h"
+#include "vcg_core/start/open_start.h"
+#include "vcg_core/start/shell.h"
 
 namespace neuralmesh {
 

@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "vcg_core/base/progress.h"
-#include "vcg_core/cloud_colors.h"
-#include "vcg_core/counter_colors.h"
-#include "vcg_core/crease_lines.h"
 #include "vcg_core/feature_measures.h"
 #include "vcg_core/fit/rms_error.h"
 #include "vcg_core/learn_and_fit.h"
 #include "vcg_core/learn_to_error.h"
 #include "vcg_core/learning_task.h"
+#include "vcg_core/output/cloud_colors.h"
+#include "vcg_core/output/counter_colors.h"
+#include "vcg_core/output/crease_lines.h"
 
 namespace neuralmesh {
 

@@ -10,7 +10,7 @@
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/even_mesh.h"
 #include "vcg_core/base/text.h"
-#include "vcg_core/target/float_steps.h"
+#include "vcg_core/cloud/float_steps.h"
 
 namespace neuralmesh {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// What is said of clouds whose coordinates single precision has rounded: see target/float_steps.h.
+// What is said of clouds whose coordinates single precision has rounded: see cloud/float_steps.h.
 #pragma once
 
 #include <string>
 
-#include "vcg_core/target/target_space.h"
+#include "vcg_core/cloud/target_space.h"
 
 namespace neuralmesh {
 

@@ -36,7 +36,7 @@ enum VertexColor : int {
 enum StartShape : int {
     kShell = 0,        ///< a coarse mesh around the cloud that already has its components and handles
     kTetrahedron = 1,  ///< the paper's: one component without handles, unless learn_topology is on
-    kGivenMesh = 2,    ///< a mesh of the caller's, see shell/given_start.h
+    kGivenMesh = 2,    ///< a mesh of the caller's, see start/given_start.h
 };
 
 /// Whether the mesh has boundaries.
@@ -63,8 +63,8 @@ struct Settings {
     bool fit_to_points = true;
     bool draw_from_faces = true;
     bool selected_only = false;
-    bool remove_outliers = true;  ///< only of points; see target/outlier_removal.h
-    bool even_sampling = true;    ///< only of points; see target/point_areas.h
+    bool remove_outliers = true;  ///< only of points; see cloud/outlier_removal.h
+    bool even_sampling = true;    ///< only of points; see cloud/point_areas.h
     bool use_normals = true;      ///< only of points; see layer_normals.h
     int vertex_color = kCloudColors;
     bool select_features = false;

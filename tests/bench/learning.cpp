@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Signals per second of the learning loop, on one thread and on two. The cloud is 200,000 points of a bumpy torus, made here.
+// Signals per second of the learning loop, on one thread and on two. The cloud is 200,000 points of a bumpy
+// torus, made here.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Crease lines of cubes, whose creases are known, and of surfaces without any.
-#include "vcg_core/crease_lines.h"
+#include "vcg_core/output/crease_lines.h"
 
 #include <gtest/gtest.h>
 

@@ -11,9 +11,9 @@
 
 #include "vcg_core/base/error.h"
 #include "vcg_core/c_api/neural_mesh.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/mesh/indexed_mesh.h"
 #include "vcg_core/settings.h"
-#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh::c_api {
 

@@ -10,9 +10,9 @@
 
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/c_api/neural_mesh.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/mesh/face_tree.h"
 #include "vcg_core/mesh/indexed_mesh.h"
-#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh::c_api {
 

@@ -7,9 +7,9 @@
 #include <cstdint>
 
 #include "vcg_core/base/progress.h"
+#include "vcg_core/cloud/surface_survey.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/target/surface_survey.h"
-#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 

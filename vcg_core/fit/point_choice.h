@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "vcg_core/base/random.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/fit/points_by_face.h"
-#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 

@@ -8,9 +8,9 @@
 
 #include "vcg_core/base/random.h"
 #include "vcg_core/base/thread_team.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/triangle.h"
-#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 

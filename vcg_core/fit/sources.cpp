@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "vcg_core/target/nearest_points.h"
+#include "vcg_core/cloud/nearest_points.h"
 
 namespace neuralmesh {
 

@@ -11,6 +11,8 @@
 
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/random.h"
+#include "vcg_core/cloud/signal_stream.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/engine/basic_step_batch.h"
 #include "vcg_core/engine/batch_limit.h"
 #include "vcg_core/learning/crease_measure.h"
@@ -22,8 +24,6 @@
 #include "vcg_core/learning/stop_reason.h"
 #include "vcg_core/learning/window_mean.h"
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/target/signal_stream.h"
-#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 

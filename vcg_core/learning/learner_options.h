@@ -4,7 +4,7 @@
 // The constants of the learning, with the paper's symbols.
 #pragma once
 
-#include "vcg_core/target/surface_survey.h"
+#include "vcg_core/cloud/surface_survey.h"
 #include "vcg_core/topology/topology_rules.h"
 
 namespace neuralmesh {

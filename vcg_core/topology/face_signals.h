@@ -10,8 +10,8 @@
 #include "vcg_core/base/random.h"
 #include "vcg_core/base/span.h"
 #include "vcg_core/base/thread_team.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/mesh/surface.h"
-#include "vcg_core/target/target_space.h"
 
 namespace neuralmesh {
 

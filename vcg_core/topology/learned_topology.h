@@ -11,8 +11,8 @@
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/base/thread_team.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/target/target_space.h"
 #include "vcg_core/topology/reconnection.h"
 #include "vcg_core/topology/topology_rules.h"
 

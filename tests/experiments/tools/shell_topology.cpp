@@ -16,8 +16,8 @@
 #include "tests/experiments/tools/ply_mesh.h"
 #include "tests/unit/support/shell_shapes.h"
 #include "tests/unit/support/targets.h"
-#include "vcg_core/shell/shell.h"
-#include "vcg_core/target/surface_survey.h"
+#include "vcg_core/cloud/surface_survey.h"
+#include "vcg_core/start/shell.h"
 
 namespace {
 

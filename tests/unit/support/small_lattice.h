@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "vcg_core/base/random.h"
-#include "vcg_core/shell/lattice.h"
+#include "vcg_core/start/lattice.h"
 
 namespace neuralmesh {
 

@@ -8,7 +8,7 @@
 
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
-#include "vcg_core/target/target_space.h"
+#include "vcg_core/cloud/target_space.h"
 
 namespace neuralmesh::targets {
 

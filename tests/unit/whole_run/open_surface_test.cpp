@@ -16,7 +16,7 @@
 #include "vcg_core/base/error.h"
 #include "vcg_core/mesh/boundary_loops.h"
 #include "vcg_core/reconstruct.h"
-#include "vcg_core/shell/open_start.h"
+#include "vcg_core/start/open_start.h"
 
 namespace neuralmesh {
 namespace {

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/cloud/outlier_removal.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "vcg_core/base/ablation.h"
+#include "vcg_core/base/logarithm.h"
+#include "vcg_core/base/median.h"
+#include "vcg_core/base/parallel_for.h"
+#include "vcg_core/cloud/isolated_groups.h"
+
+namespace neuralmesh {
+namespace {
+
+using Place = NearestPoints::Place;
+using Neighbours = std::vector<NearestPoints::Neighbour>;
+
+constexpr int kSpacingNeighbour = CloudSurvey::kNeighbour;  ///< the distance to it is a point's spacing
+constexpr int kWideCount = 48, kNarrowCount = 16;
+constexpr Place kSampleStride = CloudSurvey::kRun;  ///< one of so many points tells the usual spacing
+constexpr std::size_t kSamplesAround = 5;
+constexpr float kSparse = 2;   ///< suspects are sparser than usual by this factor
+constexpr Place kWindow = 64;  ///< places to each side that are looked at before a search
+constexpr std::size_t kChunk = 1024;
+constexpr float kMostRatio = 100;  ///< of spacings: neighbours may coincide
+
+/// The places of suspects and what is known of them.
+class Suspects {
+public:
+    Suspects(const CloudSurvey& survey, ThreadTeam& team) : cloud_(survey.cloud), team_(team) {
+        note_spacings(survey);
+        find();
+        if (suspects_.empty()) return;
+        gather_neighbours();
+        measure();
+        combine();
+    }
+
+    /// Sets \p out for suspects with enough evidence against them.
+    void mark(std::vector<std::uint8_t>& out) const {
+        if (suspects_.empty()) return;
+        const double limit = threshold();
+        for (std::size_t i = 0; i < suspects_.size(); ++i)
+            if (evidence_[i] > limit) out[suspects_[i].place] = 1;
+        const auto marked = static_cast<double>(std::count(out.begin(), out.end(), 1));
+        if (marked <= kFew * static_cast<double>(cloud_.size()) || skips("lifted_points")) return;
+        for (const Place p : lifted()) out[p] = 1;
+    }
+
+private:
+    struct Suspect {
+        Place place;
+        float spacing;
+    };
+    static constexpr double kFew = 0.002;  ///< of the points
+    static constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+
+    void note_spacings(const CloudSurvey& survey);
+    void find();
+    std::vector<Place> lifted() const;
+    bool has_close_neighbours(Place place, float radius) const;
+    void gather_neighbours();
+    void measure();
+    double evidence_alone(std::size_t suspect) const;
+    void combine();
+    double threshold() const;
+
+    float spacing(Place place, Neighbours& scratch) const {
+        cloud_.nearest(place, kSpacingNeighbour, scratch);
+        return std::sqrt(scratch.back().squared_distance);
+    }
+    Place neighbour(std::size_t suspect, int rank) const {
+        return neighbours_[suspect * kWideCount + static_cast<std::size_t>(rank)];
+    }
+    /// The spacing at \p place: its own if it is a suspect, else that around it.
+    float spacing_at(Place place) const {
+        const std::size_t suspect = suspect_at(place);
+        return suspect == kNobody ? around_[place / kSampleStride] : suspects_[suspect].spacing;
+    }
+    /// The rank of \p place among the suspects, or kNobody.
+    std::size_t suspect_at(Place place) const {
+        if (is_suspect_[place] == 0) return kNobody;
+        return static_cast<std::size_t>(
+            std::lower_bound(suspects_.begin(), suspects_.end(), place,
+                             [](const Suspect& s, Place key) { return s.place < key; }) -
+            suspects_.begin());
+    }
+
+    const NearestPoints& cloud_;
+    ThreadTeam& team_;
+    std::vector<float> around_;             ///< median spacing around each sample
+    float of_all_ = 0;                      ///< median spacing of the cloud
+    std::vector<Suspect> suspects_;         ///< by ascending place
+    std::vector<std::uint8_t> is_suspect_;  ///< by place
+    std::vector<Place> neighbours_;         ///< kWideCount for each suspect, nearest first
+    std::vector<std::uint8_t> in_plane_;    ///< 1 for suspects in the plane of their neighbours
+    std::vector<double> narrow_, wide_;     ///< surface variations
+    std::vector<double> evidence_;
+};
+
+/// The median spacing of the cloud, and that around each of its samples.
+void Suspects::note_spacings(const CloudSurvey& survey) {
+    std::vector<float> samples;
+    for (const float squared : survey.squared_spacings) samples.push_back(std::sqrt(squared));
+    of_all_ = median(samples);
+    around_.resize(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const std::size_t begin = i - std::min(i, kSamplesAround / 2);
+        const std::size_t end = std::min(samples.size(), i + kSamplesAround / 2 + 1);
+        const auto at = samples.begin();
+        around_[i] =
+            median<float>({at + static_cast<std::ptrdiff_t>(begin), at + static_cast<std::ptrdiff_t>(end)});
+    }
+}
+
+/// Are there kSpacingNeighbour points within \p radius, among those of nearby places? True for nearly all
+/// points of a surface, at a small part of what a search costs.
+bool Suspects::has_close_neighbours(Place place, float radius) const {
+    const vcg::Point3f& centre = cloud_.point(place);
+    const float limit = radius * radius;
+    int close = 0;
+    for (Place d = 1; d <= kWindow; ++d) {
+        if (place >= d) close += (cloud_.point(place - d) - centre).SquaredNorm() <= limit ? 1 : 0;
+        if (place + d < cloud_.size())
+            close += (cloud_.point(place + d) - centre).SquaredNorm() <= limit ? 1 : 0;
+        if (close >= kSpacingNeighbour) return true;
+    }
+    return false;
+}
+
+void Suspects::find() {
+    std::vector<std::vector<Suspect>> found((cloud_.size() + kChunk - 1) / kChunk);
+    for_chunks(cloud_.size(), kChunk, team_, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        Neighbours scratch;
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto place = static_cast<Place>(i);
+            const float radius = kSparse * std::min(of_all_, around_[place / kSampleStride]);
+            if (has_close_neighbours(place, radius)) continue;
+            const float own = spacing(place, scratch);
+            if (own > radius) found[chunk].push_back({place, own});
+        }
+    });
+    for (const std::vector<Suspect>& part : found)
+        suspects_.insert(suspects_.end(), part.begin(), part.end());
+}
+
+/// Points that are a little sparser than usual and off the plane of their neighbours. In a cloud with hardly
+/// any outliers they are part of the surface more often than not.
+std::vector<Place> Suspects::lifted() const {
+    constexpr float kSparser = 1.35F;
+    constexpr double kSpacing = 1.78;  // that of even points on a plane in distances to the tenth neighbour
+    constexpr double kLeast = 0.3, kLifted = 4;
+    std::vector<std::vector<Place>> found((cloud_.size() + kChunk - 1) / kChunk);
+    for_chunks(cloud_.size(), kChunk, team_, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        Neighbours near;
+        std::vector<Place> places;
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto place = static_cast<Place>(i);
+            const float usual = std::min(of_all_, around_[place / kSampleStride]);
+            if (has_close_neighbours(place, kSparser * usual)) continue;
+            cloud_.nearest(place, kNarrowCount, near);
+            if (std::sqrt(near[kSpacingNeighbour - 1].squared_distance) <= kSparser * usual) continue;
+            places.clear();
+            for (const NearestPoints::Neighbour& n : near) places.push_back(n.place);
+            const double least = kLeast * static_cast<double>(usual) / kSpacing;
+            if (relative_plane_distance(cloud_, place, places, least) > kLifted)
+                found[chunk].push_back(place);
+        }
+    });
+    std::vector<Place> all;
+    for (const std::vector<Place>& part : found) all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
+
+void Suspects::gather_neighbours() {
+    is_suspect_.assign(cloud_.size(), 0);
+    for (const Suspect& s : suspects_) is_suspect_[s.place] = 1;
+    neighbours_.resize(suspects_.size() * kWideCount);
+    for_chunks(suspects_.size(), kChunk / 16, team_, [&](std::size_t, std::size_t begin, std::size_t end) {
+        Neighbours near;
+        for (std::size_t i = begin; i < end; ++i) {
+            cloud_.nearest(suspects_[i].place, kWideCount, near);
+            for (std::size_t k = 0; k < kWideCount; ++k) neighbours_[i * kWideCount + k] = near[k].place;
+        }
+    });
+}
+
+void Suspects::measure() {
+    in_plane_.resize(suspects_.size());
+    narrow_.resize(suspects_.size());
+    wide_.resize(suspects_.size());
+    for_chunks(suspects_.size(), kChunk / 16, team_, [&](std::size_t, std::size_t begin, std::size_t end) {
+        std::vector<Place> around;
+        for (std::size_t i = begin; i < end; ++i) {
+            around.clear();
+            for (int k = 0; k < kNarrowCount; ++k) around.push_back(neighbour(i, k));
+            in_plane_[i] = continues_plane(cloud_, suspects_[i].place, around) ? 1 : 0;
+            around.push_back(suspects_[i].place);
+            narrow_[i] = surface_variation(cloud_, around);
+            for (int k = kNarrowCount; k < kWideCount; ++k) around.push_back(neighbour(i, k));
+            wide_[i] = surface_variation(cloud_, around);
+        }
+    });
+}
+
+/// The evidence against a suspect without that of the suspects around it. The weights separate, by logistic
+/// regression, outliers from points of room and building scans.
+double Suspects::evidence_alone(std::size_t suspect) const {
+    constexpr double kFill = 37, kDensest = 1.6, kUsual = 3.5, kInPlane = -4, kOffset = -5.3;
+    double narrow = narrow_[suspect], wide = wide_[suspect];
+    int count = 1;
+    for (int k = 0; k < kSpacingNeighbour; ++k) {
+        const std::size_t other = suspect_at(neighbour(suspect, k));
+        if (other == kNobody) continue;
+        narrow += narrow_[other];
+        wide += wide_[other];
+        ++count;
+    }
+    std::array<float, kWideCount> spacings;
+    for (int k = 0; k < kWideCount; ++k)
+        spacings[static_cast<std::size_t>(k)] = spacing_at(neighbour(suspect, k));
+    const float own = suspects_[suspect].spacing;
+    const auto log_ratio = [own](float other) {
+        return portable_log(
+            static_cast<double>(std::min(kMostRatio, own / std::max(other, own / kMostRatio))));
+    };
+    const float usual = median<float>({spacings.begin(), spacings.begin() + kSpacingNeighbour});
+    std::nth_element(spacings.begin(), spacings.begin() + kWideCount / 10, spacings.end());
+    return kFill * std::min(narrow, wide) / count + kDensest * log_ratio(spacings[kWideCount / 10]) +
+           kUsual * log_ratio(usual) + kInPlane * in_plane_[suspect] + kOffset;
+}
+
+/// The evidence against each suspect, with that of the suspects around it. Weights as in evidence_alone().
+void Suspects::combine() {
+    constexpr double kOwn = 0.7, kAround = 0.5, kCompany = 2, kCompanyOffset = -1;
+    std::vector<double> alone(suspects_.size());
+    for (std::size_t i = 0; i < suspects_.size(); ++i) alone[i] = evidence_alone(i);
+    evidence_.resize(suspects_.size());
+    for (std::size_t i = 0; i < suspects_.size(); ++i) {
+        double sum = 0;
+        int count = 0;
+        for (int k = 0; k < kWideCount; ++k) {
+            const std::size_t other = suspect_at(neighbour(i, k));
+            if (other == kNobody) continue;
+            sum += alone[other];
+            ++count;
+        }
+        evidence_[i] = kOwn * alone[i] + kAround * (count > 0 ? sum / count : alone[i]) +
+                       kCompany * count / kWideCount + kCompanyOffset;
+    }
+}
+
+/// The lowest evidence where next to none of the points lies: the gap between orderly points and outliers,
+/// most of which have much evidence against them.
+double Suspects::threshold() const {
+    constexpr double kLowest = -2, kStrict = 3.5, kMixed = 2.5, kStep = 0.5;
+    constexpr double kEmptyShare = 0.0006, kEmptyOfSuspects = 0.05;  // of the points, of the suspects
+    const double empty = std::min(kEmptyShare * static_cast<double>(cloud_.size()),
+                                  kEmptyOfSuspects * static_cast<double>(suspects_.size()));
+    const auto count = [this](double low, double high) {
+        return static_cast<double>(std::count_if(evidence_.begin(), evidence_.end(),
+                                                 [&](double e) { return low <= e && e < high; }));
+    };
+    for (double at = kLowest; at < kStrict; at += kStep)
+        if (count(at - kStep, at + kStep) <= empty && count(kMixed, HUGE_VAL) * 2 >= count(at, HUGE_VAL))
+            return at;
+    return kStrict;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> find_outliers(const CloudSurvey& survey, int threads,
+                                        const std::function<void()>& beat) {
+    const NearestPoints& cloud = survey.cloud;
+    if (cloud.size() < kFewestForOutliers) return {};
+    ThreadTeam team(thread_count(threads));
+    team.set_beat(beat);
+    std::vector<std::uint8_t> out(cloud.size());
+    Suspects(survey, team).mark(out);
+    mark_isolated_clumps(cloud, out);
+    if (std::find(out.begin(), out.end(), 1) == out.end()) return {};
+    std::vector<std::uint8_t> result(cloud.size());
+    for (Place p = 0; p < cloud.size(); ++p) result[cloud.index(p)] = out[p];
+    return result;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/cloud/target_space.h"
+
+#include <vcg/space/line3.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "vcg_core/base/bits.h"
+#include "vcg_core/base/platform.h"
+
+namespace neuralmesh {
+
+namespace {
+
+/// If the box of most points has a smaller share of the diagonal, the frame is centred on it.
+constexpr double kSmallExtent = 1e-3;
+/// If a larger share of the points are duplicates, they are removed.
+constexpr double kMaxDuplicates = 0.1;
+/// Size of the samples that estimate this share.
+constexpr std::size_t kSampleSize = 100000;
+/// Points closer to a line, in diagonals, count as on it.
+constexpr float kCollinear = 1e-6F;
+
+bool by_coordinates(const vcg::Point3f& p, const vcg::Point3f& q) {
+    return std::tie(p[0], p[1], p[2]) < std::tie(q[0], q[1], q[2]);
+}
+
+/// Hash of a point; 0 and -0 are equal.
+std::uint32_t hash_of(const vcg::Point3f& p) {
+    std::uint64_t hash = 0;
+    for (int k = 0; k < 3; ++k) {
+        hash = (hash ^ bit_cast<std::uint32_t>(p[k] + 0.0F)) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 29;
+    }
+    return static_cast<std::uint32_t>(hash >> 32);
+}
+
+/// Sorts \p points and removes duplicates.
+void remove_duplicates(std::vector<vcg::Point3f>& points) {
+    std::sort(points.begin(), points.end(), by_coordinates);
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+}
+
+double share_of_duplicates(std::vector<vcg::Point3f> points) {
+    const auto all = static_cast<double>(points.size());
+    remove_duplicates(points);
+    return all > 0 ? 1 - static_cast<double>(points.size()) / all : 0;
+}
+
+/// Takes two samples of points: all duplicates of random places show places with few duplicates each, random
+/// points show places with many.
+double estimated_share_of_duplicates(const std::vector<vcg::Point3f>& points) {
+    const std::size_t stride = points.size() / kSampleSize + 1;
+    if (stride == 1) return share_of_duplicates(points);
+    std::vector<vcg::Point3f> of_random_places;
+    std::vector<vcg::Point3f> random_points;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (hash_of(points[i]) % stride == 0) of_random_places.push_back(points[i]);
+        if (i % stride == 0) random_points.push_back(points[i]);
+    }
+    return std::max(share_of_duplicates(std::move(of_random_places)),
+                    share_of_duplicates(std::move(random_points)));
+}
+
+vcg::Point3f interpolated(const vcg::Point3f& a, const vcg::Point3f& b, const vcg::Point3f& c, float u,
+                          float v) {
+    return a + (b - a) * u + (c - a) * v;
+}
+
+}  // namespace
+
+vcg::Point3f Frame::inside(const vcg::Point3d& p) const {
+    return vcg::Point3f::Construct((p - centre) / diagonal);
+}
+
+vcg::Point3d Frame::outside(const vcg::Point3f& p) const {
+    return centre + vcg::Point3d::Construct(p) * diagonal;
+}
+
+void TargetSpace::set_frame(const vcg::Box3d& box, std::size_t not_finite, std::size_t count) {
+    if (count == 0)
+        throw InputError(
+            "The layer has no points to learn: choose a layer with at least 4 distinct vertices.");
+    if (not_finite > 0)
+        throw InputError(std::to_string(not_finite) + " of the " + std::to_string(count) +
+                         " points have coordinates that are not finite (NaN or infinite): remove them.");
+    frame_.centre = box.min / 2 + box.max / 2;  // the sum of both could overflow
+    frame_.diagonal = (box.max - box.min).Norm();
+    if (box.min == box.max)
+        throw InputError("All points of the layer are equal: a surface needs at least 4 distinct points.");
+    if (!((frame_.diagonal - frame_.diagonal) == 0 && frame_.diagonal > 1e-150))
+        throw InputError(
+            "The layer's bounding box is too large or too small for double precision: scale it first.");
+}
+
+void TargetSpace::centre_on(const vcg::Box3d& most) {
+    const double diagonal = (most.max - most.min).Norm();
+    off_centre_ = diagonal > 0 && diagonal < kSmallExtent * frame_.diagonal;
+    if (off_centre_) frame_.centre = most.min / 2 + most.max / 2;
+}
+
+std::string TargetSpace::lack_of_spread() const {
+    const vcg::Point3f& a = positions_.front();
+    const auto far = std::max_element(
+        positions_.begin(), positions_.end(),
+        [&](const auto& p, const auto& q) { return (p - a).SquaredNorm() < (q - a).SquaredNorm(); });
+    const vcg::Line3f line(a, *far - a);
+    std::vector<vcg::Point3f> distinct;
+    bool collinear = true;
+    for (const vcg::Point3f& p : positions_) {
+        if (distinct.size() < 4 && std::find(distinct.begin(), distinct.end(), p) == distinct.end())
+            distinct.push_back(p);
+        collinear = collinear && vcg::Distance(line, p) < kCollinear;
+        if (!collinear && distinct.size() == 4) return "";
+    }
+    if (distinct.size() < 4)
+        return "The layer has only " + std::to_string(distinct.size()) +
+               " distinct points: a surface needs at least 4.";
+    if (off_centre_)
+        return "All points of the layer but a few lie, compared with its bounding box, in one place: delete "
+               "the few that lie far away.";
+    return "All points of the layer lie on one straight line: a surface cannot be learned from it. Choose a "
+           "layer whose points surround a surface.";
+}
+
+void TargetSpace::check_spread() const {
+    const std::string lack = lack_of_spread();
+    if (!lack.empty()) throw InputError(lack);
+}
+
+void TargetSpace::accumulate_areas() {
+    double sum = 0;
+    cumulative_area_.reserve(positions_.size() / 3);
+    for (std::size_t i = 0; i + 2 < positions_.size(); i += 3) {
+        const vcg::Point3f n = (positions_[i + 1] - positions_[i]) ^ (positions_[i + 2] - positions_[i]);
+        sum += static_cast<double>(n.Norm());
+        cumulative_area_.push_back(sum);
+    }
+    if (!(sum > 0))
+        throw InputError(
+            "The faces of the layer have no area to draw samples from: switch 'Draw from faces' off to learn "
+            "its vertices instead.");
+}
+
+TargetSpace TargetSpace::drawn_by(Sampler draw, std::size_t count) {
+    std::vector<vcg::Point3d> drawn(count);
+    Random random(0);
+    for (vcg::Point3d& p : drawn) p = draw(random);
+    TargetSpace target = points(count, [&](std::size_t i) { return drawn[i]; });
+    target.sampler_ = std::move(draw);
+    return target;
+}
+
+void TargetSpace::set_normals(std::vector<PackedNormal> normals) {
+    const bool any =
+        std::any_of(normals.begin(), normals.end(), [](const PackedNormal& n) { return n != kNoNormal; });
+    normals_ = any ? std::move(normals) : std::vector<PackedNormal>();
+}
+
+std::optional<TargetSpace> TargetSpace::without(const std::vector<std::uint8_t>& left_out) const {
+    TargetSpace rest;
+    rest.positions_.reserve(static_cast<std::size_t>(std::count(left_out.begin(), left_out.end(), 0)));
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+        if (left_out[i] != 0) continue;
+        rest.positions_.push_back(positions_[i]);
+        if (has_colors()) rest.colors_.push_back(colors_[i]);
+        if (has_normals()) rest.normals_.push_back(normals_[i]);
+    }
+    vcg::Box3d box;
+    for (const vcg::Point3f& p : rest.positions_) box.Add(vcg::Point3d::Construct(p));
+    if (box.IsNull() || box.min == box.max) return std::nullopt;
+    const Frame inner{(box.min + box.max) / 2, (box.max - box.min).Norm()};
+    for (vcg::Point3f& p : rest.positions_) p = inner.inside(vcg::Point3d::Construct(p));
+    if (!rest.lack_of_spread().empty()) return std::nullopt;
+    rest.frame_ = {frame_.centre + inner.centre * frame_.diagonal, inner.diagonal * frame_.diagonal};
+    return rest;
+}
+
+std::optional<TargetSpace> TargetSpace::each_place_once() const {
+    if (is_exact() || estimated_share_of_duplicates(positions_) <= kMaxDuplicates) return std::nullopt;
+    TargetSpace once;
+    once.frame_ = frame_;
+    once.positions_ = positions_;
+    remove_duplicates(once.positions_);
+    if (!has_colors() && !has_normals()) return once;
+    const auto begin = once.positions_.begin();
+    if (has_colors()) once.colors_.resize(once.positions_.size());
+    if (has_normals()) once.normals_.resize(once.positions_.size());
+    for (std::size_t i = positions_.size(); i-- > 0;) {
+        const auto found = std::lower_bound(begin, once.positions_.end(), positions_[i], by_coordinates);
+        const auto place = static_cast<std::size_t>(found - begin);
+        if (has_colors()) once.colors_[place] = colors_[i];
+        if (has_normals()) once.normals_[place] = normals_[i];
+    }
+    return once;
+}
+
+std::optional<TargetSpace> TargetSpace::evenly(const CloudSurvey& survey) const {
+    std::optional<PointAreas> areas = areas_if_uneven(survey);
+    if (!areas) return std::nullopt;
+    TargetSpace even;
+    even.frame_ = frame_;
+    even.positions_ = std::move(areas->points);
+    even.weights_ = std::move(areas->of_run);
+    for (NearestPoints::Place p = 0; p < survey.cloud.size(); ++p) {
+        if (has_colors()) even.colors_.push_back(colors_[survey.cloud.index(p)]);
+        if (has_normals()) even.normals_.push_back(normals_[survey.cloud.index(p)]);
+    }
+    std::vector<double> of_runs;
+    for (std::size_t i = 0; i < even.positions_.size(); i += PointAreas::kRun) {
+        const std::size_t points = std::min(PointAreas::kRun, even.positions_.size() - i);
+        of_runs.push_back(static_cast<double>(even.weight(i)) * static_cast<double>(points));
+    }
+    even.runs_ = AliasTable(of_runs);
+    return even;
+}
+
+TargetSpace TargetSpace::moved(Move move) const {
+    TargetSpace result = *this;
+    result.move_ = std::move(move);
+    return result;
+}
+
+TargetSpace TargetSpace::moved_in_batches(const std::function<void(Span<vcg::Point3f>)>& move) const {
+    constexpr std::size_t kBatch = 100000;
+    TargetSpace result = *this;
+    vcg::Point3f* points = result.positions_.data();
+    const std::size_t count = positions_.size();
+    for (std::size_t begin = 0; begin < count; begin += kBatch)
+        move({points + begin, points + std::min(begin + kBatch, count)});
+    return result;
+}
+
+vcg::Point3f TargetSpace::sample(Random& random) const {
+    if (!is_exact()) return positions_[draw_point(random)];
+    return move_ ? move_(draw_exact(random)) : draw_exact(random);
+}
+
+void TargetSpace::sample_each(Random& random, Span<vcg::Point3f> samples) const {
+    if (is_exact()) {
+        for (vcg::Point3f& p : samples) p = sample(random);
+        return;
+    }
+    constexpr int kAtATime = 32;  // reads that the processor has under way
+    std::array<std::size_t, kAtATime> drawn;
+    for (int i = 0; i < samples.size(); i += kAtATime) {
+        const int count = std::min(kAtATime, samples.size() - i);
+        for (int k = 0; k < count; ++k) {
+            drawn[static_cast<std::size_t>(k)] = draw_point(random);
+            prefetch(&positions_[drawn[static_cast<std::size_t>(k)]]);
+        }
+        for (int k = 0; k < count; ++k) samples[i + k] = positions_[drawn[static_cast<std::size_t>(k)]];
+    }
+}
+
+std::size_t TargetSpace::draw_point(Random& random) const {
+    if (!is_weighted()) return random.below(static_cast<std::uint32_t>(positions_.size()));
+    const std::size_t first = runs_.draw(random) * PointAreas::kRun;
+    const std::size_t points = std::min(PointAreas::kRun, positions_.size() - first);
+    return first + random.below(static_cast<std::uint32_t>(points));
+}
+
+vcg::Point3f TargetSpace::draw_exact(Random& random) const {
+    if (!has_faces()) return frame_.inside(sampler_(random));
+    const FacePoint at = draw_from_faces(random);
+    return interpolated(positions_[at.corner], positions_[at.corner + 1], positions_[at.corner + 2], at.u,
+                        at.v);
+}
+
+TargetSpace::ColoredPoint TargetSpace::sample_colored(Random& random) const {
+    const FacePoint at = draw_from_faces(random);
+    const auto color = [&](std::size_t k) {
+        const Color& c = colors_[at.corner + k];
+        return vcg::Point3f(c[0], c[1], c[2]);
+    };
+    return {
+        interpolated(positions_[at.corner], positions_[at.corner + 1], positions_[at.corner + 2], at.u, at.v),
+        interpolated(color(0), color(1), color(2), at.u, at.v)};
+}
+
+TargetSpace::FacePoint TargetSpace::draw_from_faces(Random& random) const {
+    const double fraction = (random.bits() + 0.5) * 0x1p-32;
+    const auto it = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end(),
+                                     fraction * cumulative_area_.back());
+    const auto face =
+        static_cast<std::size_t>(std::min(it, cumulative_area_.end() - 1) - cumulative_area_.begin());
+    float u = random.unit();
+    float v = random.unit();
+    if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+    }
+    return {3 * face, u, v};
+}
+
+}  // namespace neuralmesh

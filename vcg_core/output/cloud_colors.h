@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The colours of a cloud, at the vertices of the mesh that was learned from it.
+#pragma once
+
+#include "vcg_core/base/color.h"
+#include "vcg_core/base/progress.h"
+#include "vcg_core/base/random.h"
+#include "vcg_core/cloud/target_space.h"
+#include "vcg_core/mesh/network.h"
+
+namespace neuralmesh {
+
+/// A colour for every slot of \p network; white for free slots and for components near which there are no
+/// points.
+///
+/// The points near a vertex are those of its faces. It first gets their mean, weighted by their barycentric
+/// coordinates and the areas that they stand for, then the mean of what is left of their colours when those
+/// interpolated between the vertices are subtracted ("twicing": Tukey, "Exploratory Data Analysis", 1977).
+/// Twicing takes out most of the blur of the mean, and of the shift where the points lie on one side; more
+/// repetitions would follow the noise of the colours. A vertex without points has the mean colour of its
+/// neighbours.
+///
+/// Means are those of the codes from 0 to 255, not of linear light: renderers interpolate the codes across a
+/// face, too, and noise of the codes does not brighten dark parts.
+///
+/// At least 100,000 points and 30 per vertex are used, if the cloud has as many; of faces, as many samples.
+/// If \p progress asks to stop, the points used so far decide. The result does not depend on \p threads.
+/// O(points used x log faces). \pre target.has_colors(), and the network has a face
+PerVertex<Color> cloud_colors(const TargetSpace& target, const Network& network, int threads, Random& random,
+                              Progress& progress);
+
+}  // namespace neuralmesh

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// A node may join the solid if its neighbours in the solid are connected among themselves. Then it neither
+// joins components nor closes a loop.
+#include "vcg_core/start/bridgeless_growth.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "vcg_core/base/parallel_for.h"
+#include "vcg_core/start/node_link.h"
+
+namespace neuralmesh {
+namespace {
+
+constexpr int kRadiusFactor = 2;  // a handle has to persist over this range of radii
+// The radius of level 0 is 0 and cannot be doubled. Its solid grows by the diagonal of a lattice square.
+constexpr int kGrownLevelOfOccupied = 2;
+/// Dense for small radii, where gaps between points and narrow handles appear and vanish.
+constexpr std::array<int, 8> kGrownFromLevels = {0, 1, 2, 3, 4, 6, 9, 16};
+
+// Pieces that join within this squared radius, and hold this share of the points, are fragments.
+constexpr int kJoiningLevel = 4 * 4;
+constexpr double kFragmentShare = 0.05;
+
+constexpr std::uint8_t kInSolid = 1;
+
+Solid solid_at(const Region& region, int level) {
+    return solid_of(region.lattice, region.clearance, region.counts, level, region.min_points);
+}
+
+/// Adds the components of the nodes left out of \p solid that touch no node with clearance > level.
+/// \p left_out holds all nodes of clearance <= level that were outside before growth.
+void fill_cavities(const Lattice& lattice, const std::vector<NodeId>& left_out,
+                   const PerNode<SquaredRadius>& clearance, int level, NodeSet& solid) {
+    constexpr std::uint8_t kVisited = 2;  // in solid: visited, but not in it
+    const Neighbours neighbours(lattice);
+    std::vector<NodeId> component;
+    for (const NodeId seed : left_out) {
+        if (solid[seed] != 0) continue;
+        bool open = false;
+        solid[seed] = kVisited;
+        const auto enter = [&](NodeId j) {
+            open = open || clearance[j] > level;
+            if (solid[j] != 0 || clearance[j] > level) return false;
+            solid[j] = kVisited;
+            return true;
+        };
+        flood(neighbours, seed, enter, component);
+        for (const NodeId i : component) open = open || neighbours.places(i) != kAllNeighbours;
+        if (open) continue;
+        for (const NodeId i : component) solid[i] = kInSolid;
+    }
+    for (const NodeId i : left_out) solid[i] = solid[i] == kInSolid ? kInSolid : 0;
+}
+
+}  // namespace
+
+void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
+                          NodeSet& solid) {
+    Indexed<std::vector<NodeId>> waiting(level + 1);
+    std::vector<NodeId> outside;
+    for (NodeId i = 0; i < solid.size(); ++i)
+        if (solid[i] == 0 && clearance[i] <= level) {
+            waiting[clearance[i]].push_back(i);
+            outside.push_back(i);
+        }
+    const Neighbours neighbours(lattice);
+    for (int l = 0; l <= level; ++l) {
+        std::vector<NodeId>& front = waiting[l];
+        for (std::size_t k = 0; k < front.size(); ++k) {
+            const NodeId i = front[k];
+            if (solid[i] != 0) continue;
+            const NeighbourSet places = neighbours.places(i);
+            const NeighbourSet link =
+                neighbours_in(neighbours, i, places, [&](NodeId j) { return solid[j] == kInSolid; });
+            if (!LinkTopology::table().is_connected(link)) continue;
+            solid[i] = kInSolid;
+            neighbours.for_each_at(i, places & ~link, [&](NodeId j, int) {
+                // It may have been left out, and be connected to the solid in another way now.
+                if (clearance[j] <= l) front.push_back(j);
+            });
+        }
+    }
+    fill_cavities(lattice, outside, clearance, level, solid);
+}
+
+int grown_level(int level) {
+    if (level == 0) return kGrownLevelOfOccupied;
+    return std::min(Region::kMaxLevel, level * kRadiusFactor * kRadiusFactor);
+}
+
+NodeSet grown_solid(const Region& region, int level) {
+    NodeSet solid = solid_at(region, level).nodes;
+    grow_without_bridges(region.lattice, region.clearance, grown_level(level), solid);
+    return solid;
+}
+
+std::vector<TopologyAt> grown_topologies(const Region& region, ThreadTeam& team) {
+    const long long joined = solid_at(region, kJoiningLevel).points_in_specks;
+    const double fragments = kFragmentShare * static_cast<double>(region.total_points);
+    const int levels = static_cast<int>(kGrownFromLevels.size());
+    return parallel_collect<TopologyAt>(levels, 1, team, [&](int i, std::vector<TopologyAt>& found) {
+        const int level = kGrownFromLevels[at(i)];
+        Solid solid = solid_at(region, level);
+        if (solid.components == 0 || static_cast<double>(solid.points_in_specks - joined) > fragments ||
+            (level == 0 && solid.points_in_specks > 0))
+            return;
+        grow_without_bridges(region.lattice, region.clearance, grown_level(level), solid.nodes);
+        const auto cavities = std::count_if(region.hollows.begin(), region.hollows.end(), [&](NodeId node) {
+            return region.clearance[node] > grown_level(level);
+        });
+        const int surfaces = solid.components + static_cast<int>(cavities);
+        found.push_back({level, surfaces, surfaces - euler_characteristic(region.lattice, solid.nodes)});
+    });
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// The topology of a cloud, from lattices of several resolutions.
+#pragma once
+
+#include <vcg/space/box3.h>
+#include <vcg/space/point3.h>
+
+#include <vector>
+
+#include "vcg_core/base/progress.h"
+#include "vcg_core/start/bridgeless_growth.h"
+
+namespace neuralmesh {
+
+/// With a smaller share of the votes the topology is uncertain.
+inline constexpr double kLowConfidence = 0.5;
+
+/// The topology with most votes, and the range of radii with most votes for it.
+struct TopologyVote {
+    bool found = false;  ///< false: there were no topologies to vote on
+    int components = 0;
+    int genus = 0;
+    double confidence = 0;  ///< share of the votes, in [0, 1]
+    int level = 0;          ///< the first of the range
+};
+
+/// Votes on the topologies found on a lattice, by rising level. The radii from a to b over which the topology
+/// stays the same give it 1/a - 1/b votes. This rewards persistence relative to the radius and, of two
+/// equally persistent topologies, prefers the one at smaller radii: large balls only close handles and gaps.
+/// Radii above two lattice steps at which the solid is in pieces vote for nothing. O(levels).
+TopologyVote persistent_topology(const std::vector<TopologyAt>& topologies);
+
+/// The lattice that tells the topology most clearly.
+struct LatticeSurvey {
+    Region region;
+    TopologyVote vote;
+    float step = 0;  ///< of the first lattice examined
+};
+
+/// Examines a lattice as fine as the points allow. If the vote there is not clear, a finer one, for surfaces
+/// close to each other, and if it is uncertain coarser ones, for clouds with noise and gaps. If no lattice
+/// has a topology, the choice is the largest ball on the coarsest one. Uses \p threads threads, 0: one per
+/// core. \p places tell hollows (hollows.h). The result does not depend on the threads.
+LatticeSurvey survey_lattices(const std::vector<vcg::Point3f>& points, const std::vector<LayerPlace>& places,
+                              const vcg::Box3f& box, int threads, Progress& progress);
+
+}  // namespace neuralmesh

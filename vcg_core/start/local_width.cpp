@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/start/local_width.h"
+
+#include <algorithm>
+
+#include "vcg_core/mesh/triangle.h"
+
+namespace neuralmesh {
+namespace {
+
+using vcg::Point3f;
+
+/// Between two looks at the lattice, in its steps.
+constexpr float kRayStride = 0.5F;
+/// The shell may be that many steps from where the nodes of the solid end: it is made on every third node.
+constexpr float kSkin = 3;
+/// No smaller width can be told.
+constexpr float kLeastSteps = 1.5F;
+constexpr int kSmoothingRounds = 2;
+/// Points move by no more than this share of the radius. With 1, where they lie on the shell itself, the
+/// error of a cup with walls of half an edge is 1.6 times that with 0.5 (wall_table.py).
+constexpr float kMostRadii = 0.5F;
+
+Point3f star_area_vector(const Network& network, VertexId v) {
+    const Ring& ring = network.ring(v);
+    Point3f sum(0, 0, 0);
+    for (int i = 0; i < ring.face_count(); ++i)
+        sum += area_vector(network.position(v), network.position(ring[i]), network.position(ring.next(i)));
+    return sum;
+}
+
+/// Means over the stars of the neighbours, and of theirs: marching tetrahedra leave slivers, whose own
+/// normals may lie in the surface.
+PerVertex<Point3f> smooth_normals(const Network& network) {
+    PerVertex<Point3f> normals(network.slot_count(), Point3f(0, 0, 0));
+    for (const VertexId v : network.vertices()) normals[v] = star_area_vector(network, v);
+    for (int round = 0; round < kSmoothingRounds; ++round) {
+        const PerVertex<Point3f> before = normals;
+        for (const VertexId v : network.vertices())
+            for (const VertexId w : network.ring(v)) normals[v] += before[w];
+    }
+    for (const VertexId v : network.vertices()) normals[v].Normalize();
+    return normals;
+}
+
+/// The way from \p p along \p direction to the first node that is in \p solid, or that is not if \p inside is
+/// true; \p farthest if there is none before.
+float way_to_end(const Lattice& lattice, const NodeSet& solid, bool inside, const Point3f& p,
+                 const Point3f& direction, float farthest) {
+    for (float way = kSkin * lattice.step; way < farthest; way += kRayStride * lattice.step) {
+        const NodeId node = lattice.node_of(p + direction * way);
+        const bool in_solid = node < solid.size() && solid[node] != 0;
+        if (in_solid != inside) return way;
+    }
+    return farthest;
+}
+
+/// Between the points, which lie \p radius below the shell.
+struct Widths {
+    float wall, gap;
+};
+
+Widths widths_at(const Lattice& lattice, const NodeSet& solid, float radius, const Point3f& p,
+                 const Point3f& n, float farthest) {
+    return {way_to_end(lattice, solid, true, p, -n, farthest + 2 * radius) - 2 * radius,
+            way_to_end(lattice, solid, false, p, n, farthest - 2 * radius) + 2 * radius};
+}
+
+}  // namespace
+
+PerVertex<float> local_widths(const Network& shell, const Lattice& lattice, const NodeSet& solid,
+                              float radius, float farthest) {
+    const float least = std::max(radius, kLeastSteps * lattice.step);
+    PerVertex<float> widths(shell.slot_count(), farthest);
+    const PerVertex<Point3f> normals = smooth_normals(shell);
+    for (const VertexId v : shell.vertices()) {
+        const Widths at = widths_at(lattice, solid, radius, shell.position(v), normals[v], farthest);
+        widths[v] = std::min(farthest, std::max(least, std::min(at.wall, at.gap)));
+    }
+    return widths;
+}
+
+PerVertex<float> thickenings(const Network& shell, const Lattice& lattice, const NodeSet& solid, float radius,
+                             float thick) {
+    PerVertex<float> lengths(shell.slot_count(), 0);
+    const PerVertex<Point3f> normals = smooth_normals(shell);
+    const float farthest = std::max(2 * thick, 4 * radius);
+    for (const VertexId v : shell.vertices()) {
+        const Widths at = widths_at(lattice, solid, radius, shell.position(v), normals[v], farthest);
+        // Moved by a quarter of the room on either side, the wall is still no wider than the gap. Thinner
+        // walls, where both sides may be one, are taken for the thinnest that the lattice tells: a blade
+        // whose edges are not moved has twice the error there (wall_table.py).
+        const float wall = std::max(at.wall, kLeastSteps * lattice.step);
+        const float room = std::max(0.0F, std::min(at.gap, thick) - wall);
+        lengths[v] = std::min(kMostRadii * radius, room / 4);
+    }
+    return lengths;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/start/open_start.h"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "vcg_core/base/disjoint_sets.h"
+#include "vcg_core/base/indexed.h"
+#include "vcg_core/base/parallel_for.h"
+#include "vcg_core/base/text.h"
+#include "vcg_core/mesh/boundary_loops.h"
+#include "vcg_core/mesh/network.h"
+#include "vcg_core/mesh/pinched_vertices.h"
+#include "vcg_core/mesh/simplify.h"
+#include "vcg_core/start/consolidated_points.h"
+#include "vcg_core/start/facing.h"
+#include "vcg_core/start/normal_orientation.h"
+#include "vcg_core/start/outliers.h"
+#include "vcg_core/start/point_triangulation.h"
+#include "vcg_core/start/sensor_place.h"
+#include "vcg_core/start/short_handles.h"
+#include "vcg_core/start/viewpoint.h"
+
+namespace neuralmesh {
+namespace {
+
+using vcg::Box3f;
+using vcg::Point3f;
+
+constexpr int kHighestValence = 12;  // leaves room for what the reduction and the learning add
+/// The automatic bound for holes that are filled, in radii of the points around; and what is filled in any
+/// case, because it is a gap between points.
+constexpr float kGapRadii = 6, kLeastGapRadii = 4;
+/// Twice the width of a crack that is filled however long it is: the points on its sides have normals that
+/// contradict each other.
+constexpr float kCrackRadii = 1.5F;
+/// A cloud with a larger share of clutter, or of curves, is no surface.
+constexpr double kMostWithoutSurface = 0.5;
+/// So many links between points contradict each other along a cut; fewer do at rough places.
+constexpr std::size_t kManyContradictions = 20;
+/// Fewer consolidated points do not show what the surface is like: bays of its boundary, parts beside it.
+constexpr int kFewestConsolidated = 15000;
+/// Handles around or through which a loop of so many edges leads are chance: a tube of six edges is hardly
+/// one.
+constexpr int kEdgesOfHandle = 8;
+/// Of start meshes of aerial surveys up to .011 of the area is turned away from above, of a tree .22. Models
+/// seen from a sensor have .03 to .04, which are right: its place is known within a tenth of the diagonal.
+constexpr double kMostAway = 0.02;
+/// The neighbours that normals are turned by.
+constexpr int kNeighbours = 12;
+/// Points belong to a vertex that is not farther than so many of its radii.
+constexpr float kBelongs = 3;
+
+/// The points that a part has at least. In a single view of 20,000 points a strip beside an occluded place
+/// has some hundred, and islands seen by two views have 50; clumps of outliers have no faces.
+constexpr int kPointsOfPart = 40;
+/// Their least share of all points, times the vertices asked for. A part takes three of them, so more small
+/// parts than that would leave none for the others.
+constexpr double kLeastPartVertices = 0.3;
+
+long long points_of_part(std::size_t points, const OpenStartOptions& options) {
+    const double carrying = kLeastPartVertices * static_cast<double>(points) / options.target_vertices;
+    return std::max<long long>(kPointsOfPart, static_cast<long long>(carrying));
+}
+
+int wanted_vertices(std::size_t points, const OpenStartOptions& options) {
+    return std::min(options.wanted_vertices, static_cast<int>(points / OpenStartOptions::kPointsPerVertex));
+}
+
+/// \throws NoSurfaceError if most places show none
+void check_for_surface(const SurfaceSurvey& survey) {
+    if (survey.curves() > kMostWithoutSurface)
+        throw NoSurfaceError(
+            "The points lie on curves, not on a surface: there is nothing to span an open surface over. "
+            "Choose surface 1 (closed) for a skin around them.");
+    if (survey.clutter() > kMostWithoutSurface)
+        throw NoSurfaceError(
+            "The points are scattered in space, or too noisy beside their spacing: an open surface cannot be found. "
+            "Choose surface 1 (closed), or remove the scattered points first.");
+}
+
+/// The parts of a mesh that hang together, by vertex, from 0.
+struct Parts {
+    PerVertex<int> of;
+    int count = 0;
+};
+
+Parts parts_of(const IndexedMesh<float>& mesh) {
+    const int n = static_cast<int>(mesh.positions.size());
+    Parts parts{PerVertex<int>(n, -1), 0};
+    DisjointSets sets(n);
+    for (const Triangle& f : mesh.faces) {
+        sets.join(f[0], f[1]);
+        sets.join(f[0], f[2]);
+    }
+    for (VertexId v = 0; v < n; ++v) parts.of[v] = sets.find(v) == v ? parts.count++ : parts.of[sets.find(v)];
+    return parts;
+}
+
+/// The surface while it is put together, with the radius of the points at every vertex.
+struct Sheet {
+    IndexedMesh<float> mesh;
+    std::vector<Point3f> normals;
+    std::vector<float> radii, tolerances;  ///< as in ConsolidatedPoints
+    std::vector<Point3f> contradictions;   ///< where its two sides could not be told apart
+    std::optional<Point3f> viewer;         ///< see turn_to_viewer()
+};
+
+std::vector<std::pair<int, int>> neighbours_of(const ConsolidatedPoints& points) {
+    const NearestPoints index(points.positions);
+    std::vector<std::pair<int, int>> pairs;
+    std::vector<NearestPoints::Neighbour> near;
+    for (NearestPoints::Place place = 0; place < index.size(); ++place) {
+        const std::size_t own = index.index(place);
+        index.nearest(place, kNeighbours, near);
+        for (const NearestPoints::Neighbour& n : near)
+            if (n.squared_distance < kBelongs * kBelongs * points.radii[own] * points.radii[own])
+                pairs.emplace_back(static_cast<int>(own), static_cast<int>(index.index(n.place)));
+    }
+    return pairs;
+}
+
+/// \param origin of the input
+/// \param sensor see sensor_place()
+Sheet sheet_of(ConsolidatedPoints points, const Point3f& origin, const std::optional<Point3f>& sensor,
+               ThreadTeam& team) {
+    Sheet sheet;
+    const std::vector<std::pair<int, int>> neighbours = neighbours_of(points);
+    Orientation orientation = orient_normals(points.positions, neighbours, {}, points.normals);
+    sheet.contradictions = std::move(orientation.contradictions);
+    sheet.viewer = turn_to_viewer(neighbours, orientation.parts, origin, sensor, points);
+    std::vector<int> source;
+    sheet.mesh = triangulation(points.positions, points.normals, points.radii, team, source);
+    cut_short_handles(sheet.mesh, kEdgesOfHandle, source);
+    for (const int i : source) {
+        sheet.normals.push_back(points.normals[at(i)]);
+        sheet.radii.push_back(points.radii[at(i)]);
+        sheet.tolerances.push_back(points.tolerances[at(i)]);
+    }
+    return sheet;
+}
+
+/// Replaces \p values by those at \p source.
+void take(std::vector<float>& values, const std::vector<int>& source) {
+    std::vector<float> taken;
+    for (const int i : source) taken.push_back(values[at(i)]);
+    values = std::move(taken);
+}
+
+/// The vertex of \p sheet that each point of the cloud belongs to, by place; -1: none. Clutter belongs to one
+/// only where it is as close as the noise there.
+std::vector<int> vertices_of_points(Surveys& surveys, const Sheet& sheet, ThreadTeam& team) {
+    const NearestPoints& cloud = surveys.points().cloud;
+    const SurfaceSurvey& survey = surveys.surface();
+    constexpr int kAtATime = 1024;
+    std::vector<int> vertices(cloud.size(), -1);
+    if (sheet.mesh.positions.empty()) return vertices;
+    const NearestPoints index(sheet.mesh.positions);
+    parallel_for(static_cast<int>(cloud.size()), kAtATime, team, [&](int i) {
+        const Point3f& p = cloud.point(static_cast<NearestPoints::Place>(i));
+        const std::size_t nearest = index.index(index.nearest_to(p));
+        const Point3f way = p - sheet.mesh.positions[nearest];
+        if (way.Norm() > kBelongs * sheet.radii[nearest]) return;
+        if (survey.at(p).clutter && std::abs(way * sheet.normals[nearest]) > sheet.tolerances[nearest])
+            return;
+        vertices[at(i)] = static_cast<int>(nearest);
+    });
+    return vertices;
+}
+
+/// Drops the parts of \p sheet that have fewer than \p least points. \return 1 for each point of \p cloud, in
+/// the order given, that belongs to nothing that is kept
+std::vector<std::uint8_t> drop_small_parts(Surveys& surveys, long long least, ThreadTeam& team,
+                                           Sheet& sheet) {
+    const Parts parts = parts_of(sheet.mesh);
+    const std::vector<int> vertices = vertices_of_points(surveys, sheet, team);
+    std::vector<long long> points(at(parts.count), 0);
+    for (const int v : vertices)
+        if (v >= 0) ++points[at(parts.of[v])];
+    const auto counts = [&](int part) { return points[at(part)] >= least; };
+    std::vector<Triangle>& faces = sheet.mesh.faces;
+    faces.erase(std::remove_if(faces.begin(), faces.end(),
+                               [&](const Triangle& f) { return !counts(parts.of[f[0]]); }),
+                faces.end());
+    std::vector<int> source(sheet.radii.size());
+    std::iota(source.begin(), source.end(), 0);
+    drop_unused_vertices(sheet.mesh, source);
+    take(sheet.radii, source);
+    const NearestPoints& cloud = surveys.points().cloud;
+    std::vector<std::uint8_t> out(cloud.size(), 0);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const int v = vertices[i];
+        out[cloud.index(static_cast<NearestPoints::Place>(i))] = v < 0 || !counts(parts.of[v]) ? 1 : 0;
+    }
+    return out;
+}
+
+/// \param out as drop_small_parts() returns it
+bool misses_surface(Surveys& surveys, const std::vector<std::uint8_t>& out) {
+    // Scans miss up to .03, slabs as thick as their points are apart .09 and .16; a tree misses .14, and has
+    // .35 of clutter, which is not sharply told from its surface.
+    constexpr double kMost = 0.05;
+    const NearestPoints& cloud = surveys.points().cloud;
+    const SurfaceSurvey& survey = surveys.surface();
+    std::size_t count = 0;
+    for (NearestPoints::Place place = 0; place < cloud.size(); ++place)
+        if (out[cloud.index(place)] != 0 && !survey.at(cloud.point(place)).clutter) ++count;
+    const double share = static_cast<double>(count) / static_cast<double>(cloud.size());
+    return share > std::max(kMost, survey.clutter());
+}
+
+double diameter_of(const std::vector<VertexId>& loop, const std::vector<Point3f>& positions) {
+    std::vector<Point3f> points;
+    for (const VertexId v : loop) points.push_back(positions[at(v)]);
+    return static_cast<double>(smallest_sphere_diameter(points));
+}
+
+double diagonal_of(const std::vector<Point3f>& positions) {
+    Box3f box;
+    for (const Point3f& p : positions) box.Add(p);
+    return static_cast<double>(box.Diag());
+}
+
+/// Fills holes up to options.close_holes_up_to, or where that is negative, up to kGapRadii radii; cracks,
+/// which are long but narrow; and all, if none that is left is wider than options.closed_up_to.
+void fill_small_holes(Sheet& sheet, const OpenStartOptions& options, OpenStart& result) {
+    IndexedMesh<float>& mesh = sheet.mesh;
+    const auto loops = boundary_loops(static_cast<int>(mesh.positions.size()), mesh.faces);
+    HoleFiller filler(mesh, loops, kHighestValence);
+    std::vector<const std::vector<VertexId>*> left;
+    double widest = 0;
+    for (const std::vector<VertexId>& loop : loops) {
+        float radius = 0;
+        for (const VertexId v : loop) radius += sheet.radii[at(v)] / static_cast<float>(loop.size());
+        const double gap = static_cast<double>(kLeastGapRadii * radius);
+        const double most = options.close_holes_up_to >= 0 ? std::max(options.close_holes_up_to, gap)
+                                                           : static_cast<double>(kGapRadii * radius);
+        const double diameter = diameter_of(loop, mesh.positions);
+        if ((diameter <= most && filler.fill(loop)) || filler.fill(loop, kCrackRadii * radius)) continue;
+        left.push_back(&loop);
+        // Half a radius of surface, on both sides, is beyond the last vertices.
+        widest = std::max(widest, diameter - static_cast<double>(radius));
+    }
+    result.widest_loop = widest / diagonal_of(mesh.positions);
+    if (result.widest_loop > options.closed_up_to) return;
+    for (const auto* loop : left) filler.fill(*loop);
+}
+
+IndexedMesh<float> indexed(const Network& network) {
+    IndexedMesh<float> mesh;
+    for (VertexId v = 0; v < network.slot_count(); ++v) mesh.positions.push_back(network.position(v));
+    mesh.faces = network.faces();
+    return mesh;
+}
+
+void set_outliers(std::vector<std::uint8_t> outliers, bool learn, OpenStart& result) {
+    const auto ignored = static_cast<std::size_t>(std::count(outliers.begin(), outliers.end(), 1));
+    result.left_out = static_cast<double>(ignored) / static_cast<double>(outliers.size());
+    if (ignored == 0) return;
+    result.warnings.push_back(
+        share_of_points(ignored, outliers.size()) +
+        " show no surface, as leaves, points between two depths, or small groups do: " +
+        (learn ? "the start mesh leaves them out, but they are learned." : "they were left out."));
+    if (!learn) result.outliers = std::move(outliers);
+}
+
+void warn_of_cuts(const TargetSpace& target, const std::vector<Point3f>& contradictions, OpenStart& result) {
+    if (contradictions.size() < kManyContradictions) return;
+    Point3f middle(0, 0, 0);
+    for (const Point3f& p : contradictions) middle += p / static_cast<float>(contradictions.size());
+    const auto nearest = std::min_element(contradictions.begin(), contradictions.end(),
+                                          [&](const Point3f& a, const Point3f& b) {
+                                              return (a - middle).SquaredNorm() < (b - middle).SquaredNorm();
+                                          });
+    const vcg::Point3d where = target.frame().outside(*nearest);
+    std::ostringstream text = stream_with(6);
+    text << "The surface has places where its two sides cannot be told apart, as on a Moebius strip: it was "
+            "cut there, near ("
+         << where[0] << ", " << where[1] << ", " << where[2] << ").";
+    result.warnings.push_back(text.str());
+}
+
+void check_enough_points(std::size_t points) {
+    if (points < static_cast<std::size_t>(OpenStartOptions::kLeastCloud))
+        throw InputError("The cloud has " + std::to_string(points) +
+                         " points, too few to show where a surface ends: choose surface 1 (closed), or give "
+                         "at least " +
+                         std::to_string(OpenStartOptions::kLeastCloud) + ".");
+}
+
+void check_for_part(bool found) {
+    if (found) return;
+    throw InputError(
+        "No part of the cloud holds enough points for an open surface: choose surface 1 (closed), or add "
+        "points.");
+}
+
+/// Number of vertices that \p network can be reduced to, or \p wanted if that is more.
+int fewest_vertices(Network network, int wanted) {
+    if (network.vertex_count() > wanted) simplify(network, wanted);
+    return network.vertex_count();
+}
+
+/// Turns the parts of \p network, which faces \p viewer if there is one.
+void turn_parts(const std::optional<Point3f>& viewer, const TargetSpace& target, bool use_normals,
+                Network& network, OpenStart& result) {
+    if (!viewer) orient_convex_side_outward(network);
+    if (use_normals) result.faced_by_normals = orient_by_normals(network, target);
+    if (is_above(viewer) && share_turned_away(network, *viewer) < kMostAway) result.viewer = viewer;
+}
+
+/// Copies the mesh and its topology to \p result.
+void write_mesh(const Network& network, OpenStart& result) {
+    IndexedMesh<float> mesh = indexed(network);
+    result.components = network.component_count();
+    result.genus = network.genus();
+    result.loops = network.boundary_loop_count();
+    result.positions = std::move(mesh.positions);
+    result.faces = std::move(mesh.faces);
+}
+
+}  // namespace
+
+OpenStart open_start(const TargetSpace& target, const std::vector<Point3f>& points, Surveys& surveys,
+                     const OpenStartOptions& options, Random& random, Progress& progress) {
+    progress(0.0, "Start mesh: surveying the cloud");
+    check_enough_points(points.size());
+    ThreadTeam team(thread_count(options.threads));
+    const SurfaceSurvey& surface = surveys.surface();
+    check_for_surface(surface);
+
+    progress(0.3, "Start mesh: thinning the cloud");
+    const int wanted = wanted_vertices(points.size(), options);
+    ConsolidatedPoints consolidated = consolidated_points(
+        surveys.points().cloud, surface, std::max(wanted, kFewestConsolidated), random, team);
+    check_for_part(!consolidated.positions.empty());
+    progress(0.6, "Start mesh: building an open mesh");
+    Sheet sheet = sheet_of(std::move(consolidated), target.frame().inside({0, 0, 0}),
+                           sensor_place(surveys.points().cloud, surface.places()), team);
+    std::vector<std::uint8_t> out =
+        drop_small_parts(surveys, points_of_part(points.size(), options), team, sheet);
+    check_for_part(!sheet.mesh.faces.empty());
+    OpenStart result;
+    result.misses_surface = misses_surface(surveys, out);
+    fill_small_holes(sheet, options, result);
+
+    progress(0.8, "Start mesh: reducing it");
+    Network network(sheet.mesh.positions, sheet.mesh.faces);
+    simplify(network, wanted);
+    network.compact();
+    turn_parts(sheet.viewer, target, options.use_normals, network, result);
+    write_mesh(network, result);
+    result.fewest_vertices = fewest_vertices(std::move(network), options.target_vertices);
+    result.radius = std::max(surface.sparse_radius(), surface.usual_radius());
+    result.layers = surface.layers();
+    set_outliers(std::move(out), options.learn_outliers, result);
+    warn_of_cuts(target, sheet.contradictions, result);
+    progress(1.0, "Start mesh: done");
+    return result;
+}
+
+}  // namespace neuralmesh

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+// A cloud on one lattice: its points per node, and the space it encloses.
+#pragma once
+
+#include <vcg/space/box3.h>
+#include <vcg/space/point3.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "vcg_core/cloud/opposite_layers.h"
+#include "vcg_core/start/clearance.h"
+#include "vcg_core/start/lattice.h"
+
+namespace neuralmesh {
+
+/// The figures of a cloud on one lattice.
+struct Region {
+    static constexpr int kMaxRadius = 12;  ///< of the balls, in lattice steps
+    static constexpr int kMaxLevel = kMaxRadius * kMaxRadius;
+    static constexpr int kMargin = 2;  ///< empty nodes around the box
+
+    Lattice lattice;
+    PerNode<std::uint32_t> counts;     ///< points per node, without fringe points
+    PerNode<SquaredRadius> distances;  ///< to the nodes with points
+    PerNode<SquaredRadius> clearance;  ///< with the enclosed spaces sealed
+    bool encloses_space = false;
+    double widest_opening = 0;  ///< radius of the widest sealed opening, in the unit of the points; 0: none
+    long long total_points = 0;
+    long long min_points = 0;     ///< that a component holds
+    std::vector<NodeId> hollows;  ///< a node in each
+
+    /// The other members are empty until examine() fills them.
+    explicit Region(const Lattice& nodes) : lattice(nodes) {}
+};
+
+/// Examines \p points on a lattice over \p box with nodes \p step apart.
+///
+/// The fringe of a noisy cloud is left out: nodes with far fewer points than others close by. It would close
+/// narrow gaps between surfaces.
+///
+/// Spaces with an opening of at most 0.6 of their width are sealed: on the lattice itself those with openings
+/// up to kMaxRadius, on one of about 40 steps per side those with wider ones. If there is neither, the points
+/// are a single layer. Then large hollows are sealed, too, if their opening is at most 0.8 times as wide as
+/// they are (a head scanned down to the neck).
+///
+/// A component holds at least 1 % of the points and at least 20, or a quarter of the points if that is less.
+///
+/// Hollows, told from the sealed spaces by \p places (hollows.h), are outside as well. O(nodes + points).
+Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step,
+               const std::vector<LayerPlace>& places = {});
+
+/// The share of the nodes with points that have no enclosed space within two nodes, on any side: parts of the
+/// surface that are thin or open. O(nodes).
+double sheet_share(const Region& region);
+
+/// Points per node of \p lattice; points outside it are not counted. O(nodes + points).
+PerNode<std::uint32_t> count_points(const Lattice& lattice, const std::vector<vcg::Point3f>& points);
+
+/// Mean of the counts above 0; 0 if there is none.
+double points_per_occupied_node(const PerNode<std::uint32_t>& counts);
+
+}  // namespace neuralmesh

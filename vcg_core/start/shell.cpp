@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Copyright the Neural Mesh authors
+
+#include "vcg_core/start/shell.h"
+
+#include <vcg/space/box3.h>
+#include <vcg/space/point3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "vcg_core/base/ablation.h"
+#include "vcg_core/base/error.h"
+#include "vcg_core/base/even_mesh.h"
+#include "vcg_core/base/text.h"
+#include "vcg_core/base/thread_team.h"
+#include "vcg_core/cloud/opposite_layers.h"
+#include "vcg_core/cloud/surface_survey.h"
+#include "vcg_core/mesh/network.h"
+#include "vcg_core/mesh/simplify.h"
+#include "vcg_core/mesh/triangle.h"
+#include "vcg_core/start/closed_mesh.h"
+#include "vcg_core/start/lattice_survey.h"
+#include "vcg_core/start/local_width.h"
+#include "vcg_core/start/outliers.h"
+#include "vcg_core/start/region.h"
+
+namespace neuralmesh {
+namespace {
+
+using vcg::Box3f;
+using vcg::Point3f;
+
+// Enough for a component or handle to keep its shape.
+constexpr int kVerticesPerFeature = 8;
+/// The points do not tell where more vertices of a start mesh are.
+constexpr double kPointsPerVertex = 8;
+/// Fewer additional vertices than a quarter come from the noise of the lattice.
+constexpr double kWorthwhile = 1.25;
+/// The surface of the solid at one level lies between this level and the next.
+constexpr float kHalfLevel = 0.5F;
+/// Edges are this much shorter than walls and gaps are wide. With 1 some vertices land on the wrong side,
+/// with 0.6 no fewer than with this (wall_table.py).
+constexpr double kEdgeOverWidth = 0.75;
+/// Walls thinner than this, in edges of an even mesh of as many vertices as asked for, are learned thicker.
+constexpr double kThickEdges = 1.5;
+/// Points are the two sides of walls where so many of them are on thin ones: with walls of 4 to 7 spacings
+/// .67 at least (wall_table.py), on depth frames and aerial scans .14 at most.
+constexpr double kWalled = 0.35;
+// A warning is due from here on, in steps of the first lattice and of the chosen one. Gaps between points are
+// narrower.
+constexpr double kCoarseRadius = 5, kWideOpening = 4;
+
+double area_around(const Network& network, VertexId v) {
+    const Ring& ring = network.ring(v);
+    double sum = 0;
+    for (int i = 0; i < ring.face_count(); ++i)
+        sum += static_cast<double>(
+            area_vector(network.position(v), network.position(ring[i]), network.position(ring.next(i)))
+                .Norm());
+    return sum / 6;  // a third of each face, whose area vector is twice as long as its area
+}
+
+/// The number of vertices of a mesh of \p network with edges of \p lengths.
+double vertices_of(const Network& network, const PerVertex<float>& lengths) {
+    double count = 0;
+    for (const VertexId v : network.vertices()) {
+        const auto length = static_cast<double>(lengths[v]);
+        count += area_around(network, v) / (kAreaPerVertex * length * length);
+    }
+    return count;
+}
+
+/// The lengths that the edges should have in a mesh with edges of \p even_edge that is finer where the
+/// surface is close to itself, and the number of its vertices.
+struct WantedEdges {
+    PerVertex<float> lengths;
+    double vertices;
+};
+
+WantedEdges wanted_edges(const ClosedMesh& closed, const Lattice& lattice, float radius, double even_edge) {
+    PerVertex<float> lengths = local_widths(closed.network, lattice, closed.solid, radius,
+                                            static_cast<float>(even_edge / kEdgeOverWidth));
+    for (const VertexId v : closed.network.vertices()) lengths[v] *= static_cast<float>(kEdgeOverWidth);
+    const double vertices = vertices_of(closed.network, lengths);
+    return {std::move(lengths), vertices};
+}
+
+void copy_mesh(Network& network, IndexedMesh<float>& mesh) {
+    network.compact();
+    for (const VertexId v : network.vertices()) mesh.positions.push_back(network.position(v));
+    mesh.faces = network.faces();
+}
+
+WallSides wall_sides(const Network& shell, const PerVertex<float>& thickenings) {
+    if (std::none_of(thickenings.begin(), thickenings.end(), [](float length) { return length > 0; }) ||
+        skips("thickening"))
+        return {};
+    WallSides result;
+    for (const VertexId v : shell.vertices()) result.thickenings.push_back(thickenings[v]);
+    Network compacted = shell;
+    copy_mesh(compacted, result);
+    return result;
+}
+
+constexpr const char* kReducing = "Start mesh: reducing it";
+
+/// Reduces \p closed to \p vertices vertices, or to more, up to \p most, where the surface is close to
+/// itself. \return StartMesh::walls for a mesh of \p final_vertices vertices
+WallSides reduce(ClosedMesh& closed, const Region& region, int vertices, double most, int final_vertices,
+                 Progress& progress) {
+    Network& network = closed.network;
+    const Lattice& lattice = region.lattice;
+    double area = 0;
+    for (const VertexId v : network.vertices()) area += area_around(network, v);
+    const double even_edge = std::sqrt(area / (kAreaPerVertex * vertices));
+    const float radius = lattice.step * std::sqrt(static_cast<float>(closed.level) + kHalfLevel);
+    const WantedEdges edges = wanted_edges(closed, lattice, radius, even_edge);
+    const int wanted = static_cast<int>(std::min(edges.vertices, most));
+    if (!(wanted > kWorthwhile * vertices)) {
+        simplify(network, vertices);
+        return {};
+    }
+    progress(0.83, kReducing);
+    const double thick = kThickEdges * std::sqrt(area / (kAreaPerVertex * final_vertices));
+    WallSides walls =
+        wall_sides(network, thickenings(network, lattice, closed.solid, radius, static_cast<float>(thick)));
+    progress(0.86, kReducing);
+    simplify(network, wanted, edges.lengths);
+    return walls;
+}
+
+/// Reduces the mesh of \p closed and puts it into \p result, with its topology. \p points: their number.
+void set_mesh(ClosedMesh& closed, const Region& region, std::size_t points, const ShellOptions& options,
+              Progress& progress, StartMesh& result) {
+    progress(0.8, kReducing);
+    Network& network = closed.network;
+    result.components = network.component_count();
+    result.genus = network.genus();
+    result.fewest_vertices = kVerticesPerFeature * (result.components + result.genus);
+    // Few points do not tell where more vertices are, and would not bring them down to the surface.
+    const auto carried = static_cast<int>(
+        std::min(points / kPointsPerCarried, static_cast<std::size_t>(options.max_vertices)));
+    const int budget = std::min(carried, options.target_vertices / 4);
+    const int vertices = std::max(budget, result.fewest_vertices);
+    const double told = static_cast<double>(points) / kPointsPerVertex;
+    const double most = std::min(told, static_cast<double>(options.most_vertices));
+    // A sheet is nowhere far from itself.
+    if (result.encloses_space && most > kWorthwhile * vertices && !skips("finer_start")) {
+        result.walls = reduce(closed, region, vertices, most, options.target_vertices, progress);
+    } else {
+        simplify(network, vertices);
+    }
+    copy_mesh(network, result);
+}
+
+/// Sets the figures that the lattice and the vote give.
+void set_figures(const LatticeSurvey& survey, int level, StartMesh& result) {
+    result.confidence = survey.vote.confidence;
+    result.resolution = static_cast<double>(survey.region.lattice.step);
+    result.radius = result.resolution * std::sqrt(static_cast<double>(level));
+}
+
+Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace>& places, Surveys& surveys) {
+    Enclosure result;
+    result.encloses_space = survey.region.encloses_space;
+    result.sheet_share = sheet_share(survey.region);
+    result.widest_opening = survey.region.widest_opening;
+    // Where the lattice shows no space, the points may lie on the two sides of walls too thin for it.
+    const bool unclear = (!result.encloses_space || result.sheet_share > kMostSheet) && !skips("walled");
+    result.walled = unclear && share_on_thin_walls(places, surveys) > kWalled;
+    result.encloses_space |= result.walled;
+    return result;
+}
+
+void set_outliers(const std::vector<Point3f>& points, const Region& region, const ClosedMesh& closed,
+                  bool learn_outliers, StartMesh& result) {
+    if (skips("lattice_outliers")) return;
+    result.outliers = outliers_of(points, region, closed.solid, closed.level);
+    result.ignored_points = std::count(result.outliers.begin(), result.outliers.end(), 1);
+    const double most = ShellOptions::kMaxOutlierShare * static_cast<double>(points.size());
+    if (learn_outliers || static_cast<double>(result.ignored_points) > most) result.outliers.clear();
+}
+
+void warn_of_uncertain_topology(const LatticeSurvey& survey, StartMesh& result) {
+    const bool coarser = survey.region.lattice.step > survey.step ||
+                         result.radius > kCoarseRadius * static_cast<double>(survey.step);
+    if (coarser)
+        result.warnings.push_back(
+            "The cloud is too sparse or too noisy for a start mesh at full resolution. A coarser one was made, which may miss thin gaps and small handles.");
+    if (!survey.vote.found || result.confidence < kLowConfidence)
+        result.warnings.push_back(
+            "The number of components and handles is uncertain, because it changes with the resolution. The start mesh has " +
+            std::to_string(result.components) + " component(s) and genus " + std::to_string(result.genus) +
+            " in total. Parts of the surface may be closer to each other than neighbouring points.");
+}
+
+void warn_of_open_surface(StartMesh& result) {
+    if (!result.encloses_space)
+        result.warnings.push_back(
+            "The points enclose no space wider than the gaps between them, as in a single scan, a sheet or a thin wall. The surface was closed around both of their sides. Choose surface 2 (open) for one layer that ends where the points end.");
+    if (result.widest_opening > kWideOpening * result.resolution)
+        result.warnings.push_back(
+            "The cloud is open: holes up to " + percent(2 * result.widest_opening) +
+            " of the bounding-box diagonal wide were closed. Choose surface 2 (open) to keep those that are much wider than the gaps between the points.");
+}
+
+}  // namespace
+
+struct Shell::Examined {
+    const std::vector<Point3f>& points;
+    const ShellOptions options;
+    LatticeSurvey survey;
+    Enclosure enclosure;
+};
+
+Shell::Shell(const std::vector<Point3f>& points, Surveys& surveys, const ShellOptions& options,
+             Progress& progress) {
+    progress(0.0, "Start mesh: measuring the density of the cloud");
+    Box3f box;
+    for (const Point3f& p : points) box.Add(p);
+    progress(0.2, "Start mesh: counting components and handles");
+    ThreadTeam team(thread_count(options.threads));
+    const std::vector<LayerPlace> places = layer_places(surveys.points(), team);
+    PartOf counting(progress, 0.2, 0.7);
+    LatticeSurvey survey = survey_lattices(points, places, box, options.threads, counting);
+    const Enclosure enclosure = enclosure_of(survey, places, surveys);
+    examined_.reset(new Examined{points, options, std::move(survey), enclosure});
+}
+
+Shell::~Shell() = default;
+
+const Enclosure& Shell::enclosure() const { return examined_->enclosure; }
+
+StartMesh Shell::mesh(Progress& progress) const {
+    progress(0.7, "Start mesh: building the mesh");
+    const std::vector<Point3f>& points = examined_->points;
+    const LatticeSurvey& survey = examined_->survey;
+    const Region& region = survey.region;
+    ClosedMesh closed = closed_mesh(region, survey.vote);
+    if (closed.network.vertex_count() == 0)
+        throw InputError(
+            "No part of the cloud holds enough points for a start mesh around it. Choose the tetrahedron as start mesh, or remove scattered points first.");
+    StartMesh result;
+    static_cast<Enclosure&>(result) = examined_->enclosure;
+    set_mesh(closed, region, points.size(), examined_->options, progress, result);
+    progress(0.9, "Start mesh: measuring it");
+    set_figures(survey, closed.level, result);
+    set_outliers(points, region, closed, examined_->options.learn_outliers, result);
+    warn_of_uncertain_topology(survey, result);
+    warn_of_open_surface(result);
+    const std::string outliers =
+        warning_of_outliers(result.ignored_points, static_cast<long long>(points.size()), region.min_points,
+                            result.outliers.empty());
+    if (!outliers.empty()) result.warnings.push_back(outliers);
+    progress(1.0, "Start mesh: done");
+    return result;
+}
+
+}  // namespace neuralmesh
