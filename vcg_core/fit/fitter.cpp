@@ -78,6 +78,7 @@ constexpr double kMovedShare = 0.05;
 /// noise of .04, or at two points per vertex, raises the error by 1 to 6 %.
 constexpr float kPreciseNoise = 0.035F;
 constexpr float kPrecisePoints = 8;
+
 float outlier_distance(const Surface& surface, const std::vector<Hit>& hits) {
     std::vector<float> distances(hits.size());
     for (std::size_t i = 0; i < hits.size(); ++i) distances[i] = std::sqrt(hits[i].foot.squared_distance);
