@@ -19,9 +19,8 @@ namespace {
 constexpr int kFlipChunk = 256;
 /// Rise of the cosine between the normals of folded neighbours that makes a flip worth while by itself.
 constexpr float kUnfolding = 0.3F;
-/// On surfaces with boundary, whose start meshes are rough along it: where the quad is flat, by the cosine
-/// between its normals, and the distances rise by less than this share of the least gain, a flip is made if
-/// it raises the smaller quality by this factor.
+/// Where the quad is flat, by the cosine between its normals, and the distances rise by less than this share
+/// of the least gain, a flip is made if it raises the smaller quality by this factor.
 constexpr float kFlat = 0.995F;
 constexpr float kIndifferent = 0.25F;
 constexpr float kBetterShape = 1.2F;
@@ -89,7 +88,7 @@ private:
         };
         shape.turns_over = turns(new_f) || turns(new_g);
         shape.unfolds = kFlipRules.is_folded(shape.old_fold) && shape.new_fold > shape.old_fold + kUnfolding;
-        shape.flat = surface_.has_boundary() && old_f.dot(old_g) > kFlat && new_f.dot(new_g) > kFlat;
+        shape.flat = old_f.dot(old_g) > kFlat && new_f.dot(new_g) > kFlat;
         return shape;
     }
 

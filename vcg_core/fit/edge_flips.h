@@ -20,9 +20,9 @@ struct EdgeFlip {
 /// The inner edges worth flipping, best first: those whose flip lowers the sum of squared distances of the
 /// points on the edge's two faces by more than \p least_gain times the mean of \p variances at its quad's
 /// corners (empty: 1); those whose flip opens a fold; and, with a gain
-/// of 0, those on flat places of surfaces with boundary whose flip hardly changes the distances but raises
-/// the smaller triangle_quality() of the two faces by a fifth. kFlipRules of face_rules.h hold. \p surface is
-/// that of the network. O(points). The result does not depend on the number of threads.
+/// of 0, those on flat surface whose flip hardly changes the distances but raises the smaller
+/// triangle_quality() of the two faces by a fifth. kFlipRules of face_rules.h hold. \p surface is that of the
+/// network. O(points). The result does not depend on the number of threads.
 std::vector<EdgeFlip> find_flips(const Network& network, const Surface& surface, const PointsByFace& points,
                                  float least_gain, ThreadTeam& team, const PerVertex<float>& variances = {});
 

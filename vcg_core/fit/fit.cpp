@@ -131,7 +131,8 @@ private:
         error_before_last_ = last_error_;
         last_error_ = error;
         if (options_.flip_edges && round + 1 < rounds_) {
-            fitter_.move_to_creases(surface, points);
+            // Not after the first round: vertices are too far from the points to tell creases.
+            if (round > 0) fitter_.move_to_creases(surface, points);
             fitter_.flip_edges(surface, points);
         }
         return false;
