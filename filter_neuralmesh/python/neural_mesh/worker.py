@@ -85,7 +85,8 @@ def learn(job: Dict[str, Any]) -> Dict[str, Any]:
 
 
 def return_free_memory() -> None:
-    """Gives the system what earlier clouds have left free: else the process grows by 6 % over 1,000 clouds, not .6 %."""
+    """Gives the system what earlier clouds have left free: else the process grows by 6 % over 1,000 clouds, not .6 %
+    (tests/bench/batch.py)."""
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # of glibc
     if trim is not None:
         trim(0)
