@@ -124,7 +124,7 @@ bool fits_a_network(const IndexedMesh<float>& mesh) {
 /// The hull with \p vertices vertices, the new ones \p where that says. \pre fits_a_network()
 Hull finer(const Hull& hull, int vertices, NewVertices where) {
     Network network(hull.mesh.positions, hull.mesh.faces);
-    const Network before = network;
+    const VertexPlaces before(network);
     NoProgress progress;
     flip_edges_for_shape(network, kFlat);
     refine(network, vertices, where, progress);

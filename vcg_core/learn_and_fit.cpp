@@ -170,7 +170,7 @@ LearnedNetwork Learning::with(int vertices, MonotoneProgress& progress) {
     const StopReason reason = learn(settings, plan, learning);
     LearnedNetwork result = learned_by(*learner_, reason, before_);
     thickening_.take_back(result.network, team_);
-    const Network learned = result.network;
+    const VertexPlaces learned(result.network);
     const bool fits = settings.fit_to_points && !progress.stopped();
     if (fits) fit(result.network, task_, fit_options(task_, settings, plan), settings, fitting);
     if (progress.stopped()) result.stop_reason = StopReason::cancelled;
@@ -193,7 +193,7 @@ LearnedNetwork Learning::reduced(const LearnedNetwork& finer, int vertices,
     fit(result.network, task_, options, settings, progress);
     if (progress.stopped()) result.stop_reason = StopReason::cancelled;
     finish(result.network, vertices);
-    const PerVertex<VertexId> sources = nearest_vertices(finer.network, result.network);
+    const PerVertex<VertexId> sources = nearest_vertices(VertexPlaces(finer.network), result.network);
     result.measures.normal_counters = taken_over(finer.measures.normal_counters, sources);
     result.measures.creases = taken_over(finer.measures.creases, sources);
     return result;

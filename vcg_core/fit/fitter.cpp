@@ -40,8 +40,8 @@ constexpr float kWeightUp = 2.5F;
 /// them apart. Points vary about a mesh that follows them less than they do about the surface, but not by so
 /// much.
 constexpr float kMostOfLocal = 2;
-/// The least bending weight falls by this factor from round to round. Without that few points have 1.04
-/// to 1.08 times the error.
+/// The least bending weight of the first round; it falls by a factor from round to round. Without that few
+/// points have 1.04 to 1.08 times the error.
 constexpr float kFirstLeastWeight = 0.3F;
 constexpr float kLeastWeightDecay = 0.1F;
 constexpr float kLastLeastWeight = 1e-3F;

@@ -29,7 +29,7 @@ void expect_refined(const shapes::Shape& shape, int vertices) {
     EXPECT_EQ(network.genus(), before.genus());
     EXPECT_EQ(network.component_count(), before.component_count());
     EXPECT_EQ(network.boundary_loop_count(), before.boundary_loop_count());
-    const PerVertex<VertexId> sources = nearest_vertices(before, network);
+    const PerVertex<VertexId> sources = nearest_vertices(VertexPlaces(before), network);
     for (const VertexId v : before.vertices()) {
         EXPECT_EQ(network.position(v), before.position(v));
         EXPECT_EQ(sources[v], v);
