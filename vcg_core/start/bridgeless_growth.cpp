@@ -93,8 +93,10 @@ int grown_level(int level) {
     return std::min(Region::kMaxLevel, level * kRadiusFactor * kRadiusFactor);
 }
 
+NodeSet plain_solid(const Region& region, int level) { return solid_at(region, level).nodes; }
+
 NodeSet grown_solid(const Region& region, int level) {
-    NodeSet solid = solid_at(region, level).nodes;
+    NodeSet solid = plain_solid(region, level);
     grow_without_bridges(region.lattice, region.clearance, grown_level(level), solid);
     return solid;
 }

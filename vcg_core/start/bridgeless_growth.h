@@ -27,7 +27,10 @@ void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& 
 /// Level 0 is grown to level 2.
 int grown_level(int level);
 
-/// The components of the solid at \p level, without specks, grown to grown_level().
+/// The components of the solid at \p level, without specks.
+NodeSet plain_solid(const Region& region, int level);
+
+/// The same, grown to grown_level().
 NodeSet grown_solid(const Region& region, int level);
 
 /// The topology of the solid grown from a level.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "vcg_core/start/bridgeless_growth.h"
@@ -65,15 +66,23 @@ bool has_topology(const TopologyVote& vote, const Network& closed) {
            closed.component_count() == vote.components;
 }
 
-}  // namespace
-
-ClosedMesh closed_mesh(const Region& region, const TopologyVote& vote) {
-    ClosedMesh closed{Network(), grown_solid(region, vote.level), grown_level(vote.level)};
-    const PerNode<float> distances = signed_distances(region, closed.solid, closed.level);
+ClosedMesh mesh_of(NodeSet solid, int level, const Region& region, const TopologyVote& vote) {
+    ClosedMesh closed{Network(), std::move(solid), level};
+    const PerNode<float> distances = signed_distances(region, closed.solid, level);
     for (const int stride : {3, 2, 1}) {
         closed.network = surface_of(region, distances, stride);
         if (has_topology(vote, closed.network)) break;
     }
+    return closed;
+}
+
+}  // namespace
+
+ClosedMesh closed_mesh(const Region& region, const TopologyVote& vote) {
+    ClosedMesh closed = mesh_of(plain_solid(region, vote.level), vote.level, region, vote);
+    // Grown it has twice the radius, so its surface is farther from the points.
+    if (!has_topology(vote, closed.network))
+        closed = mesh_of(grown_solid(region, vote.level), grown_level(vote.level), region, vote);
     return closed;
 }
 

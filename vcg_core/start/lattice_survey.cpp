@@ -101,6 +101,11 @@ TopologyVote persistent_topology(const std::vector<TopologyAt>& topologies) {
     return result;
 }
 
+bool is_better(const TopologyVote& vote, const TopologyVote& than, bool finer) {
+    const double least = finer ? std::min(than.confidence, kLowConfidence) : than.confidence;
+    return vote.confidence > least || !than.found;
+}
+
 LatticeSurvey survey_lattices(const std::vector<Point3f>& points, const std::vector<LayerPlace>& places,
                               const Box3f& box, int threads, Progress& progress) {
     ThreadTeam team(thread_count(threads));
@@ -113,18 +118,18 @@ LatticeSurvey survey_lattices(const std::vector<Point3f>& points, const std::vec
     };
     const float first = step_for(points, box, kMaxNodes, kPointsPerNode);
     LatticeSurvey best = survey_at(first);
-    const auto take_clearer = [&](float step) {
+    const auto take_better = [&](float step) {
         LatticeSurvey other = survey_at(step);
-        if (other.vote.confidence > best.vote.confidence || !best.vote.found) best = std::move(other);
+        if (is_better(other.vote, best.vote, step < first)) best = std::move(other);
     };
     if (best.vote.confidence < kFineConfidence && !skips("finer_lattice")) {
         const float finer =
             step_for(points, box, kFineNodes * kMaxNodes, kFinePointsPerNode * kPointsPerNode);
-        if (finer * kCoarser < first) take_clearer(finer);
+        if (finer * kCoarser < first) take_better(finer);
     }
     float step = first;
     for (int i = 0; i < kCoarserLattices && best.vote.confidence < kLowConfidence; ++i)
-        if (!skips("coarser_lattices")) take_clearer(step *= kCoarser);
+        if (!skips("coarser_lattices")) take_better(step *= kCoarser);
     best.step = first;
     return best;
 }

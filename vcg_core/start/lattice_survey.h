@@ -32,7 +32,11 @@ struct TopologyVote {
 /// Radii above two lattice steps at which the solid is in pieces vote for nothing. O(levels).
 TopologyVote persistent_topology(const std::vector<TopologyAt>& topologies);
 
-/// The lattice that tells the topology most clearly.
+/// Whether the vote of a lattice is better \p than that of another. A \p finer lattice tells parts apart that
+/// nearly touch: its vote is better unless it is uncertain. Else the clearer one is.
+bool is_better(const TopologyVote& vote, const TopologyVote& than, bool finer);
+
+/// The lattice that tells the topology best.
 struct LatticeSurvey {
     Region region;
     TopologyVote vote;

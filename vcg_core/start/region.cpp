@@ -120,19 +120,25 @@ long long points_of_component(long long total) {
 
 }  // namespace
 
-double sheet_share(const Region& region) {
+ThinParts thin_parts(const Region& region, const std::vector<LayerPlace>& places) {
     PerNode<std::uint32_t> enclosed(region.lattice.size(), 0);
     if (region.encloses_space)
         for (NodeId i = 0; i < enclosed.size(); ++i)
             enclosed[i] = region.clearance[i] == 0 && region.distances[i] > 0 ? 1 : 0;
     const PerNode<std::uint32_t> beside = box_maxima(region.lattice, enclosed);
-    long long nodes = 0, sheet = 0;
+    long long nodes = 0, of_sheet = 0;
     for (NodeId i = 0; i < beside.size(); ++i) {
         if (region.counts[i] == 0) continue;
         ++nodes;
-        sheet += beside[i] == 0 ? 1 : 0;
+        of_sheet += beside[i] == 0 ? 1 : 0;
     }
-    return nodes == 0 ? 0 : static_cast<double>(sheet) / static_cast<double>(nodes);
+    ThinParts thin;
+    thin.share = nodes == 0 ? 0 : static_cast<double>(of_sheet) / static_cast<double>(nodes);
+    for (const LayerPlace& place : places) {
+        const NodeId i = region.lattice.node_of(place.position);
+        if (i < beside.size() && region.counts[i] != 0 && beside[i] == 0) thin.places.push_back(place);
+    }
+    return thin;
 }
 
 PerNode<std::uint32_t> count_points(const Lattice& lattice, const std::vector<vcg::Point3f>& points) {

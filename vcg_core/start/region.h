@@ -52,9 +52,15 @@ struct Region {
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step,
                const std::vector<LayerPlace>& places = {});
 
-/// The share of the nodes with points that have no enclosed space within two nodes, on any side: parts of the
-/// surface that are thin or open. O(nodes).
-double sheet_share(const Region& region);
+/// The parts of the surface that are thin or open: the nodes with points that have no enclosed space within
+/// two nodes, on any side.
+struct ThinParts {
+    double share = 0;                ///< of all nodes with points
+    std::vector<LayerPlace> places;  ///< those in its nodes
+};
+
+/// O(nodes + places).
+ThinParts thin_parts(const Region& region, const std::vector<LayerPlace>& places);
 
 /// Points per node of \p lattice; points outside it are not counted. O(nodes + points).
 PerNode<std::uint32_t> count_points(const Lattice& lattice, const std::vector<vcg::Point3f>& points);

@@ -50,6 +50,8 @@ constexpr double kThickEdges = 1.5;
 /// Points are the two sides of walls where so many of them are on thin ones: with walls of 4 to 7 spacings
 /// .67 at least (wall_table.py), on depth frames and aerial scans .14 at most.
 constexpr double kWalled = 0.35;
+/// The share of the places on thin walls that show it, at the least.
+constexpr double kWallsFound = 0.67;
 // A warning is due from here on, in steps of the first lattice and of the chosen one. Gaps between points are
 // narrower.
 constexpr double kCoarseRadius = 5, kWideOpening = 4;
@@ -167,12 +169,16 @@ void set_figures(const LatticeSurvey& survey, int level, StartMesh& result) {
 Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace>& places, Surveys& surveys) {
     Enclosure result;
     result.encloses_space = survey.region.encloses_space;
-    result.sheet_share = sheet_share(survey.region);
+    const ThinParts thin = thin_parts(survey.region, places);
+    result.sheet_share = thin.share;
     result.widest_opening = survey.region.widest_opening;
     // Where the lattice shows no space, the points may lie on the two sides of walls too thin for it.
-    const bool unclear = (!result.encloses_space || result.sheet_share > kMostSheet) && !skips("walled");
-    result.walled = unclear && share_on_thin_walls(places, surveys) > kWalled;
+    if ((result.encloses_space && result.sheet_share <= kMostSheet) || skips("walled")) return result;
+    result.walled = share_on_thin_walls(places, surveys) > kWalled;
     result.encloses_space |= result.walled;
+    // A body may have thin parts beside openings: what is left is a sheet.
+    const double walls = share_on_thin_walls(thin.places, surveys) / kWallsFound;
+    result.sheet_share *= std::max(0.0, 1 - walls);
     return result;
 }
 

@@ -62,7 +62,8 @@ struct ShellOptions {
 struct Enclosure {
     bool encloses_space = true;  ///< false for a sheet or a single scan: the mesh has a layer on both sides
     bool walled = false;         ///< the points are the two sides of walls too thin for the lattice
-    double sheet_share = 0;      ///< share of the surface with no enclosed space beside it
+    /// Share of the surface with no enclosed space beside it, thin walls apart.
+    double sheet_share = 0;
     double widest_opening = 0;   ///< radius of the widest sealed opening; 0: none
 };
 

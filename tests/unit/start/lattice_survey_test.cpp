@@ -60,5 +60,22 @@ TEST(TopologyVote, IsUncertainIfPointsLieInClumps) {
     EXPECT_LT(persistent_topology({{9, 1, 1}, {16, 1, 1}}).confidence, 0.5);
 }
 
+TEST(LatticeSurvey, PrefersAFinerLatticeThatIsNotUncertain) {
+    TopologyVote first, other;
+    first.found = true;
+    first.confidence = 0.72;
+    other.confidence = 0.56;
+    EXPECT_TRUE(is_better(other, first, true));
+    EXPECT_FALSE(is_better(other, first, false));
+    other.confidence = 0.45;
+    EXPECT_FALSE(is_better(other, first, true));
+    first.confidence = 0.4;
+    EXPECT_TRUE(is_better(other, first, true));
+    EXPECT_TRUE(is_better(other, first, false));
+    first.found = false;
+    other.confidence = 0;
+    EXPECT_TRUE(is_better(other, first, false));
+}
+
 }  // namespace
 }  // namespace neuralmesh

@@ -52,7 +52,8 @@ TEST(Region, ASphereEnclosesSpace) {
 
 TEST(Region, KnowsTheShareOfTheSurfaceThatEnclosesNothing) {
     const auto share = [](const std::vector<Point3f>& points) {
-        return sheet_share(examine(points, vcg::Box3f(Point3f(-1, -1, -1), Point3f(5, 1, 1)), 0.05F));
+        return thin_parts(examine(points, vcg::Box3f(Point3f(-1, -1, -1), Point3f(5, 1, 1)), 0.05F), {})
+            .share;
     };
     std::vector<Point3f> points = sphere(20000);
     EXPECT_LT(share(points), 0.001);

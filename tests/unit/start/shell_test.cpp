@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -110,6 +111,35 @@ TEST(Shell, TellsTheTwoSidesOfAThinWallFromASheet) {
     EXPECT_TRUE(cup.walled);
     EXPECT_TRUE(cup.encloses_space);
     EXPECT_FALSE(warns_of(cup, "enclose no space"));
+}
+
+/// A ball of radius 1 with a flange around its equator.
+shell_shapes::Shape ball_with_flange(double radius, double thickness) {
+    constexpr double kQuarter = 1.5707963267948966;
+    constexpr int kSteps = 24;
+    const double half = thickness / 2, edge = std::asin(half);
+    std::vector<std::array<double, 2>> profile;
+    for (int i = 0; i <= kSteps; ++i) {
+        const double v = -kQuarter + (kQuarter - edge) * i / kSteps;
+        profile.push_back({std::cos(v), std::sin(v)});
+    }
+    profile.push_back({radius, -half});
+    const std::vector<std::array<double, 2>> below = profile;
+    for (auto p = below.rbegin(); p != below.rend(); ++p) profile.push_back({(*p)[0], -(*p)[1]});
+    return shell_shapes::revolve(profile, 96, false);
+}
+
+TEST(Shell, ThinPartsOfABodyAreNoSheet) {
+    // Four spacings thick, as in the test above, but a fifth of the surface.
+    const StartMesh flange = shell_of_samples(ball_with_flange(1.25, 0.045), 200000);
+    EXPECT_FALSE(flange.walled);
+    EXPECT_LT(flange.sheet_share, kMostSheet);
+    // The same flange of one layer.
+    Random random(7);
+    std::vector<vcg::Point3d> cloud = shell_shapes::sample(ball_with_flange(1.25, 0.045), 200000, random);
+    shell_shapes::cut_off(cloud,
+                          [](const vcg::Point3d& p) { return p[2] < 0 && p[0] * p[0] + p[1] * p[1] > 1; });
+    EXPECT_GT(shell(cloud).sheet_share, kMostSheet);
 }
 
 TEST(Shell, NoiseDoesNotMakeHandles) {
