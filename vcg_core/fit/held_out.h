@@ -31,7 +31,6 @@ public:
     double rms_error(const Surface& surface, float outlier_distance, ThreadTeam& team) const;
 
     TrackedPoints& tracked() { return tracked_; }
-    const std::vector<Vector3>& points() const { return tracked_.points; }
 
 private:
     TrackedPoints tracked_;

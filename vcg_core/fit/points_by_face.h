@@ -48,7 +48,6 @@ public:
     PerFace<float> counts() const;
     /// The points of all faces, face by face.
     std::vector<Assignment>& all() { return assignments_; }
-    const std::vector<Assignment>& all() const { return assignments_; }
     /// Number of points for each of \p vertices vertices.
     float per_vertex(int vertices) const {
         return static_cast<float>(assignments_.size()) / static_cast<float>(vertices);
