@@ -29,13 +29,14 @@ Vector flat(const PerVertex<Vector3>& values) {
 
 /// The matrix of the system, column by column.
 Matrix matrix_of(const PointToPlaneSystem& system, int slots, float lambda) {
+    ThreadTeam team(1);
     Matrix matrix(3 * slots, 3 * slots);
     PerVertex<Vector3> unit(slots, Vector3::Zero());
     PerVertex<Vector3> column(slots, Vector3::Zero());
     for (VertexId v = 0; v < slots; ++v)
         for (Eigen::Index axis = 0; axis < 3; ++axis) {
             unit[v][axis] = 1;
-            system.multiply(lambda, unit, column);
+            system.multiply(lambda, unit, team, column);
             unit[v][axis] = 0;
             matrix.col(3 * v + axis) = flat(column);
         }
@@ -168,7 +169,7 @@ TEST_F(LeastSquares, MeasuresThePointsAsDefined) {
     // Tripling the influence of all points adds twice their energy, and no bending.
     const auto energy = [&](const PointToPlaneSystem& s) {
         PerVertex<Vector3> image(u.size(), Vector3::Zero());
-        s.multiply(0, u, image);
+        s.multiply(0, u, team, image);
         return flat(u).dot(flat(image)) - 2 * flat(u).dot(flat(s.right_side(0)));
     };
     for (const float hold : {PointToPlaneSystem::kSliding, 0.3F, 1.0F}) {
@@ -211,13 +212,13 @@ TEST(BendingTerms, AreZeroOnAPlane) {
         tilt[v][2] = 0.3F * surface.positions[v][0] - surface.positions[v][1] + 2;
     PerVertex<Vector3> bent = tilt;
     PerVertex<Vector3> plain = tilt;
-    system.multiply(100, tilt, bent);
-    system.multiply(0, tilt, plain);
+    system.multiply(100, tilt, team, bent);
+    system.multiply(0, tilt, team, plain);
     EXPECT_LT((flat(bent) - flat(plain)).norm(), 1e-3 * flat(plain).norm());
     // A bump has bending energy.
     tilt[40][2] += 1;
-    system.multiply(100, tilt, bent);
-    system.multiply(0, tilt, plain);
+    system.multiply(100, tilt, team, bent);
+    system.multiply(0, tilt, team, plain);
     EXPECT_GT((flat(bent) - flat(plain)).norm(), flat(plain).norm());
 }
 
