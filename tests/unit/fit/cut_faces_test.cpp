@@ -82,13 +82,6 @@ TEST(CutFaces, ATangleLosesATenthOfItsFacesAtMost) {
     }
 }
 
-TEST(CutFaces, AreTheSameForAnyNumberOfThreads) {
-    Network one = referee::network_of(shapes::grid(15, 15), 0.1), two = one;
-    removed_from(one, 1);
-    removed_from(two, 2);
-    EXPECT_EQ(one.faces(), two.faces());
-}
-
 TEST(SoundStart, KeepsTheNumberOfVertices) {
     for (const double depth : {0.05, 0.12}) {
         Network network = standing_on_sheet(shapes::grid(8, 8), depth);

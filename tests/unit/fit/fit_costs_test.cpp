@@ -206,18 +206,6 @@ TEST(FindSplits, GainIsTheMeasuredDrop) {
     EXPECT_GT(measured, 10);
 }
 
-TEST(FindSplits, OmitsGainsBelowTheBound) {
-    const FitScene scene = wave_scene();
-    ThreadTeam team(1);
-    const std::vector<EdgeSplit> all = find_splits(scene.network, scene.surface, scene.points, 0, team);
-    const float bound = all[all.size() / 2].gain;
-    const std::vector<EdgeSplit> some = find_splits(scene.network, scene.surface, scene.points, bound, team);
-    const auto expected =
-        std::count_if(all.begin(), all.end(), [&](const EdgeSplit& split) { return split.gain >= bound; });
-    EXPECT_EQ(static_cast<std::ptrdiff_t>(some.size()), expected);
-    EXPECT_LT(some.size(), all.size());
-}
-
 /// The scene of a torus whose points weigh \p upper above the plane z = 0 and \p lower below it.
 FitScene weighted_torus_scene(float upper, float lower) {
     FitScene scene = torus_scene();

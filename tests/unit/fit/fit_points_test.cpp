@@ -139,20 +139,6 @@ TEST(PointsByFace, HaveEveryPointWithItsNearestFace) {
     EXPECT_EQ(i, 2000U);
 }
 
-TEST(PointsByFace, UpdateTheirFeet) {
-    FitScene scene(referee::network_of(shapes::icosphere(2)), shapes::sphere_cloud(2000));
-    ThreadTeam team(2);
-    for (Vector3& p : scene.surface.positions) p *= 1.1F;
-    scene.points.update_feet(scene.surface, team);
-    for (int f = 0; f < scene.surface.face_count(); ++f)
-        for (const PointsByFace::Assignment& a : scene.points.of(f)) {
-            const Foot foot = foot_on_triangle(a.point, scene.surface.corner(f, 0),
-                                               scene.surface.corner(f, 1), scene.surface.corner(f, 2));
-            EXPECT_EQ(a.foot.squared_distance, foot.squared_distance);
-            EXPECT_EQ(a.foot.weights, foot.weights);
-        }
-}
-
 TEST(NoiseVariance, IsThatOfANoisyPlane) {
     ThreadTeam team(2);
     const Surface plane(referee::network_of(shapes::grid(10, 10)));

@@ -294,16 +294,6 @@ TEST(Fit, ReportsHowMuchOfItIsDone) {
     }
 }
 
-TEST(Fit, StopsWhenAskedTo) {
-    const TargetSpace target = target_of(shapes::sphere_cloud(5000));
-    Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(2), 1.1));
-    const Network before = network;
-    Stop stop;
-    const FitReport report = fit_to_points(network, target, {}, 1, 1, stop);
-    EXPECT_EQ(report.rounds, 0);
-    EXPECT_TRUE(same_bytes(before, network));
-}
-
 TEST(Fit, RemovesNoMoreThanTheTopologyAllows) {
     // A triangulated torus has at least seven vertices, so it cannot be reduced to four.
     const TargetSpace target = target_of(shapes::torus_cloud(8000, 0));

@@ -203,17 +203,6 @@ TEST(ReduceDensely, RemovesOnlyWhatIsAsMeasured) {
     }
 }
 
-TEST(ReduceDensely, RemovesMoreThanCollapsesThatDoNotTouch) {
-    const FitScene scene = cube_scene();
-    ThreadTeam team(1);
-    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
-    const PerVertex<char> none(scene.network.slot_count(), 0);
-    Network apart = scene.network;
-    Network dense = scene.network;
-    const std::size_t fewer = reduce(apart, collapses, 10000, none).size();
-    EXPECT_GT(reduce_densely(dense, collapses, 10000, none).size(), fewer + fewer / 4);
-}
-
 TEST(ReduceDensely, LeavesBarredVerticesAlone) {
     const FitScene scene = cube_scene();
     ThreadTeam team(1);

@@ -56,13 +56,6 @@ TEST(Refine, SplitsBoundaryEdgesToo) {
     EXPECT_LT(longest, 0.06);
 }
 
-TEST(Refine, LeavesEnoughVerticesAlone) {
-    Network network = referee::network_of(shapes::icosphere(2));
-    NoProgress progress;
-    EXPECT_EQ(refine(network, 100, NewVertices::curved, progress), 0);
-    EXPECT_EQ(network.vertex_count(), 162);
-}
-
 TEST(Refine, EndsWhenProgressAsksToStop) {
     class Once : public Progress {
     public:
@@ -127,15 +120,6 @@ TEST(FewPoints, MakeASmoothOpenMesh) {
     for (const vcg::Point3d& p : mesh.positions) positions.push_back(vcg::Point3f::Construct(p));
     ThreadTeam team(1);
     EXPECT_TRUE(self_crossings(Surface(Network(positions, mesh.faces)), team).empty());
-}
-
-TEST(FewPoints, EnoughPointsGiveNoWarning) {
-    Settings settings;
-    settings.target_vertices = 300;
-    NoProgress progress;
-    const NeuralMesh mesh = reconstruct(soundness::target_of(shapes::sphere_cloud(700)), settings, progress);
-    EXPECT_EQ(mesh.report.vertices, 300);
-    EXPECT_FALSE(soundness::has_warning(mesh, "carry about"));
 }
 
 }  // namespace

@@ -64,14 +64,5 @@ TEST(SoundMoves, StopBeforeTheSidesCross) {
     EXPECT_LT(farthest, 1);
 }
 
-TEST(SoundMoves, DoNotDependOnTheThreads) {
-    Network one = hollow_ball(0.6), three = hollow_ball(0.6);
-    const PerVertex<Vector3> moves = moves_to(one, 0.8F, 0.76F, 0.8F);
-    ThreadTeam alone(1), team(3);
-    move_soundly(one, moves, alone);
-    move_soundly(three, moves, team);
-    for (const VertexId v : one.vertices()) EXPECT_EQ(one.position(v), three.position(v));
-}
-
 }  // namespace
 }  // namespace neuralmesh
