@@ -102,7 +102,7 @@ private:
                  !skips("hold");
         fitter_.set_directions(surface);
         at_start_ = fitter_.held_out();
-        report_.rms_unfitted = report_.rms_fitted = fitter_.held_out_error(surface);
+        report_.rms_unfitted = report_.rms_fitted = fitter_.error_at(at_start_, surface);
         return solve(0, surface, points);
     }
 

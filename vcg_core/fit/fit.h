@@ -32,8 +32,6 @@ struct FitOptions {
     /// Leave out stray points (stray_points.h). For clouds that had outliers: those close to the surface are
     /// still there.
     bool expect_strays = false;
-    /// Look for layers of points (layers.h), which the surface must not follow by turns.
-    bool expect_layers = true;
     /// Insert vertices until there are this many, after the rounds, and fit once more. For meshes of more
     /// vertices than the points carry. 0, or at most the number then: none.
     int refine_to = 0;

@@ -15,7 +15,7 @@ namespace neuralmesh {
 float noise_variance(const Surface& surface, const PointsByFace& points, ThreadTeam& team);
 
 /// The variance of the points across the surface around each vertex, about the mean of each face, along
-/// smoothed normals: those of a mesh that follows the layers stand askew. O(points + vertices).
+/// smoothed normals. O(points + vertices).
 PerVertex<float> local_variances(const Network& network, const Surface& surface, const PointsByFace& points);
 
 }  // namespace neuralmesh

@@ -149,6 +149,15 @@ TEST(NoiseVariance, IsThatOfANoisyPlane) {
     }
 }
 
+TEST(NoiseVariance, OfEachPlaceIsThatOfTheNoise) {
+    constexpr double kNoise = 0.04;
+    const double deviation = kNoise / std::sqrt(5.0);  // along one axis, of noise that fills a ball
+    const FitScene scene(referee::network_of(shapes::icosphere(3)), shapes::sphere_cloud(20000, kNoise));
+    const PerVertex<float> variances = local_variances(scene.network, scene.surface, scene.points);
+    for (const VertexId v : scene.network.vertices())
+        EXPECT_NEAR(std::sqrt(static_cast<double>(variances[v])), deviation, 0.15 * deviation);
+}
+
 TEST(NoiseVariance, IsNotThatOfTheMisfit) {
     ThreadTeam team(2);
     const Surface sphere(referee::network_of(shapes::icosphere(2)));
