@@ -228,7 +228,7 @@ void Fitter::move_to_creases(Surface& surface, const PointsByFace& points) {
 }
 
 /// Moves the starts of walks from removed vertices to the vertices they were collapsed into.
-void Fitter::redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses) {
+void Fitter::redirect_to_survivors(const std::vector<DoneCollapse>& collapses) {
     PerVertex<VertexId> survivor(network_.slot_count());
     std::iota(survivor.begin(), survivor.end(), 0);
     for (auto collapse = collapses.rbegin(); collapse != collapses.rend(); ++collapse)
@@ -243,12 +243,11 @@ bool Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& p
     const std::vector<Collapse> collapses = find_collapses(network_, surface, points, team_);
     const std::vector<EdgeSplit> splits =
         find_splits(network_, surface, points, kGainVariances, team_, variances_);
-    const VertexMoves done = guarded(surface, [&](const PerVertex<char>& barred) {
+    const std::vector<DoneCollapse> done = guarded(surface, [&](const PerVertex<char>& barred) {
         return redistribute(network_, collapses, splits, max_pairs, barred);
     });
-    if (done.collapses.empty()) return false;
-    redirect_to_survivors(done.collapses);
-    return true;
+    redirect_to_survivors(done);
+    return !done.empty();
 }
 
 void Fitter::flip_edges(const Surface& surface, PointsByFace& points) {

@@ -86,7 +86,7 @@ private:
     template <class Change>
     auto guarded(const Surface& surface, const Change& change);
     void place_vertices(const Surface& surface);
-    void redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses);
+    void redirect_to_survivors(const std::vector<DoneCollapse>& collapses);
     void set_points_aside(int points_per_vertex);
     bool wants_reduction(int vertices, int at_start, Progress& progress) const;
     bool reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress);

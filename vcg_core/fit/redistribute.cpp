@@ -83,28 +83,39 @@ std::vector<EdgeSplit> choose_splits(const Network& network, const std::vector<E
 }
 
 /// \pre the edge can be split
-VertexMoves::Insertion carry_out(Network& network, const EdgeSplit& split) {
+void carry_out(Network& network, const EdgeSplit& split) {
     const SplitPlace place = *split_place(network, split);
-    return {network.split(place.at, place.first, place.count, to_vcg(split.position)), place.at};
+    network.split(place.at, place.first, place.count, to_vcg(split.position));
+}
+
+/// Carries out collapses, in their order, that touch no \p touched vertex and not each other, as long as
+/// goes_on(number done, next) is true.
+template <class GoesOn>
+std::vector<DoneCollapse> collapse_apart(Network& network, const std::vector<Collapse>& collapses,
+                                         PerVertex<char> touched, const GoesOn& goes_on) {
+    std::vector<DoneCollapse> done;
+    for (const Collapse& collapse : collapses) {
+        if (collapse.into < 0 || !goes_on(static_cast<int>(done.size()), collapse)) break;
+        if (collapse_untouched(network, collapse, touched)) done.push_back({collapse.gone, collapse.into});
+    }
+    return done;
 }
 
 }  // namespace
 
-VertexMoves redistribute(Network& network, const std::vector<Collapse>& collapses,
-                         const std::vector<EdgeSplit>& splits, int max_pairs, const PerVertex<char>& barred) {
+std::vector<DoneCollapse> redistribute(Network& network, const std::vector<Collapse>& collapses,
+                                       const std::vector<EdgeSplit>& splits, int max_pairs,
+                                       const PerVertex<char>& barred) {
     // Splits are chosen first, since there are many cheap collapses but few places with large errors.
     PerVertex<char> touched = barred;
     const std::vector<EdgeSplit> chosen = choose_splits(network, splits, max_pairs, touched);
-    VertexMoves result;
-    for (const Collapse& collapse : collapses) {
-        const std::size_t pairs = result.collapses.size();
-        if (pairs >= chosen.size() || collapse.into < 0 || collapse.cost >= chosen[pairs].gain) break;
-        if (collapse_untouched(network, collapse, touched))
-            result.collapses.push_back({collapse.gone, collapse.into});
-    }
-    for (std::size_t i = 0; i < result.collapses.size(); ++i)
-        result.insertions.push_back(carry_out(network, chosen[i]));
-    return result;
+    const std::vector<DoneCollapse> done =
+        collapse_apart(network, collapses, touched, [&](int count, const Collapse& next) {
+            const auto i = static_cast<std::size_t>(count);
+            return i < chosen.size() && next.cost < chosen[i].gain;
+        });
+    for (std::size_t i = 0; i < done.size(); ++i) carry_out(network, chosen[i]);
+    return done;
 }
 
 int insert(Network& network, const std::vector<EdgeSplit>& splits, int max_count) {
@@ -114,22 +125,16 @@ int insert(Network& network, const std::vector<EdgeSplit>& splits, int max_count
     return static_cast<int>(chosen.size());
 }
 
-std::vector<VertexMoves::DoneCollapse> reduce(Network& network, const std::vector<Collapse>& collapses,
-                                              int max_count, const PerVertex<char>& barred) {
-    PerVertex<char> touched = barred;
-    std::vector<VertexMoves::DoneCollapse> done;
-    for (const Collapse& collapse : collapses) {
-        if (static_cast<int>(done.size()) >= max_count || collapse.into < 0) break;
-        if (collapse_untouched(network, collapse, touched)) done.push_back({collapse.gone, collapse.into});
-    }
-    return done;
+std::vector<DoneCollapse> reduce(Network& network, const std::vector<Collapse>& collapses, int max_count,
+                                 const PerVertex<char>& barred) {
+    return collapse_apart(network, collapses, barred,
+                          [&](int count, const Collapse&) { return count < max_count; });
 }
 
-std::vector<VertexMoves::DoneCollapse> reduce_densely(Network& network,
-                                                      const std::vector<Collapse>& collapses, int max_count,
-                                                      const PerVertex<char>& barred) {
+std::vector<DoneCollapse> reduce_densely(Network& network, const std::vector<Collapse>& collapses,
+                                         int max_count, const PerVertex<char>& barred) {
     PerVertex<char> touched(network.slot_count(), 0);
-    std::vector<VertexMoves::DoneCollapse> done;
+    std::vector<DoneCollapse> done;
     const auto is_barred = [&](VertexId v) { return barred[v] != 0; };
     for (const Collapse& collapse : collapses) {
         if (static_cast<int>(done.size()) >= max_count || collapse.into < 0) break;

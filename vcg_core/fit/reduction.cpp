@@ -109,7 +109,7 @@ bool Fitter::wants_reduction(int vertices, int at_start, Progress& progress) con
 /// \return whether any vertex was removed
 bool Fitter::remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense) {
     const std::vector<Collapse> collapses = find_collapses(network_, surface, points, team_);
-    const std::vector<VertexMoves::DoneCollapse> done = guarded(surface, [&](const PerVertex<char>& barred) {
+    const std::vector<DoneCollapse> done = guarded(surface, [&](const PerVertex<char>& barred) {
         return dense ? reduce_densely(network_, collapses, max_count, barred)
                      : reduce(network_, collapses, max_count, barred);
     });
