@@ -53,25 +53,29 @@ int automatic_rounds(int vertices) { return std::min(20, std::max(8, 40000 / std
 /// The rounds of a fit and the best mesh so far.
 class FitRounds {
 public:
-    FitRounds(Network& network, Fitter& fitter, const FitOptions& options, FitReport& report)
+    FitRounds(Network& network, Fitter& fitter, const FitOptions& options)
         : network_(network),
           fitter_(fitter),
           options_(options),
-          report_(report),
           rounds_(options.rounds > 0 ? options.rounds : automatic_rounds(network.vertex_count())),
           at_start_(fitter.held_out()),
           best_(network) {}
 
-    void run(Progress& progress) {
-        if (!wants_on(progress, 0)) return;
-        bool converged = first_round();
+    /// The network becomes the best mesh, or stays.
+    /// \param learned_share see kLearnedShare
+    FitReport run(double learned_share, ThreadTeam& team, Progress& progress) {
+        const Network before = network_;
+        bool converged = !wants_on(progress, 0) || first_round();
         for (int round = 1; round < rounds_ && !converged && wants_on(progress, round); ++round)
             converged = next_round(round);
+        judge(learned_share, team);
+        network_ = report_.improved ? best_ : before;
+        return report_;
     }
 
+private:
     /// Whether the best mesh is closer to the held-out points than the mesh before the rounds was, along the
     /// directions of the latter.
-    /// \param learned_share see kLearnedShare
     void judge(double learned_share, ThreadTeam& team) {
         if (report_.rounds == 0) return;
         const Surface fitted(best_);
@@ -85,9 +89,6 @@ public:
         if (report_.improved) report_.rms_fitted = error;
     }
 
-    Network& best() { return best_; }
-
-private:
     bool wants_on(Progress& progress, int round) const {
         const std::string text = "Fitting to the points, round " + std::to_string(round + 1);
         return progress(static_cast<double>(round) / rounds_, text.c_str());
@@ -141,7 +142,7 @@ private:
     Network& network_;
     Fitter& fitter_;
     const FitOptions& options_;
-    FitReport& report_;
+    FitReport report_;
     const int rounds_;
     bool holds_ = false;  ///< in later rounds the points hold the surface
     HeldOut at_start_;  ///< with the directions of the mesh before the rounds
@@ -177,39 +178,28 @@ void refine_and_fit(Network& network, const TargetSpace& target, const FitOption
     PartOf untangling(progress, 0.1, 0.2);
     PartOf fitting(progress, 0.2, 1);
     if (!fitter.untangle_surface(untangling)) return;
-    const Network before = network;
     FitOptions of_refined = options;
     of_refined.rounds = kRefinedRounds;
     of_refined.redistribute = false;
-    FitReport refined;
-    FitRounds rounds(network, fitter, of_refined, refined);
-    rounds.run(fitting);
-    rounds.judge(learned_share, team);
-    network = refined.improved ? std::move(rounds.best()) : before;
+    FitRounds(network, fitter, of_refined).run(learned_share, team, fitting);
 }
 
 /// The reduction and the rounds of the fit.
 FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitOptions& options,
                          ThreadTeam& team, std::uint64_t seed, Progress& progress) {
-    FitReport report;
     const bool reduces = options.reduce_to > 0 && options.reduce_to < network.vertex_count();
     const int vertices = reduces ? options.reduce_to : network.vertex_count();
     PointChoice points = points_for(vertices, target, options, seed);
-    if (points.fitted.points.size() < kMinPoints || network.face_count() == 0) return report;
+    if (points.fitted.points.size() < kMinPoints || network.face_count() == 0) return {};
     const double learned_share = learned_share_of(network, target);
     Fitter fitter(network, std::move(points), options, team);
     // By time: the reduction takes about as long as the rounds.
     PartOf untangling(progress, 0, 0.1);
     PartOf reducing(progress, 0.1, 0.5);
     PartOf fitting(progress, reduces ? 0.5 : 0.1, 1);
-    if (!fitter.untangle_surface(untangling)) return report;
-    if (reduces && !fitter.reduce_to(vertices, reducing)) return report;
-    const Network before = network;
-    FitRounds rounds(network, fitter, options, report);
-    rounds.run(fitting);
-    rounds.judge(learned_share, team);
-    network = report.improved ? std::move(rounds.best()) : before;
-    return report;
+    if (!fitter.untangle_surface(untangling)) return {};
+    if (reduces && !fitter.reduce_to(vertices, reducing)) return {};
+    return FitRounds(network, fitter, options).run(learned_share, team, fitting);
 }
 
 }  // namespace
