@@ -17,6 +17,8 @@ namespace neuralmesh {
 
 namespace {
 
+/// Number of points used: this many per vertex, at least so many, at most all of a cloud.
+constexpr long long kPointsPerVertex = 100, kLeastPoints = 100000;
 /// With fewer points than this the network is left unchanged.
 constexpr std::size_t kMinPoints = 64;
 /// The points held out of the fit took part in the learning, which has followed their noise. So the mean
@@ -131,7 +133,7 @@ private:
         if (round >= kFirstRounds && error > (1 - kLeastProgress) * error_before_last_) return true;
         error_before_last_ = last_error_;
         last_error_ = error;
-        if (options_.flip_edges && round + 1 < rounds_) {
+        if (round + 1 < rounds_) {
             // Not after the first round: vertices are too far from the points to tell creases.
             if (round > 0) fitter_.move_to_creases(surface, points);
             fitter_.flip_edges(surface, points);
@@ -152,12 +154,10 @@ private:
     double error_before_last_ = 0;
 };
 
-PointChoice points_for(int vertices, const TargetSpace& target, const FitOptions& options,
-                       std::uint64_t seed) {
+PointChoice points_for(int vertices, const TargetSpace& target, std::uint64_t seed) {
     Random random(seed);
-    const auto wanted = static_cast<std::size_t>(std::max<long long>(
-        options.min_points, static_cast<long long>(options.points_per_vertex) * vertices));
-    return choose_points(target, wanted, random);
+    return choose_points(
+        target, static_cast<std::size_t>(std::max(kLeastPoints, kPointsPerVertex * vertices)), random);
 }
 
 double learned_share_of(const Network& network, const TargetSpace& target) {
@@ -172,7 +172,7 @@ void refine_and_fit(Network& network, const TargetSpace& target, const FitOption
     const double learned_share = learned_share_of(network, target);
     PartOf inserting(progress, 0, 0.1);
     const int inserted = refine(network, options.refine_to, NewVertices::curved, inserting);
-    PointChoice points = points_for(network.vertex_count(), target, options, seed);
+    PointChoice points = points_for(network.vertex_count(), target, seed);
     if (inserted == 0 || points.fitted.points.size() < kMinPoints) return;
     Fitter fitter(network, std::move(points), options, team);
     PartOf untangling(progress, 0.1, 0.2);
@@ -189,7 +189,7 @@ FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitO
                          ThreadTeam& team, std::uint64_t seed, Progress& progress) {
     const bool reduces = options.reduce_to > 0 && options.reduce_to < network.vertex_count();
     const int vertices = reduces ? options.reduce_to : network.vertex_count();
-    PointChoice points = points_for(vertices, target, options, seed);
+    PointChoice points = points_for(vertices, target, seed);
     if (points.fitted.points.size() < kMinPoints || network.face_count() == 0) return {};
     const double learned_share = learned_share_of(network, target);
     Fitter fitter(network, std::move(points), options, team);

@@ -18,7 +18,6 @@ struct FitOptions {
     /// Most rounds of least squares, each with new nearest faces. 0: 20 up to 2,000 vertices, falling to 8
     /// from 5,000 on.
     int rounds = 0;
-    bool flip_edges = true;
     /// Move vertices from where they matter little to where the error is large (Hoppe et al. 1993). Turn it
     /// off for meshes whose density must follow something else than the error.
     bool redistribute = true;
@@ -37,9 +36,6 @@ struct FitOptions {
     int refine_to = 0;
     /// The noise of the points; null: as the first mesh shows it, the same everywhere.
     const SurfaceSurvey* noise = nullptr;
-    /// Number of points used: this many per vertex, at least min_points, at most all of a cloud.
-    int points_per_vertex = 100;
-    int min_points = 100000;
 };
 
 /// Figures of a fit. Errors are root mean squares over points held out of the fit, in the core's frame,
