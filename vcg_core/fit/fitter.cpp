@@ -16,7 +16,7 @@
 #include "vcg_core/fit/edge_flips.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/noise.h"
-#include "vcg_core/fit/sound_start.h"
+#include "vcg_core/fit/sound_meshes.h"
 #include "vcg_core/fit/stray_points.h"
 
 namespace neuralmesh {

@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Long moves reach their places, and stop where the surface would cut itself.
-#include "vcg_core/fit/sound_moves.h"
+#include "vcg_core/fit/sound_meshes.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Self-crossings are smoothed out before the fit, and the fit makes none.
-#include "vcg_core/fit/untangle.h"
+#include "vcg_core/fit/sound_meshes.h"
 
 #include <gtest/gtest.h>
 
