@@ -11,7 +11,7 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/fit/fitter.h"
-#include "vcg_core/fit/refine.h"
+#include "vcg_core/fit/redistribute.h"
 
 namespace neuralmesh {
 
@@ -147,7 +147,7 @@ private:
     FitReport report_;
     const int rounds_;
     bool holds_ = false;  ///< in later rounds the points hold the surface
-    HeldOut at_start_;  ///< with the directions of the mesh before the rounds
+    HeldOut at_start_;    ///< with the directions of the mesh before the rounds
     Network best_;
     double best_error_ = 0;
     double last_error_ = 0;

@@ -12,7 +12,7 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
-#include "vcg_core/fit/boundary_mending.h"
+#include "vcg_core/fit/boundary.h"
 #include "vcg_core/fit/edge_flips.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/noise.h"

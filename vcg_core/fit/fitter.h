@@ -10,11 +10,10 @@
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/fit/crease_moves.h"
-#include "vcg_core/fit/crossing_guard.h"
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/fit/held_out.h"
 #include "vcg_core/fit/least_squares.h"
-#include "vcg_core/fit/point_choice.h"
+#include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/points_by_face.h"
 #include "vcg_core/fit/redistribute.h"
 #include "vcg_core/fit/split_gains.h"
@@ -99,13 +98,13 @@ private:
     TrackedPoints fitted_;
     TrackedPoints set_aside_;  ///< fitted points that the reduction does not use
     HeldOut held_out_;
-    float outlier_distance_ = 0;         ///< from the first assignment; fixed, so that errors stay comparable
-    float noise_variance_ = 0;           ///< from the last assignment
-    PerVertex<float> variances_;         ///< of the noise around each vertex, from the last assignment
+    float outlier_distance_ = 0;  ///< from the first assignment; fixed, so that errors stay comparable
+    float noise_variance_ = 0;    ///< from the last assignment
+    PerVertex<float> variances_;  ///< of the noise around each vertex, from the last assignment
     PerVertex<float> rounding_variances_;  ///< the part that the points of one step share
-    float least_weight_;    ///< of bending; falls, as in the first rounds points may be with wrong faces
+    float least_weight_;        ///< of bending; falls, as in the first rounds points may be with wrong faces
     float bending_weight_ = 0;  ///< the last choice; 0: none yet
-    CrossingGuard guard_;  ///< has accepted the present surface
+    CrossingGuard guard_;       ///< has accepted the present surface
 };
 
 template <class Change>

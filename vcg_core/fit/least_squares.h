@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "vcg_core/base/thread_team.h"
-#include "vcg_core/fit/boundary_targets.h"
+#include "vcg_core/fit/boundary.h"
 #include "vcg_core/fit/points_by_face.h"
 #include "vcg_core/mesh/surface.h"
 

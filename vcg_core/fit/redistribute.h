@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Moves vertices through the mesh: collapses where they matter little, splits where the error is large.
+// Moves vertices through the mesh: collapses where they matter little, splits where the error is large. And
+// more vertices than the points carry: the longest edges are split.
 #pragma once
 
 #include <vector>
 
+#include "vcg_core/base/progress.h"
 #include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/split_gains.h"
+#include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
 
@@ -38,5 +41,17 @@ std::vector<DoneCollapse> reduce(Network& network, const std::vector<Collapse>& 
 /// faces, or faces beyond its ring, are new. So the cost of each still holds.
 std::vector<DoneCollapse> reduce_densely(Network& network, const std::vector<Collapse>& collapses,
                                          int max_count, const PerVertex<char>& barred);
+
+/// Where refine() puts the new vertices.
+enum class NewVertices {
+    on_edges,  ///< adds no self-crossing
+    curved,    ///< the surface curves by the normals at the ends of the edges
+    between,   ///< the same, but it curves only where the normals turn by little
+};
+
+/// Splits edges of \p network, the longest first, until it has \p vertices vertices or no edge can be
+/// split. O(n log n) for every doubling of the vertices. \p progress is asked before each pass. \return the
+/// number of vertices inserted
+int refine(Network& network, int vertices, NewVertices where, Progress& progress);
 
 }  // namespace neuralmesh

@@ -10,7 +10,7 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/fit/cut_faces.h"
 #include "vcg_core/fit/move_limits.h"
-#include "vcg_core/fit/refine.h"
+#include "vcg_core/fit/redistribute.h"
 
 namespace neuralmesh {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/fit/refine.h"
+#include "vcg_core/fit/redistribute.h"
 
 #include <gtest/gtest.h>
 

@@ -11,8 +11,8 @@
 
 #include "tests/unit/support/crumpled.h"
 #include "tests/unit/support/targets.h"
-#include "vcg_core/fit/crossing_guard.h"
 #include "vcg_core/fit/fit.h"
+#include "vcg_core/fit/move_limits.h"
 
 namespace neuralmesh {
 namespace {
