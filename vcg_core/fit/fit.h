@@ -28,7 +28,7 @@ struct FitOptions {
     bool fitted_before = false;
     /// Reduce by the shape of the fitted mesh (volume_collapse.h).
     bool by_volume = false;
-    /// Leave out stray points (stray_points.h). For clouds that had outliers: those close to the surface are
+    /// Leave out stray points (noise.h). For clouds that had outliers: those close to the surface are
     /// still there.
     bool expect_strays = false;
     /// Insert vertices until there are this many, after the rounds, and fit once more. For meshes of more

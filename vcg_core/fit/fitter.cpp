@@ -17,7 +17,6 @@
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/noise.h"
 #include "vcg_core/fit/sound_meshes.h"
-#include "vcg_core/fit/stray_points.h"
 
 namespace neuralmesh {
 

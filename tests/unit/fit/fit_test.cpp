@@ -12,7 +12,7 @@
 
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/targets.h"
-#include "vcg_core/fit/rms_error.h"
+#include "vcg_core/fit/point_errors.h"
 #include "vcg_core/mesh/self_crossings.h"
 
 namespace neuralmesh {
