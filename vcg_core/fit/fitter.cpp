@@ -199,12 +199,10 @@ double Fitter::solve(const PointsByFace& points, Surface& surface, float hold) {
     }
     bending_weight_ = weights[best];
     surface.positions = solutions[best];
-    std::vector<SelfCrossing> crossings = self_crossings(surface, team_);
-    if (!guard_.objections(crossings).empty()) {
+    if (!guard_.objections(self_crossings(surface, team_)).empty()) {
         PerVertex<Vector3> displacements = solutions[best];
         for (VertexId v = 0; v < displacements.size(); ++v) displacements[v] -= start.positions[v];
-        surface.positions =
-            limits.without_crossings(displacements, surface, std::move(crossings), guard_, team_);
+        surface.positions = limits.without_crossings(displacements, guard_, team_);
         best_error = held_out_.rms_error(surface, outlier_distance_, team_);
     }
     place_vertices(surface);

@@ -112,10 +112,10 @@ public:
             if (!shorten(find_offending(), pass)) return std::move(moved_);
     }
 
-    /// \param last a surface with the same faces, before or after the move; its \p crossings are known
-    PerVertex<Vector3> shorten_to_limits(Surface last, std::vector<SelfCrossing> crossings,
-                                         CrossingGuard& guard, ThreadTeam& team) {
-        Surface now = last;
+    /// \param guard has accepted the surface before the move
+    PerVertex<Vector3> shorten_to_limits(CrossingGuard& guard, ThreadTeam& team) {
+        Surface last = surface_, now = surface_;
+        std::vector<SelfCrossing> crossings = guard.accepted();
         int crossed = 0;
         for (int pass = 0;; ++pass) {
             if (shorten(find_offending(), pass)) continue;
@@ -196,13 +196,7 @@ PerVertex<Vector3> MoveLimits::bounded(const PerVertex<Vector3>& displacements) 
 
 PerVertex<Vector3> MoveLimits::without_crossings(const PerVertex<Vector3>& displacements,
                                                  CrossingGuard& guard, ThreadTeam& team) const {
-    return without_crossings(displacements, surface_, guard.accepted(), guard, team);
-}
-
-PerVertex<Vector3> MoveLimits::without_crossings(const PerVertex<Vector3>& displacements,
-                                                 const Surface& known, std::vector<SelfCrossing> crossings,
-                                                 CrossingGuard& guard, ThreadTeam& team) const {
-    return Moves(*this, displacements).shorten_to_limits(known, std::move(crossings), guard, team);
+    return Moves(*this, displacements).shorten_to_limits(guard, team);
 }
 
 }  // namespace neuralmesh

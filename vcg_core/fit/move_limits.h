@@ -45,11 +45,6 @@ public:
     /// The same, shortened further until \p guard, which has accepted the surface, accepts the result.
     PerVertex<Vector3> without_crossings(const PerVertex<Vector3>& displacements, CrossingGuard& guard,
                                          ThreadTeam& team) const;
-    /// The same, sooner if \p known, a surface with the same faces, is closer to the result; \p crossings are
-    /// those of \p known.
-    PerVertex<Vector3> without_crossings(const PerVertex<Vector3>& displacements, const Surface& known,
-                                         std::vector<SelfCrossing> crossings, CrossingGuard& guard,
-                                         ThreadTeam& team) const;
 
 private:
     class Moves;
