@@ -8,7 +8,7 @@
 
 #include "vcg_core/base/random.h"
 #include "vcg_core/fit/fit.h"
-#include "vcg_core/fit/sources.h"
+#include "vcg_core/fit/redistribute.h"
 #include "vcg_core/mesh/simplify.h"
 #include "vcg_core/mesh/vertex_order.h"
 

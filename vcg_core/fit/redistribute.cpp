@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "vcg_core/cloud/nearest_points.h"
 #include "vcg_core/mesh/surface.h"
 
 namespace neuralmesh {
@@ -225,6 +226,21 @@ int refine(Network& network, int vertices, NewVertices where, Progress& progress
         if (done == 0) break;
     }
     return network.vertex_count() - before;
+}
+
+VertexPlaces::VertexPlaces(const Network& network) {
+    for (const VertexId v : network.vertices()) {
+        ids.push_back(v);
+        places.push_back(network.position(v));
+    }
+}
+
+PerVertex<VertexId> nearest_vertices(const VertexPlaces& before, const Network& after) {
+    const NearestPoints search(before.places);
+    PerVertex<VertexId> nearest(after.slot_count(), -1);
+    for (const VertexId v : after.vertices())
+        nearest[v] = before.ids[search.index(search.nearest_to(after.position(v)))];
+    return nearest;
 }
 
 }  // namespace neuralmesh

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Moves vertices through the mesh: collapses where they matter little, splits where the error is large. And
-// more vertices than the points carry: the longest edges are split.
+// Moves vertices through the mesh: collapses where they matter little, splits where the error is large. More
+// vertices than the points carry: the longest edges are split. And which earlier vertex stands for each after
+// that.
 #pragma once
+
+#include <vcg/space/point3.h>
 
 #include <vector>
 
@@ -53,5 +56,17 @@ enum class NewVertices {
 /// split. O(n log n) for every doubling of the vertices. \p progress is asked before each pass. \return the
 /// number of vertices inserted
 int refine(Network& network, int vertices, NewVertices where, Progress& progress);
+
+/// The vertices of a network and where they lie: what nearest_vertices() needs of one that is to change.
+struct VertexPlaces {
+    explicit VertexPlaces(const Network& network);
+
+    std::vector<VertexId> ids;
+    std::vector<vcg::Point3f> places;
+};
+
+/// For every slot of \p after the vertex of \p before that is nearest to the place of its vertex, so that
+/// counters stay where they were learned; -1 for free slots. O(vertices log vertices).
+PerVertex<VertexId> nearest_vertices(const VertexPlaces& before, const Network& after);
 
 }  // namespace neuralmesh

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "tests/unit/support/crumpled.h"
+#include "vcg_core/fit/redistribute.h"
 #include "vcg_core/fit/sound_meshes.h"
-#include "vcg_core/fit/sources.h"
 #include "vcg_core/mesh/self_crossings.h"
 
 namespace neuralmesh {

@@ -12,7 +12,6 @@
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
-#include "vcg_core/fit/sources.h"
 #include "vcg_core/mesh/self_crossings.h"
 #include "vcg_core/reconstruct.h"
 
