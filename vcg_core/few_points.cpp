@@ -18,8 +18,7 @@ NEURALMESH_END_UNINITIALIZED();
 #include <vector>
 
 #include "vcg_core/cloud/nearest_points.h"
-#include "vcg_core/fit/refine.h"
-#include "vcg_core/fit/sources.h"
+#include "vcg_core/fit/redistribute.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/shape_flips.h"
 

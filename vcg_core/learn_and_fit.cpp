@@ -8,7 +8,7 @@
 
 #include "vcg_core/base/random.h"
 #include "vcg_core/fit/fit.h"
-#include "vcg_core/fit/sources.h"
+#include "vcg_core/fit/redistribute.h"
 #include "vcg_core/mesh/simplify.h"
 #include "vcg_core/mesh/vertex_order.h"
 
@@ -56,7 +56,6 @@ LearnerOptions learner_options(const LearningTask& task, const Settings& setting
 FitOptions fit_options(const LearningTask& task, const Settings& settings, const Plan& plan) {
     FitOptions options;
     options.expect_strays = task.outliers > 0;
-    options.expect_layers = plan.expects_layers;
     options.noise = task.noise_by_place ? &*task.noise_by_place : nullptr;
     options.reduce_to = plan.carried;
     options.by_volume = plan.by_volume;

@@ -20,7 +20,7 @@
 #include "vcg_core/base/text.h"
 #include "vcg_core/cloud/surface_survey.h"
 #include "vcg_core/error_search.h"
-#include "vcg_core/fit/rms_error.h"
+#include "vcg_core/fit/point_errors.h"
 
 namespace neuralmesh {
 namespace {

@@ -86,7 +86,6 @@ int usual_surplus(int vertices) {
 Plan plan_for(const Circumstances& given) {
     Plan plan;
     plan.fills_up = fills_up(given);
-    plan.expects_layers = !(calmness(given) > 0);
     const std::size_t placed =
         std::max(carried_by_points(given), static_cast<std::size_t>(given.start_vertices));
     plan.carried = plan.fills_up

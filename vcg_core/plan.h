@@ -34,10 +34,6 @@ struct Plan {
     /// Whether the fit reduces by the shape of the mesh (volume_collapse.h) instead of by distances to the
     /// points, which noise blurs less.
     bool by_volume = false;
-    /// Whether the points may lie in layers, as views that were registered badly do. Where points vary little
-    /// about the surface through their neighbours, those that vary about the mesh are beside what it cuts
-    /// off.
-    bool expects_layers = false;
 };
 
 /// Vertices beyond \p vertices of which the fit takes away those that matter least, whatever the noise.

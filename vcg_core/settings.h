@@ -27,8 +27,8 @@ enum FeatureMeasure : int {
 
 /// What the vertex colours of the result show.
 enum VertexColor : int {
-    kCounterColors = 0,  ///< the feature measure, see counter_colors.h
-    kCloudColors = 1,    ///< the colours of the cloud, see cloud_colors.h; without any: the feature measure
+    kCounterColors = 0,  ///< the feature measure, see vertex_colors.h
+    kCloudColors = 1,    ///< the colours of the cloud, see vertex_colors.h; without any: the feature measure
     kNoColors = 2,
 };
 

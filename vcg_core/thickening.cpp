@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "vcg_core/fit/sound_moves.h"
+#include "vcg_core/fit/sound_meshes.h"
 
 namespace neuralmesh {
 

@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Vertex colours from those of a cloud: the plain slow computation, and places without points.
-#include "vcg_core/output/cloud_colors.h"
+#include "vcg_core/output/vertex_colors.h"
 
 #include <gtest/gtest.h>
 

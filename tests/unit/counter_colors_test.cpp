@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Vertex colours that show the feature measure: light where it is small, the ends at two percentiles.
-#include "vcg_core/output/counter_colors.h"
+#include "vcg_core/output/vertex_colors.h"
 
 #include <gtest/gtest.h>
 

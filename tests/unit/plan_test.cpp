@@ -78,13 +78,6 @@ TEST(Plan, ShapeChoosesOnClosedSurfacesWithLittleNoiseAndFewOutliers) {
     EXPECT_FALSE(plan_for(given).by_volume);
 }
 
-TEST(Plan, PointsThatVaryLittleAboutTheirSurfaceHaveNoLayers) {
-    Circumstances given = circumstances(2000, 100000);
-    EXPECT_FALSE(plan_for(given).expects_layers);
-    given.noise = 0.1;
-    EXPECT_TRUE(plan_for(given).expects_layers);
-}
-
 TEST(Plan, TheMoreIsRemovedAndTheLargerTheNoiseTheFewerSignalsDo) {
     EXPECT_LT(plan_for(circumstances(1000, 100000)).growth_share, 0.6);
     const double calm = plan_for(circumstances(6000, 20000, 0.02)).growth_share;

@@ -26,18 +26,10 @@ constexpr int kTries = 3;               ///< neighbours to collapse into
 
 /// Points of the faces around a vertex, one of every few.
 struct StarPoints {
-    void add(const PointsByFace::Assignment& point) {
-        const std::size_t lane = points.size() % PointPacket::kPoints;
-        if (lane == 0) packets.emplace_back();
-        packets.back().set(lane, point.point);
-        points.push_back(&point);
-    }
-
     Support::Patch patch;                                 ///< of all points
     int step = 1;                                         ///< points that each one here stands for
     std::vector<const PointsByFace::Assignment*> points;  ///< face by face
     std::vector<std::size_t> face_ends;                   ///< where those of the faces end
-    std::vector<PointPacket> packets;                     ///< the same points
 };
 
 /// Measures the collapses of vertices.
@@ -136,7 +128,7 @@ private:
         int next = 0;
         for (int f : surface_.faces_around(v)) {
             const Span<const PointsByFace::Assignment> of_face = points_.of(f);
-            for (; next < of_face.size(); next += star.step) star.add(of_face[next]);
+            for (; next < of_face.size(); next += star.step) star.points.push_back(&of_face[next]);
             next -= of_face.size();
             star.face_ends.push_back(star.points.size());
         }
@@ -150,15 +142,13 @@ private:
         for_new_faces(v, u, [&](int i, VertexId a, VertexId b) { faces.add(at(u), at(a), at(b), i); });
         std::array<int, Ring::kMaxValence> counts{};  // points of the new faces, by ring position
         float sum = 0;
-        FewFaces::Nearest nearest;
         std::size_t next = 0;
         for (const std::size_t end : star.face_ends) {
             for (; next < end; ++next) {
-                const std::size_t lane = next % PointPacket::kPoints;
-                if (lane == 0) faces.find_nearest(star.packets[next / PointPacket::kPoints], nearest);
                 const PointsByFace::Assignment& point = *star.points[next];
-                counts[static_cast<std::size_t>(nearest.label[lane])] += star.step;
-                sum += point.influence * (nearest.squared_distance[lane] - point.foot.squared_distance) *
+                const FewFaces::Nearest nearest = faces.nearest_to(point.point);
+                counts[static_cast<std::size_t>(nearest.label)] += star.step;
+                sum += point.influence * (nearest.squared_distance - point.foot.squared_distance) *
                        static_cast<float>(star.step);
             }
             // A heuristic: the points of the remaining faces rarely lower the sum by half.

@@ -32,22 +32,13 @@ constexpr int kRingPoints = 256;
 constexpr int kRefinements = 4;
 constexpr float kHopeless = 4;  ///< times the largest squared error, after which no refinement helps
 constexpr int kVerticesAtATime = 64;
-constexpr int kCreaseChunk = 512;
 
 /// The two planes around one vertex after another.
 class PlanesOfPoints {
 public:
-    /// A face, with twice its area.
-    struct Side {
-        Vector3 normal;
-        float area;
-        int face;
-    };
-
-    /// Keeps references. \p all_sides: of all faces; those without area have no normal.
-    PlanesOfPoints(const Network& network, const Surface& surface, const PerFace<Side>& all_sides,
-                   const PointsByFace& points)
-        : network_(network), surface_(surface), all_sides_(all_sides), points_(points) {}
+    /// Keeps references.
+    PlanesOfPoints(const Network& network, const Surface& surface, const PointsByFace& points)
+        : network_(network), surface_(surface), points_(points) {}
 
     /// The way from \p v to the line of its two planes; 0 if there are none, or if the line is far.
     Vector3 way_to_crease(VertexId v, float noise_variance) {
@@ -65,6 +56,12 @@ public:
     }
 
 private:
+    /// A face, with twice its area.
+    struct Side {
+        Vector3 normal;
+        float area;
+        int face;
+    };
     /// A point relative to the vertex.
     struct Sample {
         Vector3 place;
@@ -81,21 +78,14 @@ private:
         return sum / static_cast<float>(network_.ring(v).valence);
     }
 
-    /// Whether all normals lie in so narrow a cone that no two differ by more than kAlike allows.
-    bool all_alike() const {
-        Vector3 sum = Vector3::Zero();
-        for (const Side& side : sides_) sum += side.area * side.normal;
-        const float least = std::sqrt((1 + kAlike) / 2) * sum.norm();
-        return std::all_of(sides_.begin(), sides_.end(),
-                           [&](const Side& side) { return side.normal.dot(sum) > least; });
-    }
-
     /// Two large faces that differ much. False if all are alike.
     bool choose_seeds() {
         sides_.clear();
-        for (const int f : faces_)
-            if (all_sides_[f].area > 0) sides_.push_back(all_sides_[f]);
-        if (all_alike()) return false;
+        for (const int f : faces_) {
+            const Vector3 along = area_vector(surface_, f);
+            const float area = along.norm();
+            if (area > 0) sides_.push_back({along / area, area, f});
+        }
         float best = 0;
         for (std::size_t i = 1; i < sides_.size(); ++i)
             for (std::size_t j = 0; j < i; ++j) {
@@ -175,22 +165,16 @@ private:
     /// Of the points from the two planes of a crease, squared.
     static float largest_error(float edge, float noise) { return kTight * kTight * edge * edge + noise; }
 
-    /// Mean square of \p height_of(sample).
-    template <class HeightOf>
-    float mean_square(const HeightOf& height_of) const {
+    /// Mean squared distance of the points from the nearer plane.
+    float squared_error() const {
         double sum = 0;
         double weight = 0;
         for (const Sample& s : samples_) {
-            const float h = height_of(s);
+            const float h = height(s, nearer_plane(s));
             sum += static_cast<double>(s.weight * h * h);
             weight += static_cast<double>(s.weight);
         }
         return static_cast<float>(sum / weight);
-    }
-
-    /// Mean squared distance of the points from the nearer plane.
-    float squared_error() const {
-        return mean_square([&](const Sample& s) { return height(s, nearer_plane(s)); });
     }
 
     /// Whether the points lie on the planes, and not on a smooth surface. \p noise: the squared error that
@@ -241,7 +225,6 @@ private:
 
     const Network& network_;
     const Surface& surface_;
-    const PerFace<Side>& all_sides_;
     const PointsByFace& points_;
     std::vector<int> faces_;   ///< of the two-ring
     std::vector<Side> sides_;  ///< theirs
@@ -264,15 +247,9 @@ PerVertex<Vector3> moves_to_creases(const Network& network, const Surface& surfa
                                     const PointsByFace& points, const PerVertex<float>& variances,
                                     ThreadTeam& team) {
     PerVertex<Vector3> moves(network.slot_count(), Vector3::Zero());
-    PerFace<PlanesOfPoints::Side> sides(surface.face_count());
-    parallel_for(sides.size(), kCreaseChunk, team, [&](int f) {
-        const Vector3 along = area_vector(surface, f);
-        const float area = along.norm();
-        sides[f] = {along / area, area, f};
-    });
     const auto slots = static_cast<std::size_t>(network.slot_count());
     for_chunks(slots, kVerticesAtATime, team, [&](std::size_t, std::size_t begin, std::size_t end) {
-        PlanesOfPoints planes(network, surface, sides, points);
+        PlanesOfPoints planes(network, surface, points);
         for (auto v = static_cast<VertexId>(begin); v < static_cast<VertexId>(end); ++v)
             if (network.alive(v) && !is_near_boundary(network, v))
                 moves[v] = planes.way_to_crease(v, variances[v]);

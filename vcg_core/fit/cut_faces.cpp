@@ -92,31 +92,6 @@ Faces with_lesser_fans(const Network& network, const Triangle& face) {
     return {};
 }
 
-/// Whether the removal of the faces leaves the Euler characteristic: that of the faces, edges and vertices
-/// that go is 0. As the boundary of what is left changes only where they were, it leaves loops and
-/// components, too.
-bool keeps_topology(const Network& network, const Faces& gone) {
-    int euler = static_cast<int>(gone.size());
-    std::set<VertexId> corners;
-    for (const Triangle& face : gone) corners.insert(face.begin(), face.end());
-    for (const VertexId v : corners) {
-        const Ring& ring = network.ring(v);
-        const auto is_gone = [&](int i) { return gone.count(face_at(network, v, i)) > 0; };
-        bool vertex_goes = true;
-        for (int i = 0; i < ring.face_count(); ++i) vertex_goes = vertex_goes && is_gone(i);
-        euler += vertex_goes ? 1 : 0;
-        for (int i = 0; i < ring.valence; ++i) {
-            const bool has_after = ring.open == 0 || i + 1 < ring.valence;
-            const bool has_before = ring.open == 0 || i > 0;
-            const int before = i == 0 ? ring.valence - 1 : i - 1;
-            const bool edge_goes = (!has_after || is_gone(i)) && (!has_before || is_gone(before));
-            // Both its ends are corners of the faces that go.
-            euler -= edge_goes && v < ring[i] ? 1 : 0;
-        }
-    }
-    return euler == 0;
-}
-
 int corners_on_boundary(const Network& network, const Triangle& face) {
     return static_cast<int>(
         std::count_if(face.begin(), face.end(), [&](VertexId v) { return network.ring(v).open != 0; }));
@@ -164,14 +139,19 @@ int collapse_shortest(Network& network, const Triangle& first, const Triangle& s
 
 /// \return the number of faces removed with the one given by its sorted corners
 int remove_face(Network& network, const Triangle& face, Removal kind) {
-    if (kind == Removal::boundary_faces && corners_on_boundary(network, face) == 0) return 0;
-    const Faces gone = with_lesser_fans(network, face);
-    if (gone.empty() || (kind == Removal::boundary_faces && !keeps_topology(network, gone))) return 0;
+    const bool keeps_topology = kind == Removal::boundary_faces;
+    if (keeps_topology && corners_on_boundary(network, face) == 0) return 0;
     std::vector<Triangle> oriented;
-    for (const Triangle& f : gone) oriented.push_back(*find_face(network, f));
-    if (!network.can_exchange_faces(oriented, {})) return 0;
+    for (const Triangle& f : with_lesser_fans(network, face)) oriented.push_back(*find_face(network, f));
+    if (oriented.empty() || !network.can_exchange_faces(oriented, {})) return 0;
+    const Network before = network;
     network.exchange_faces(oriented, {});
-    return static_cast<int>(oriented.size());
+    // With the Euler characteristic loops and components stay: the boundary changes only where the faces
+    // were.
+    if (!keeps_topology || network.euler_characteristic() == before.euler_characteristic())
+        return static_cast<int>(oriented.size());
+    network = before;
+    return 0;
 }
 
 /// A face, or what goes with it, of every crossing whose faces are still there. \return the number of faces

@@ -96,7 +96,6 @@ private:
 
     /// \return -Support::kForbidden for a flip that would stretch surface over where there are no points
     float distance_drop(const Quad& q) const {
-        constexpr int kInPacket = static_cast<int>(PointPacket::kPoints);
         constexpr int kF = 0, kG = 1;
         FewFaces faces;  // of equally near ones that of g counts
         faces.add(at(q.d), at(q.c), at(q.a), kG);
@@ -104,20 +103,10 @@ private:
         float drop = 0;
         int count_f = 0;
         for (int face : {q.f, q.g}) {
-            const Span<const PointsByFace::Assignment> points = points_.of(face);
-            for (int first = 0; first < points.size(); first += kInPacket) {
-                const int end = std::min(first + kInPacket, points.size());
-                PointPacket packet;
-                for (int i = first; i < end; ++i)
-                    packet.set(static_cast<std::size_t>(i - first), points[i].point);
-                FewFaces::Nearest nearest;
-                faces.find_nearest(packet, nearest);
-                for (int i = first; i < end; ++i) {
-                    const auto lane = static_cast<std::size_t>(i - first);
-                    drop += points[i].influence *
-                            (points[i].foot.squared_distance - nearest.squared_distance[lane]);
-                    count_f += nearest.label[lane] == kF ? 1 : 0;
-                }
+            for (const PointsByFace::Assignment& point : points_.of(face)) {
+                const FewFaces::Nearest nearest = faces.nearest_to(point.point);
+                drop += point.influence * (point.foot.squared_distance - nearest.squared_distance);
+                count_f += nearest.label == kF ? 1 : 0;
             }
         }
         const int count = points_.of(q.f).size() + points_.of(q.g).size();

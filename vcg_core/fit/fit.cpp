@@ -11,12 +11,14 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/fit/fitter.h"
-#include "vcg_core/fit/refine.h"
+#include "vcg_core/fit/redistribute.h"
 
 namespace neuralmesh {
 
 namespace {
 
+/// Number of points used: this many per vertex, at least so many, at most all of a cloud.
+constexpr long long kPointsPerVertex = 100, kLeastPoints = 100000;
 /// With fewer points than this the network is left unchanged.
 constexpr std::size_t kMinPoints = 64;
 /// The points held out of the fit took part in the learning, which has followed their noise. So the mean
@@ -53,25 +55,29 @@ int automatic_rounds(int vertices) { return std::min(20, std::max(8, 40000 / std
 /// The rounds of a fit and the best mesh so far.
 class FitRounds {
 public:
-    FitRounds(Network& network, Fitter& fitter, const FitOptions& options, FitReport& report)
+    FitRounds(Network& network, Fitter& fitter, const FitOptions& options)
         : network_(network),
           fitter_(fitter),
           options_(options),
-          report_(report),
           rounds_(options.rounds > 0 ? options.rounds : automatic_rounds(network.vertex_count())),
           at_start_(fitter.held_out()),
           best_(network) {}
 
-    void run(Progress& progress) {
-        if (!wants_on(progress, 0)) return;
-        bool converged = first_round();
+    /// The network becomes the best mesh, or stays.
+    /// \param learned_share see kLearnedShare
+    FitReport run(double learned_share, ThreadTeam& team, Progress& progress) {
+        const Network before = network_;
+        bool converged = !wants_on(progress, 0) || first_round();
         for (int round = 1; round < rounds_ && !converged && wants_on(progress, round); ++round)
             converged = next_round(round);
+        judge(learned_share, team);
+        network_ = report_.improved ? best_ : before;
+        return report_;
     }
 
+private:
     /// Whether the best mesh is closer to the held-out points than the mesh before the rounds was, along the
     /// directions of the latter.
-    /// \param learned_share see kLearnedShare
     void judge(double learned_share, ThreadTeam& team) {
         if (report_.rounds == 0) return;
         const Surface fitted(best_);
@@ -85,9 +91,6 @@ public:
         if (report_.improved) report_.rms_fitted = error;
     }
 
-    Network& best() { return best_; }
-
-private:
     bool wants_on(Progress& progress, int round) const {
         const std::string text = "Fitting to the points, round " + std::to_string(round + 1);
         return progress(static_cast<double>(round) / rounds_, text.c_str());
@@ -102,7 +105,7 @@ private:
                  !skips("hold");
         fitter_.set_directions(surface);
         at_start_ = fitter_.held_out();
-        report_.rms_unfitted = report_.rms_fitted = fitter_.held_out_error(surface);
+        report_.rms_unfitted = report_.rms_fitted = fitter_.error_at(at_start_, surface);
         return solve(0, surface, points);
     }
 
@@ -130,7 +133,7 @@ private:
         if (round >= kFirstRounds && error > (1 - kLeastProgress) * error_before_last_) return true;
         error_before_last_ = last_error_;
         last_error_ = error;
-        if (options_.flip_edges && round + 1 < rounds_) {
+        if (round + 1 < rounds_) {
             // Not after the first round: vertices are too far from the points to tell creases.
             if (round > 0) fitter_.move_to_creases(surface, points);
             fitter_.flip_edges(surface, points);
@@ -141,22 +144,20 @@ private:
     Network& network_;
     Fitter& fitter_;
     const FitOptions& options_;
-    FitReport& report_;
+    FitReport report_;
     const int rounds_;
     bool holds_ = false;  ///< in later rounds the points hold the surface
-    HeldOut at_start_;  ///< with the directions of the mesh before the rounds
+    HeldOut at_start_;    ///< with the directions of the mesh before the rounds
     Network best_;
     double best_error_ = 0;
     double last_error_ = 0;
     double error_before_last_ = 0;
 };
 
-PointChoice points_for(int vertices, const TargetSpace& target, const FitOptions& options,
-                       std::uint64_t seed) {
+PointChoice points_for(int vertices, const TargetSpace& target, std::uint64_t seed) {
     Random random(seed);
-    const auto wanted = static_cast<std::size_t>(std::max<long long>(
-        options.min_points, static_cast<long long>(options.points_per_vertex) * vertices));
-    return choose_points(target, wanted, random);
+    return choose_points(
+        target, static_cast<std::size_t>(std::max(kLeastPoints, kPointsPerVertex * vertices)), random);
 }
 
 double learned_share_of(const Network& network, const TargetSpace& target) {
@@ -171,45 +172,34 @@ void refine_and_fit(Network& network, const TargetSpace& target, const FitOption
     const double learned_share = learned_share_of(network, target);
     PartOf inserting(progress, 0, 0.1);
     const int inserted = refine(network, options.refine_to, NewVertices::curved, inserting);
-    PointChoice points = points_for(network.vertex_count(), target, options, seed);
+    PointChoice points = points_for(network.vertex_count(), target, seed);
     if (inserted == 0 || points.fitted.points.size() < kMinPoints) return;
     Fitter fitter(network, std::move(points), options, team);
     PartOf untangling(progress, 0.1, 0.2);
     PartOf fitting(progress, 0.2, 1);
     if (!fitter.untangle_surface(untangling)) return;
-    const Network before = network;
     FitOptions of_refined = options;
     of_refined.rounds = kRefinedRounds;
     of_refined.redistribute = false;
-    FitReport refined;
-    FitRounds rounds(network, fitter, of_refined, refined);
-    rounds.run(fitting);
-    rounds.judge(learned_share, team);
-    network = refined.improved ? std::move(rounds.best()) : before;
+    FitRounds(network, fitter, of_refined).run(learned_share, team, fitting);
 }
 
 /// The reduction and the rounds of the fit.
 FitReport reduce_and_fit(Network& network, const TargetSpace& target, const FitOptions& options,
                          ThreadTeam& team, std::uint64_t seed, Progress& progress) {
-    FitReport report;
     const bool reduces = options.reduce_to > 0 && options.reduce_to < network.vertex_count();
     const int vertices = reduces ? options.reduce_to : network.vertex_count();
-    PointChoice points = points_for(vertices, target, options, seed);
-    if (points.fitted.points.size() < kMinPoints || network.face_count() == 0) return report;
+    PointChoice points = points_for(vertices, target, seed);
+    if (points.fitted.points.size() < kMinPoints || network.face_count() == 0) return {};
     const double learned_share = learned_share_of(network, target);
     Fitter fitter(network, std::move(points), options, team);
     // By time: the reduction takes about as long as the rounds.
     PartOf untangling(progress, 0, 0.1);
     PartOf reducing(progress, 0.1, 0.5);
     PartOf fitting(progress, reduces ? 0.5 : 0.1, 1);
-    if (!fitter.untangle_surface(untangling)) return report;
-    if (reduces && !fitter.reduce_to(vertices, reducing)) return report;
-    const Network before = network;
-    FitRounds rounds(network, fitter, options, report);
-    rounds.run(fitting);
-    rounds.judge(learned_share, team);
-    network = report.improved ? std::move(rounds.best()) : before;
-    return report;
+    if (!fitter.untangle_surface(untangling)) return {};
+    if (reduces && !fitter.reduce_to(vertices, reducing)) return {};
+    return FitRounds(network, fitter, options).run(learned_share, team, fitting);
 }
 
 }  // namespace

@@ -18,7 +18,6 @@ struct FitOptions {
     /// Most rounds of least squares, each with new nearest faces. 0: 20 up to 2,000 vertices, falling to 8
     /// from 5,000 on.
     int rounds = 0;
-    bool flip_edges = true;
     /// Move vertices from where they matter little to where the error is large (Hoppe et al. 1993). Turn it
     /// off for meshes whose density must follow something else than the error.
     bool redistribute = true;
@@ -29,19 +28,14 @@ struct FitOptions {
     bool fitted_before = false;
     /// Reduce by the shape of the fitted mesh (volume_collapse.h).
     bool by_volume = false;
-    /// Leave out stray points (stray_points.h). For clouds that had outliers: those close to the surface are
+    /// Leave out stray points (noise.h). For clouds that had outliers: those close to the surface are
     /// still there.
     bool expect_strays = false;
-    /// Look for layers of points (layers.h), which the surface must not follow by turns.
-    bool expect_layers = true;
     /// Insert vertices until there are this many, after the rounds, and fit once more. For meshes of more
     /// vertices than the points carry. 0, or at most the number then: none.
     int refine_to = 0;
     /// The noise of the points; null: as the first mesh shows it, the same everywhere.
     const SurfaceSurvey* noise = nullptr;
-    /// Number of points used: this many per vertex, at least min_points, at most all of a cloud.
-    int points_per_vertex = 100;
-    int min_points = 100000;
 };
 
 /// Figures of a fit. Errors are root mean squares over points held out of the fit, in the core's frame,
@@ -69,7 +63,7 @@ struct FitReport {
 /// - What stays: components, handles, boundary loops, and the number of vertices unless options.reduce_to is
 ///   less. No face turns over, folds onto a neighbour or becomes a sliver.
 /// - Self-crossings are smoothed out first where possible; the fit adds none. If there is a boundary, faces
-///   that still cut others are removed, the topology with them where it must be; see sound_start.h.
+///   that still cut others are removed, the topology with them where it must be; see sound_meshes.h.
 /// - Outliers: the influence of a far point falls with its squared distance. With options.expect_strays
 ///   points that are far for their surroundings have none.
 /// - The result of the rounds is kept only if its error at the held-out points is smaller, allowing for the

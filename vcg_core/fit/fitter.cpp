@@ -12,13 +12,11 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
-#include "vcg_core/fit/boundary_mending.h"
+#include "vcg_core/fit/boundary.h"
 #include "vcg_core/fit/edge_flips.h"
-#include "vcg_core/fit/layers.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/noise.h"
-#include "vcg_core/fit/sound_start.h"
-#include "vcg_core/fit/stray_points.h"
+#include "vcg_core/fit/sound_meshes.h"
 
 namespace neuralmesh {
 
@@ -57,19 +55,6 @@ constexpr float kFewPerVertex = 5;
 /// The same where the noise of each place is known. A frame of a depth camera in a room has normals that are
 /// 2.3 degrees off with .05 and 2.8 with .07 (2,500 vertices), 3.8 with .1 (10,000).
 constexpr float kLikelyGapByPlace = 0.06F;
-/// Layers of points: the local stiffness in least bending weights of independent noise, and the rounds that
-/// take out the folds that learning has left between layers, with their bending weight. Chosen on
-/// the clouds of tests/experiments/accuracy/scan_table.py --groups levels.
-constexpr float kLayerStiffness = 3;
-constexpr int kStiffRounds = 3;
-constexpr float kStiffWeight = 50;
-constexpr float kWeightAfterStiff = 1;
-/// Fewer layered places than this share of the vertices are chance, or bends.
-constexpr float kLayeredShare = 0.01F;
-/// The same for a surface that lags behind the points: in folds it has not followed them yet. Armadillo and
-/// homer have up to .022, views that overlap on a tenth of the surface .09 and more. Taken for layers, folds
-/// give armadillo 1.4 times the error with 500 vertices.
-constexpr float kLayeredShareOfLagging = 0.03F;
 /// Noise variances that an edge split or flip has to gain.
 constexpr float kGainVariances = 6;
 /// Share of the vertices that one redistribution may move.
@@ -95,7 +80,6 @@ Fitter::Fitter(Network& network, PointChoice points, const FitOptions& options, 
       team_(team),
       fitted_(std::move(points.fitted)),
       held_out_(std::move(points.held_out)),
-      excludes_layers_(!options.expect_layers),
       least_weight_(options.fitted_before ? kLastLeastWeight : kFirstLeastWeight),
       bending_weight_(options.fitted_before ? kFittedWeight : 0) {}
 
@@ -105,12 +89,11 @@ bool Fitter::untangle_surface(Progress& progress) {
     return left.has_value();
 }
 
-PointsByFace Fitter::locate_points(const Surface& surface, bool lags) {
+PointsByFace Fitter::locate_points(const Surface& surface) {
     const std::vector<Hit> hits = nearest_by_tree(surface, fitted_, team_);
     if (!(outlier_distance_ > 0)) outlier_distance_ = outlier_distance(surface, hits);
     PointsByFace points = assign(surface, hits);
     held_out_.locate(surface, team_);
-    examine_layers(surface, points, lags);
     return points;
 }
 
@@ -121,65 +104,7 @@ float Fitter::noise_in_edges(const Surface& surface) const {
 bool Fitter::has_precise_points(const Surface& surface) const {
     const auto points = static_cast<float>(fitted_.points.size());
     const bool many = points > kPrecisePoints * static_cast<float>(network_.vertex_count());
-    return many && !layered_ && noise_in_edges(surface) < kPreciseNoise;
-}
-
-double Fitter::error_at(const HeldOut& held_out, const Surface& surface) const {
-    return with_bending(held_out.rms_error(surface, outlier_distance_, team_), surface);
-}
-
-double Fitter::with_bending(double error, const Surface& surface) const {
-    if (!(bending_error_ > 0)) return error;
-    return std::sqrt(error * error + bending_error_ * mean_squared_gap(surface));
-}
-
-void Fitter::examine_layers(const Surface& surface, const PointsByFace& points, bool lags) {
-    layered_ = false;
-    layering_ = 0;
-    bending_error_ = 0;
-    stiff_rounds_ = 0;
-    if (excludes_layers_ || skips("layers")) return;
-    const float points_per_vertex = points.per_vertex(network_.vertex_count());
-    if (points_per_vertex < kFewPerVertex) return;
-    const PerVertex<float> variances = examine_variances(surface, points);
-    layering_ = layering(network_, surface, widest_variances_, points_per_vertex);
-    const PerVertex<float> local = local_layering(network_, surface, widest_variances_);
-    const float places = std::accumulate(local.begin(), local.end(), 0.0F);
-    const float least_share = lags ? kLayeredShareOfLagging : kLayeredShare;
-    // Fewer vertices spread the points more widely, at bends as well: what the first surface, which has the
-    // most, does not show is no layer. On scans of buildings, which are open, niches look like layers.
-    layered_places_ = layered_places_ && !surface.has_boundary() &&
-                      places > least_share * static_cast<float>(network_.vertex_count());
-    layered_ = layering_ > 0 || layered_places_;
-    if (!layered_) return;
-    constexpr double kEdgesPerVertex = 3;
-    double sum = 0;
-    for (const float s : stiffness_by(variances, surface, points)) sum += static_cast<double>(s);
-    bending_error_ = kEdgesPerVertex * sum / network_.vertex_count();
-    stiff_rounds_ = kStiffRounds;
-}
-
-/// Those of now. Where the surface begins to follow layers, it hides them: the widest so far are kept.
-PerVertex<float> Fitter::examine_variances(const Surface& surface, const PointsByFace& points) {
-    PerVertex<float> now = local_variances(network_, surface, points);
-    widest_variances_.resize(now.size(), 0);
-    for (VertexId v = 0; v < now.size(); ++v) widest_variances_[v] = std::max(widest_variances_[v], now[v]);
-    return now;
-}
-
-/// By Bayes' rule, as the least weight, but with the variance around each vertex.
-PerVertex<float> Fitter::stiffness_by(const PerVertex<float>& variances, const Surface& surface,
-                                      const PointsByFace& points) const {
-    const float gap = kLikelyGap * mean_edge_length(surface);
-    const float points_per_vertex = points.per_vertex(network_.vertex_count());
-    const float per_variance = kLayerStiffness / (gap * gap * points_per_vertex);
-    const bool stiff_by_places = stiff_rounds_ > 0 && !(layering_ > 0);
-    PerVertex<float> stiffness = local_layering(network_, surface, widest_variances_);
-    for (VertexId v = 0; v < stiffness.size(); ++v) {
-        const float variance = std::max(layering_ * variances[v], stiffness[v] * widest_variances_[v]);
-        stiffness[v] = per_variance * variance + (stiff_by_places ? stiffness[v] * kStiffWeight : 0);
-    }
-    return stiffness;
+    return many && noise_in_edges(surface) < kPreciseNoise;
 }
 
 PointsByFace Fitter::assign_faces(const Surface& surface) {
@@ -220,22 +145,15 @@ void Fitter::measure_noise(const Surface& surface, const PointsByFace& points) {
     });
 }
 
-/// By Bayes' rule: what gaps of likely length weigh, in points per vertex. At places with layers more.
-VertexNoise Fitter::noise_around(const Surface& surface, const PointsByFace& points) {
-    VertexNoise noise;
-    if (options_.noise != nullptr) {
-        const float gap = kLikelyGapByPlace * mean_edge_length(surface);
-        const float points_per_vertex = points.per_vertex(network_.vertex_count());
-        noise = {variances_, variances_};
-        // The points on one step are off by the same: together they say as much as one.
-        for (const VertexId v : network_.vertices())
-            noise.stiffness[v] = (variances_[v] / points_per_vertex + rounding_variances_[v]) / (gap * gap);
-    }
-    if (!layered_) return noise;
-    const PerVertex<float> of_layers = stiffness_by(examine_variances(surface, points), surface, points);
-    noise.stiffness.resize(of_layers.size(), 0);
-    for (VertexId v = 0; v < of_layers.size(); ++v)
-        noise.stiffness[v] = std::max(noise.stiffness[v], of_layers[v]);
+/// By Bayes' rule: what gaps of likely length weigh, in points per vertex.
+VertexNoise Fitter::noise_around(const Surface& surface, const PointsByFace& points) const {
+    if (options_.noise == nullptr) return {};
+    const float gap = kLikelyGapByPlace * mean_edge_length(surface);
+    const float points_per_vertex = points.per_vertex(network_.vertex_count());
+    VertexNoise noise{variances_, variances_};
+    // The points on one step are off by the same: together they say as much as one.
+    for (const VertexId v : network_.vertices())
+        noise.stiffness[v] = (variances_[v] / points_per_vertex + rounding_variances_[v]) / (gap * gap);
     return noise;
 }
 
@@ -255,7 +173,6 @@ std::vector<float> Fitter::choose_weights(const Surface& surface, const PointsBy
     const float by_noise = options_.noise != nullptr ? 0 : noise_variance_ / (gap * gap * points_per_vertex);
     const float least = std::max(by_noise, least_weight_);
     least_weight_ = std::max(kLeastWeightDecay * least_weight_, kLastLeastWeight);
-    if (stiff_rounds_ > 0 && layering_ > 0) return {kStiffWeight};
     std::vector<float> weights{bending_weight_, bending_weight_ / kWeightDown, bending_weight_ * kWeightUp};
     if (!(bending_weight_ > 0)) weights.assign(std::begin(kFirstWeights), std::end(kFirstWeights));
     for (float& weight : weights) weight = std::max(weight, least);
@@ -280,22 +197,16 @@ double Fitter::solve(const PointsByFace& points, Surface& surface, float hold) {
         best = i;
         best_error = error;
     }
-    bending_weight_ = stiff_rounds_ > 0 ? kWeightAfterStiff : weights[best];
+    bending_weight_ = weights[best];
     surface.positions = solutions[best];
-    std::vector<SelfCrossing> crossings = self_crossings(surface, team_);
-    if (!guard_.objections(crossings).empty()) {
+    if (!guard_.objections(self_crossings(surface, team_)).empty()) {
         PerVertex<Vector3> displacements = solutions[best];
         for (VertexId v = 0; v < displacements.size(); ++v) displacements[v] -= start.positions[v];
-        surface.positions =
-            limits.without_crossings(displacements, surface, std::move(crossings), guard_, team_);
+        surface.positions = limits.without_crossings(displacements, guard_, team_);
         best_error = held_out_.rms_error(surface, outlier_distance_, team_);
     }
     place_vertices(surface);
-    // Stiff places leave the rest of the surface free: the last of their rounds may be the best.
-    if (stiff_rounds_-- > (layering_ > 0 ? 0 : 1)) return HUGE_VAL;
-    // Where layers are everywhere this chose worse rounds: eight, scanned at level 3, by 3 % with 5,000
-    // vertices.
-    return layering_ > 0 ? best_error : with_bending(best_error, surface);
+    return best_error;
 }
 
 /// At the positions of \p surface.
@@ -314,7 +225,7 @@ void Fitter::move_to_creases(Surface& surface, const PointsByFace& points) {
 }
 
 /// Moves the starts of walks from removed vertices to the vertices they were collapsed into.
-void Fitter::redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses) {
+void Fitter::redirect_to_survivors(const std::vector<DoneCollapse>& collapses) {
     PerVertex<VertexId> survivor(network_.slot_count());
     std::iota(survivor.begin(), survivor.end(), 0);
     for (auto collapse = collapses.rbegin(); collapse != collapses.rend(); ++collapse)
@@ -329,15 +240,11 @@ bool Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& p
     const std::vector<Collapse> collapses = find_collapses(network_, surface, points, team_);
     const std::vector<EdgeSplit> splits =
         find_splits(network_, surface, points, kGainVariances, team_, variances_);
-    const VertexMoves done = guarded(surface, [&](const PerVertex<char>& barred) {
+    const std::vector<DoneCollapse> done = guarded(surface, [&](const PerVertex<char>& barred) {
         return redistribute(network_, collapses, splits, max_pairs, barred);
     });
-    if (done.collapses.empty()) return false;
-    redirect_to_survivors(done.collapses);
-    widest_variances_.resize(network_.slot_count(), 0);
-    for (const VertexMoves::Insertion& insertion : done.insertions)
-        widest_variances_[insertion.added] = widest_variances_[insertion.beside];
-    return true;
+    redirect_to_survivors(done);
+    return !done.empty();
 }
 
 void Fitter::flip_edges(const Surface& surface, PointsByFace& points) {

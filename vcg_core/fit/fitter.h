@@ -10,11 +10,10 @@
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/fit/crease_moves.h"
-#include "vcg_core/fit/crossing_guard.h"
 #include "vcg_core/fit/fit.h"
-#include "vcg_core/fit/held_out.h"
 #include "vcg_core/fit/least_squares.h"
-#include "vcg_core/fit/point_choice.h"
+#include "vcg_core/fit/move_limits.h"
+#include "vcg_core/fit/point_errors.h"
 #include "vcg_core/fit/points_by_face.h"
 #include "vcg_core/fit/redistribute.h"
 #include "vcg_core/fit/split_gains.h"
@@ -37,26 +36,22 @@ public:
     bool reduce_to(int vertices, Progress& progress);
 
     /// Assigns the fitted points to their nearest faces and finds the held-out points, all by exact search.
-    /// \param lags the surface is behind the points, as learning with few signals leaves it
-    PointsByFace locate_points(const Surface& surface, bool lags = false);
+    PointsByFace locate_points(const Surface& surface);
     /// Assigns the fitted points to their nearest faces by walks from the last ones.
     PointsByFace assign_faces(const Surface& surface);
     /// From now on measures the error along the smoothed normals of \p surface.
     void set_directions(const Surface& surface) { held_out_.set_directions(network_, surface, team_); }
-    /// Root mean square error at the held-out points. If the points lie in layers, which held-out points
-    /// cannot tell from bends, the squared error includes how much the surface bends.
-    double held_out_error(const Surface& surface) const { return error_at(held_out_, surface); }
-    /// The same at other held-out points, with their own directions.
-    double error_at(const HeldOut& held_out, const Surface& surface) const;
+    /// Root mean square error at \p held_out, along its own directions.
+    double error_at(const HeldOut& held_out, const Surface& surface) const {
+        return held_out.rms_error(surface, outlier_distance_, team_);
+    }
 
     /// Whether there are many points for each vertex of \p surface, and their noise is small beside its
     /// edges.
     bool has_precise_points(const Surface& surface) const;
     /// Solves the least squares for several bending weights and moves the vertices to the solution with the
     /// least error at the held-out points. Moves \p surface, that of the network, with them. \return the
-    /// error, by which rounds compare; it includes the bending if only a part of the surface has layers.
-    /// HUGE_VAL in stiff rounds, with which the fit of layers begins: none of them is the best, but if only a
-    /// part has layers, the last of them competes
+    /// error
     /// \param hold see PointToPlaneSystem
     double solve(const PointsByFace& points, Surface& surface, float hold = PointToPlaneSystem::kSliding);
     /// Collapses vertices that matter little and inserts as many where the error is large. \return whether
@@ -79,14 +74,8 @@ private:
     PointsByFace assign(const Surface& surface, const std::vector<Hit>& hits);
     void weaken_outliers(const Surface& surface, PointsByFace& points) const;
     void silence_strays(const Surface& surface, PointsByFace& points);
-    /// \p error, if there are layers with how much \p surface bends.
-    double with_bending(double error, const Surface& surface) const;
-    void examine_layers(const Surface& surface, const PointsByFace& points, bool lags);
     void measure_noise(const Surface& surface, const PointsByFace& points);
-    VertexNoise noise_around(const Surface& surface, const PointsByFace& points);
-    PerVertex<float> examine_variances(const Surface& surface, const PointsByFace& points);
-    PerVertex<float> stiffness_by(const PerVertex<float>& variances, const Surface& surface,
-                                  const PointsByFace& points) const;
+    VertexNoise noise_around(const Surface& surface, const PointsByFace& points) const;
     std::vector<float> choose_weights(const Surface& surface, const PointsByFace& points);
     /// The standard deviation of the noise in mean edge lengths of \p surface.
     float noise_in_edges(const Surface& surface) const;
@@ -96,7 +85,7 @@ private:
     template <class Change>
     auto guarded(const Surface& surface, const Change& change);
     void place_vertices(const Surface& surface);
-    void redirect_to_survivors(const std::vector<VertexMoves::DoneCollapse>& collapses);
+    void redirect_to_survivors(const std::vector<DoneCollapse>& collapses);
     void set_points_aside(int points_per_vertex);
     bool wants_reduction(int vertices, int at_start, Progress& progress) const;
     bool reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress);
@@ -109,20 +98,13 @@ private:
     TrackedPoints fitted_;
     TrackedPoints set_aside_;  ///< fitted points that the reduction does not use
     HeldOut held_out_;
-    float outlier_distance_ = 0;         ///< from the first assignment; fixed, so that errors stay comparable
-    float noise_variance_ = 0;           ///< from the last assignment
-    PerVertex<float> variances_;         ///< of the noise around each vertex, from the last assignment
+    float outlier_distance_ = 0;  ///< from the first assignment; fixed, so that errors stay comparable
+    float noise_variance_ = 0;    ///< from the last assignment
+    PerVertex<float> variances_;  ///< of the noise around each vertex, from the last assignment
     PerVertex<float> rounding_variances_;  ///< the part that the points of one step share
-    PerVertex<float> widest_variances_;  ///< of the points across the surface, so far
-    bool layered_places_ = true;         ///< until a search shows none
-    bool excludes_layers_;               ///< the points, or a surface of many more vertices, show none
-    bool layered_ = false;               ///< somewhere; from the last exact search, as the next
-    float layering_ = 0;                 ///< over most of the surface, see layering()
-    double bending_error_ = 0;           ///< of layers: weight of the mean squared gap in squared errors
-    int stiff_rounds_ = 0;  ///< still to come: their bending weight lets the surface follow no layer
-    float least_weight_;    ///< of bending; falls, as in the first rounds points may be with wrong faces
+    float least_weight_;        ///< of bending; falls, as in the first rounds points may be with wrong faces
     float bending_weight_ = 0;  ///< the last choice; 0: none yet
-    CrossingGuard guard_;  ///< has accepted the present surface
+    CrossingGuard guard_;       ///< has accepted the present surface
 };
 
 template <class Change>

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Normal equations in 3x3 blocks along the one-rings. least_squares_solution.cpp solves them.
+// Normal equations in 3x3 blocks along the one-rings, and conjugate gradients on them, on all threads. The
+// bits do not depend on their number: a thread computes whole rows, and the sum of each row keeps its order.
 #include "vcg_core/fit/least_squares.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <utility>
 
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
@@ -31,9 +35,18 @@ constexpr float kBoundaryBending = 0.05F;
 constexpr float kCrease = 4.0F;
 
 constexpr int kSystemChunk = 256;
+/// Rows that one thread computes: with fewer, waiting for each other costs more than it saves.
+constexpr int kSolverChunk = 512;
 
 float mean_of(const PerVertex<float>& values, const std::array<VertexId, 4>& corners) {
     return (values[corners[0]] + values[corners[1]] + values[corners[2]] + values[corners[3]]) / 4;
+}
+
+/// In double precision.
+double dot(const PerVertex<Vector3>& a, const PerVertex<Vector3>& b) {
+    double sum = 0;
+    for (VertexId v = 0; v < a.size(); ++v) sum += static_cast<double>(a[v].dot(b[v]));
+    return sum;
 }
 
 }  // namespace
@@ -68,20 +81,6 @@ PointToPlaneSystem::FaceSums PointToPlaneSystem::sum_over(const Surface& surface
     return sums;
 }
 
-/// By chunks: each thread allocates what it writes.
-PointToPlaneSystem::ChunksOfSums PointToPlaneSystem::sums_of_faces(const Surface& surface,
-                                                                   const PointsByFace& points, float hold,
-                                                                   ThreadTeam& team) {
-    const auto faces = static_cast<std::size_t>(surface.face_count());
-    ChunksOfSums chunks((faces + kSystemChunk - 1) / kSystemChunk);
-    for_chunks(faces, kSystemChunk, team, [&](std::size_t c, std::size_t begin, std::size_t end) {
-        chunks[c].reserve(end - begin);
-        for (std::size_t f = begin; f < end; ++f)
-            chunks[c].push_back(sum_over(surface, points, hold, static_cast<int>(f)));
-    });
-    return chunks;
-}
-
 PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& surface,
                                        const PointsByFace& points, ThreadTeam& team, const VertexNoise& noise,
                                        float hold)
@@ -93,18 +92,21 @@ PointToPlaneSystem::PointToPlaneSystem(const Network& network, const Surface& su
     for (VertexId v = 0; v < network.slot_count(); ++v) row_[v + 1] = row_[v] + network.ring(v).valence;
     block_.resize(row_.back());
     const PerVertex<float> missing = missing_points_at_vertices(network, surface, points);
-    const ChunksOfSums sums = sums_of_faces(surface, points, hold, team);
+    PerFace<FaceSums> sums(surface.face_count());
+    parallel_for(sums.size(), kSystemChunk, team,
+                 [&](int f) { sums[f] = sum_over(surface, points, hold, f); });
     parallel_for(network.slot_count(), kSystemChunk, team, [&](VertexId v) {
         if (!network.alive(v)) return;
         gather(sums, surface, v);
         regularise(surface, missing[v], v);
     });
     add_bending(surface, noise, team);
+    index_terms();
     for (const BoundaryTarget& target : find_boundary_targets(network, surface, points)) add_target(target);
     add_boundary_bending(surface);
 }
 
-void PointToPlaneSystem::gather(const ChunksOfSums& sums, const Surface& surface, VertexId v) {
+void PointToPlaneSystem::gather(const PerFace<FaceSums>& sums, const Surface& surface, VertexId v) {
     const Ring& ring = network_.ring(v);
     for (int f : surface.faces_around(v)) {
         const Triangle& face = surface.faces[f];
@@ -112,8 +114,7 @@ void PointToPlaneSystem::gather(const ChunksOfSums& sums, const Surface& surface
         const std::size_t before = k == 0 ? 2 : k - 1;
         const VertexId next = face[k == 2 ? 0 : k + 1];
         const VertexId previous = face[before];
-        const auto i = static_cast<std::size_t>(f);
-        const FaceSums& of_face = sums[i / kSystemChunk][i % kSystemChunk];
+        const FaceSums& of_face = sums[f];
         diagonal_[v].add(of_face.pair[k], 1);
         row(v)[ring.find(next)].add(of_face.pair[3 + k], 1);
         row(v)[ring.find(previous)].add(of_face.pair[3 + before], 1);
@@ -200,6 +201,19 @@ void PointToPlaneSystem::add_bending(const Surface& surface, const VertexNoise& 
     }
 }
 
+/// A counting sort by vertex.
+void PointToPlaneSystem::index_terms() {
+    first_of_terms_.assign(network_.slot_count() + 1, 0);
+    for (const BendingTerm& term : bending_terms_)
+        for (const VertexId v : term.corner) ++first_of_terms_[v + 1];
+    std::partial_sum(first_of_terms_.begin(), first_of_terms_.end(), first_of_terms_.begin());
+    terms_by_vertex_.resize(first_of_terms_.back());
+    PerVertex<std::size_t> next = first_of_terms_;
+    for (std::size_t t = 0; t < bending_terms_.size(); ++t)
+        for (std::size_t k = 0; k < 4; ++k)
+            terms_by_vertex_[next[bending_terms_[t].corner[k]]++] = {t, bending_terms_[t].coefficient[k]};
+}
+
 void PointToPlaneSystem::stiffen(BendingTerm& term, float stiffness) {
     term.stiffness = stiffness;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -262,6 +276,80 @@ void PointToPlaneSystem::centre_along(const Vector3& direction, const Vector3& a
     const float centring = kCentring * points_per_vertex_;
     diagonal_[v].add(Symmetric3::outer(direction), centring);
     force_[v] += centring * away.dot(direction) * direction;
+}
+
+void PointToPlaneSystem::multiply(float lambda, const PerVertex<Vector3>& u, ThreadTeam& team,
+                                  PerVertex<Vector3>& result) const {
+    std::vector<Vector3> forces(bending_terms_.size());
+    parallel_for(static_cast<int>(forces.size()), kSolverChunk, team, [&](int t) {
+        const BendingTerm& term = bending_terms_[static_cast<std::size_t>(t)];
+        const auto& c = term.coefficient;
+        const Vector3 gap = c[0] * u[term.corner[0]] + c[1] * u[term.corner[1]] + c[2] * u[term.corner[2]] +
+                            c[3] * u[term.corner[3]];
+        forces[static_cast<std::size_t>(t)] = ((lambda + term.stiffness) * term.weight) * gap;
+    });
+    parallel_for(result.size(), kSolverChunk, team, [&](VertexId v) {
+        const Ring& ring = network_.ring(v);
+        Vector3 sum = diagonal_[v] * u[v];
+        const Symmetric3* block = row(v);
+        for (int i = 0; i < ring.valence; ++i) sum += block[i] * u[ring[i]];
+        for (std::size_t i = first_of_terms_[v]; i < first_of_terms_[v + 1]; ++i)
+            sum += terms_by_vertex_[i].coefficient * forces[terms_by_vertex_[i].term];
+        result[v] = sum;
+    });
+    for (const BendingTerm& term : boundary_terms_) {  // their squares are in the diagonal
+        const auto& c = term.coefficient;
+        const Vector3 gap = c[0] * u[term.corner[0]] + c[1] * u[term.corner[1]] + c[2] * u[term.corner[2]];
+        for (std::size_t k = 0; k < 3; ++k)
+            result[term.corner[k]] += (term.weight * c[k]) * (gap - c[k] * u[term.corner[k]]);
+    }
+}
+
+PerVertex<Vector3> PointToPlaneSystem::solution(float lambda, const Accuracy& accuracy,
+                                                ThreadTeam& team) const {
+    const int n = diagonal_.size();
+    const Vector3 zero = Vector3::Zero();
+    const auto for_rows = [&](const auto& body) { parallel_for(n, kSolverChunk, team, body); };
+    PerVertex<Symmetric3> inverse(n);
+    PerVertex<Vector3> u(n, zero), residual(n, zero), scaled(n, zero), step(n, zero), image(n, zero);
+    for_rows([&](VertexId v) {
+        if (!network_.alive(v)) return;
+        Symmetric3 block = diagonal_[v];
+        block.add_identity(lambda * bending_diagonal_[v] + stiff_diagonal_[v]);
+        inverse[v] = block.inverse();
+        residual[v] = force_[v] + lambda * bending_force_[v];
+        step[v] = scaled[v] = inverse[v] * residual[v];
+    });
+    double energy = dot(residual, scaled);
+    const double enough = accuracy.tolerance * accuracy.tolerance * energy;
+    for (int i = 0; i < accuracy.iterations && energy > enough && energy > 0; ++i) {
+        multiply(lambda, step, team, image);
+        const double curvature = dot(step, image);
+        if (!(curvature > 0)) break;
+        const auto alpha = static_cast<float>(energy / curvature);
+        for_rows([&](VertexId v) {
+            u[v] += alpha * step[v];
+            residual[v] -= alpha * image[v];
+            scaled[v] = inverse[v] * residual[v];
+        });
+        const double before = std::exchange(energy, dot(residual, scaled));
+        const auto beta = static_cast<float>(energy / before);
+        for_rows([&](VertexId v) { step[v] = scaled[v] + beta * step[v]; });
+    }
+    return u;
+}
+
+std::vector<PerVertex<Vector3>> PointToPlaneSystem::solve(const std::vector<float>& lambdas, ThreadTeam& team,
+                                                          const Accuracy& accuracy) const {
+    std::vector<PerVertex<Vector3>> solutions;
+    for (const float lambda : lambdas) solutions.push_back(solution(lambda, accuracy, team));
+    return solutions;
+}
+
+PerVertex<Vector3> PointToPlaneSystem::right_side(float lambda) const {
+    PerVertex<Vector3> result(force_.size(), Vector3::Zero());
+    for (VertexId v = 0; v < result.size(); ++v) result[v] = force_[v] + lambda * bending_force_[v];
+    return result;
 }
 
 }  // namespace neuralmesh

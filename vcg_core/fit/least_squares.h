@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "vcg_core/base/thread_team.h"
-#include "vcg_core/fit/boundary_targets.h"
+#include "vcg_core/fit/boundary.h"
 #include "vcg_core/fit/points_by_face.h"
 #include "vcg_core/mesh/surface.h"
 
@@ -107,13 +107,12 @@ public:
     }
 
     /// (A + lambda B) u, into \p result, of the same size. O(vertices).
-    void multiply(float lambda, const PerVertex<Vector3>& u, PerVertex<Vector3>& result) const;
+    void multiply(float lambda, const PerVertex<Vector3>& u, ThreadTeam& team,
+                  PerVertex<Vector3>& result) const;
     /// f + lambda g.
     PerVertex<Vector3> right_side(float lambda) const;
 
 private:
-    class Solver;
-
     /// The bending term of an edge: gap = sum of coefficient x position over the corners.
     struct BendingTerm {
         std::array<VertexId, 4> corner;  ///< the edge's ends, then the two vertices opposite
@@ -128,15 +127,14 @@ private:
         std::array<Vector3, 3> force;
     };
 
+    PerVertex<Vector3> solution(float lambda, const Accuracy& accuracy, ThreadTeam& team) const;
     static FaceSums sum_over(const Surface& surface, const PointsByFace& points, float hold, int face);
-    using ChunksOfSums = std::vector<std::vector<FaceSums>>;
-    static ChunksOfSums sums_of_faces(const Surface& surface, const PointsByFace& points, float hold,
-                                      ThreadTeam& team);
-    void gather(const ChunksOfSums& sums, const Surface& surface, VertexId v);
+    void gather(const PerFace<FaceSums>& sums, const Surface& surface, VertexId v);
     void regularise(const Surface& surface, float missing_points, VertexId v);
     static bool make_bending_term(const Surface& surface, const std::array<VertexId, 4>& corner,
                                   BendingTerm& term);
     void add_bending(const Surface& surface, const VertexNoise& noise, ThreadTeam& team);
+    void index_terms();
     void stiffen(BendingTerm& term, float stiffness);
     void add_target(const BoundaryTarget& target);
     void add_boundary_bending(const Surface& surface);
@@ -153,7 +151,14 @@ private:
     PerVertex<Vector3> force_;
     // B by terms, its diagonal, and g.
     std::vector<BendingTerm> bending_terms_;
-    std::vector<BendingTerm> boundary_terms_;  ///< of boundary vertices, with three corners; part of A
+    /// A term and the coefficient of a vertex in it.
+    struct TermOfVertex {
+        std::size_t term;
+        float coefficient;
+    };
+    std::vector<TermOfVertex> terms_by_vertex_;  ///< those of a vertex in the order of the terms
+    PerVertex<std::size_t> first_of_terms_;      ///< where those of a vertex begin; one more entry at the end
+    std::vector<BendingTerm> boundary_terms_;    ///< of boundary vertices, with three corners; part of A
     PerVertex<float> bending_diagonal_;
     PerVertex<float> stiff_diagonal_;  ///< of the stiffness
     PerVertex<Vector3> bending_force_;

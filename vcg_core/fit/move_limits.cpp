@@ -3,6 +3,8 @@
 
 #include "vcg_core/fit/move_limits.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "vcg_core/base/parallel_for.h"
@@ -11,6 +13,16 @@
 namespace neuralmesh {
 
 namespace {
+
+std::size_t count_faces(const std::vector<SelfCrossing>& crossings) {
+    std::vector<Triangle> faces;
+    for (const SelfCrossing& c : crossings) {
+        faces.push_back({c[0], c[1], c[2]});
+        faces.push_back({c[3], c[4], c[5]});
+    }
+    std::sort(faces.begin(), faces.end());
+    return static_cast<std::size_t>(std::unique(faces.begin(), faces.end()) - faces.begin());
+}
 
 constexpr float kMaxMove = 0.25F;  ///< in mean lengths of the vertex's edges
 constexpr int kLimitChunk = 512;
@@ -22,6 +34,23 @@ float quality_of(const Surface& surface, int f, const PerVertex<Vector3>& positi
 }
 
 }  // namespace
+
+CrossingGuard::CrossingGuard(std::vector<SelfCrossing> crossings)
+    : accepted_(std::move(crossings)), max_faces_(count_faces(accepted_)) {}
+
+std::vector<VertexId> CrossingGuard::objections(std::vector<SelfCrossing> crossings) {
+    std::vector<SelfCrossing> added;
+    std::set_difference(crossings.begin(), crossings.end(), accepted_.begin(), accepted_.end(),
+                        std::back_inserter(added));
+    std::vector<VertexId> corners;
+    if (added.empty() || count_faces(crossings) <= max_faces_) {
+        accepted_ = std::move(crossings);
+    } else {
+        for (const SelfCrossing& crossing : added)
+            corners.insert(corners.end(), crossing.begin(), crossing.end());
+    }
+    return corners;
+}
 
 MoveLimits::MoveLimits(const Network& network, const Surface& surface, ThreadTeam& team)
     : surface_(surface),
@@ -83,10 +112,10 @@ public:
             if (!shorten(find_offending(), pass)) return std::move(moved_);
     }
 
-    /// \param last a surface with the same faces, before or after the move; its \p crossings are known
-    PerVertex<Vector3> shorten_to_limits(Surface last, std::vector<SelfCrossing> crossings,
-                                         CrossingGuard& guard, ThreadTeam& team) {
-        Surface now = last;
+    /// \param guard has accepted the surface before the move
+    PerVertex<Vector3> shorten_to_limits(CrossingGuard& guard, ThreadTeam& team) {
+        Surface last = surface_, now = surface_;
+        std::vector<SelfCrossing> crossings = guard.accepted();
         int crossed = 0;
         for (int pass = 0;; ++pass) {
             if (shorten(find_offending(), pass)) continue;
@@ -167,13 +196,7 @@ PerVertex<Vector3> MoveLimits::bounded(const PerVertex<Vector3>& displacements) 
 
 PerVertex<Vector3> MoveLimits::without_crossings(const PerVertex<Vector3>& displacements,
                                                  CrossingGuard& guard, ThreadTeam& team) const {
-    return without_crossings(displacements, surface_, guard.accepted(), guard, team);
-}
-
-PerVertex<Vector3> MoveLimits::without_crossings(const PerVertex<Vector3>& displacements,
-                                                 const Surface& known, std::vector<SelfCrossing> crossings,
-                                                 CrossingGuard& guard, ThreadTeam& team) const {
-    return Moves(*this, displacements).shorten_to_limits(known, std::move(crossings), guard, team);
+    return Moves(*this, displacements).shorten_to_limits(guard, team);
 }
 
 }  // namespace neuralmesh

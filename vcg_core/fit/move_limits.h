@@ -1,15 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Limits displacements of vertices so that they do not break the surface.
+// Limits displacements of vertices so that they do not break the surface, and keeps it from cutting itself.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
-#include "vcg_core/fit/crossing_guard.h"
 #include "vcg_core/mesh/network.h"
+#include "vcg_core/mesh/self_crossings.h"
 
 namespace neuralmesh {
+
+/// Accepts a change of a surface if it adds no self-crossing, or if the number of faces that cross stays at
+/// or below its initial value. A default-constructed guard starts from a surface without self-crossings.
+class CrossingGuard {
+public:
+    CrossingGuard() = default;
+    /// \param crossings self-crossings of the surface, sorted
+    explicit CrossingGuard(std::vector<SelfCrossing> crossings);
+
+    /// Judges a change after which the surface has the self-crossings \p crossings (sorted). \return empty if
+    /// the change is accepted, which makes them accepted(); else the corners of the new ones
+    std::vector<VertexId> objections(std::vector<SelfCrossing> crossings);
+
+    /// The self-crossings of the surface after the last accepted change.
+    const std::vector<SelfCrossing>& accepted() const { return accepted_; }
+
+private:
+    std::vector<SelfCrossing> accepted_;
+    std::size_t max_faces_ = 0;
+};
 
 /// How far the vertices of a surface may move: kMoveRules of face_rules.h hold for its faces, and no vertex
 /// moves further than a quarter of the mean length of its edges. Displacements that break a limit are halved
@@ -23,11 +44,6 @@ public:
     PerVertex<Vector3> bounded(const PerVertex<Vector3>& displacements) const;
     /// The same, shortened further until \p guard, which has accepted the surface, accepts the result.
     PerVertex<Vector3> without_crossings(const PerVertex<Vector3>& displacements, CrossingGuard& guard,
-                                         ThreadTeam& team) const;
-    /// The same, sooner if \p known, a surface with the same faces, is closer to the result; \p crossings are
-    /// those of \p known.
-    PerVertex<Vector3> without_crossings(const PerVertex<Vector3>& displacements, const Surface& known,
-                                         std::vector<SelfCrossing> crossings, CrossingGuard& guard,
                                          ThreadTeam& team) const;
 
 private:

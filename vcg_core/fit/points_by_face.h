@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Points, and the face of the surface that each is nearest to.
+// The points that a fit uses, and the face of the surface that each is nearest to.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
+#include "vcg_core/base/random.h"
 #include "vcg_core/base/span.h"
 #include "vcg_core/base/thread_team.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/mesh/face_walk.h"
 #include "vcg_core/mesh/surface.h"
 
@@ -48,7 +51,6 @@ public:
     PerFace<float> counts() const;
     /// The points of all faces, face by face.
     std::vector<Assignment>& all() { return assignments_; }
-    const std::vector<Assignment>& all() const { return assignments_; }
     /// Number of points for each of \p vertices vertices.
     float per_vertex(int vertices) const {
         return static_cast<float>(assignments_.size()) / static_cast<float>(vertices);
@@ -72,5 +74,16 @@ private:
 /// near in memory, and records the hits.
 PointsByFace group_by_face(const Surface& surface, TrackedPoints& tracked, const std::vector<Hit>& hits,
                            ThreadTeam& team);
+
+struct PointChoice {
+    TrackedPoints fitted;    ///< in random order
+    TrackedPoints held_out;  ///< no part of the fit; they measure its error
+};
+
+/// Chooses \p wanted points of \p target at random: of a cloud without repetition, at most all of them; of
+/// faces at most 2 million or a tenth of \p wanted, whichever is more. One in eight is held out, at most
+/// 10,000. Of a weighted cloud, points are chosen evenly over the surface, and the weights of the others make
+/// up for those that are too few; their number is then about \p wanted. O(points of the cloud + wanted).
+PointChoice choose_points(const TargetSpace& target, std::size_t wanted, Random& random);
 
 }  // namespace neuralmesh

@@ -1,35 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Moves vertices through the mesh: collapses where they matter little, splits where the error is large.
+// Moves vertices through the mesh: collapses where they matter little, splits where the error is large. More
+// vertices than the points carry: the longest edges are split. And which earlier vertex stands for each after
+// that.
 #pragma once
+
+#include <vcg/space/point3.h>
 
 #include <vector>
 
+#include "vcg_core/base/progress.h"
 #include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/split_gains.h"
+#include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
 
-/// The changes made to a network. An inserted vertex usually gets the id of a removed one.
-struct VertexMoves {
-    struct DoneCollapse {
-        VertexId gone, into;
-    };
-    struct Insertion {
-        VertexId added;
-        VertexId beside;  ///< an end of the edge that was split
-    };
-    std::vector<DoneCollapse> collapses;  ///< in order; all come before the first insertion
-    std::vector<Insertion> insertions;    ///< as many as collapses
+/// A collapse that was carried out.
+struct DoneCollapse {
+    VertexId gone, into;
 };
 
 /// Carries out pairs of a collapse and a split, best first, as long as the split gains more than the collapse
 /// costs, at most \p max_pairs. No two operations have a vertex in common, and none has a \p barred one.
-/// Topology and number of vertices stay.
+/// Topology and number of vertices stay; an inserted vertex usually gets the id of a removed one. \return the
+/// collapses, in order; all come before the first split
 /// \param collapses of find_collapses() \param splits of find_splits()
-VertexMoves redistribute(Network& network, const std::vector<Collapse>& collapses,
-                         const std::vector<EdgeSplit>& splits, int max_pairs, const PerVertex<char>& barred);
+std::vector<DoneCollapse> redistribute(Network& network, const std::vector<Collapse>& collapses,
+                                       const std::vector<EdgeSplit>& splits, int max_pairs,
+                                       const PerVertex<char>& barred);
 
 /// Carries out the best \p splits, at most \p max_count. No two have a corner of their faces in common. The
 /// topology stays. \return their number
@@ -37,13 +37,36 @@ int insert(Network& network, const std::vector<EdgeSplit>& splits, int max_count
 
 /// Carries out the cheapest \p collapses, at most \p max_count. No two have a vertex in common, and none has
 /// a \p barred one. The topology stays.
-std::vector<VertexMoves::DoneCollapse> reduce(Network& network, const std::vector<Collapse>& collapses,
-                                              int max_count, const PerVertex<char>& barred);
+std::vector<DoneCollapse> reduce(Network& network, const std::vector<Collapse>& collapses, int max_count,
+                                 const PerVertex<char>& barred);
 
 /// The same with more collapses at once: they may have neighbours in common, but none removes a vertex whose
 /// faces, or faces beyond its ring, are new. So the cost of each still holds.
-std::vector<VertexMoves::DoneCollapse> reduce_densely(Network& network,
-                                                      const std::vector<Collapse>& collapses, int max_count,
-                                                      const PerVertex<char>& barred);
+std::vector<DoneCollapse> reduce_densely(Network& network, const std::vector<Collapse>& collapses,
+                                         int max_count, const PerVertex<char>& barred);
+
+/// Where refine() puts the new vertices.
+enum class NewVertices {
+    on_edges,  ///< adds no self-crossing
+    curved,    ///< the surface curves by the normals at the ends of the edges
+    between,   ///< the same, but it curves only where the normals turn by little
+};
+
+/// Splits edges of \p network, the longest first, until it has \p vertices vertices or no edge can be
+/// split. O(n log n) for every doubling of the vertices. \p progress is asked before each pass. \return the
+/// number of vertices inserted
+int refine(Network& network, int vertices, NewVertices where, Progress& progress);
+
+/// The vertices of a network and where they lie: what nearest_vertices() needs of one that is to change.
+struct VertexPlaces {
+    explicit VertexPlaces(const Network& network);
+
+    std::vector<VertexId> ids;
+    std::vector<vcg::Point3f> places;
+};
+
+/// For every slot of \p after the vertex of \p before that is nearest to the place of its vertex, so that
+/// counters stay where they were learned; -1 for free slots. O(vertices log vertices).
+PerVertex<VertexId> nearest_vertices(const VertexPlaces& before, const Network& after);
 
 }  // namespace neuralmesh

@@ -40,7 +40,7 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
     if (!wants_reduction(vertices, network_.vertex_count(), reducing)) return false;
     set_points_aside(kReducingPointsPerVertex);
     Surface surface(network_);
-    PointsByFace points = locate_points(surface, options_.by_volume);
+    PointsByFace points = locate_points(surface);
     set_directions(surface);
     solve(points, surface);
     const bool reduced = options_.by_volume ? reduce_by_volume(vertices, surface, std::move(points), reducing)
@@ -53,7 +53,6 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
 }
 
 bool Fitter::reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress) {
-    excludes_layers_ = !layered_;
     PartOf fitting(progress, 0, 0.9);
     PartOf rest(progress, 0.9, 1);
     for (int found = 1; found < kSolutionsBefore; ++found) {
@@ -110,7 +109,7 @@ bool Fitter::wants_reduction(int vertices, int at_start, Progress& progress) con
 /// \return whether any vertex was removed
 bool Fitter::remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense) {
     const std::vector<Collapse> collapses = find_collapses(network_, surface, points, team_);
-    const std::vector<VertexMoves::DoneCollapse> done = guarded(surface, [&](const PerVertex<char>& barred) {
+    const std::vector<DoneCollapse> done = guarded(surface, [&](const PerVertex<char>& barred) {
         return dense ? reduce_densely(network_, collapses, max_count, barred)
                      : reduce(network_, collapses, max_count, barred);
     });

@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "vcg_core/base/parallel_for.h"
-#include "vcg_core/fit/boundary_targets.h"
+#include "vcg_core/fit/boundary.h"
 
 namespace neuralmesh {
 

@@ -85,8 +85,8 @@ public:
                 if (v < w) enqueue(v, w);
     }
 
-    std::vector<VertexMoves::DoneCollapse> run(int vertices) {
-        std::vector<VertexMoves::DoneCollapse> done;
+    std::vector<DoneCollapse> run(int vertices) {
+        std::vector<DoneCollapse> done;
         Candidate next;
         while (network_.vertex_count() > vertices &&
                queue_.pop(next, [this](const Candidate& edge) { return is_current(edge); })) {
@@ -214,9 +214,8 @@ private:
 
 }  // namespace
 
-std::vector<VertexMoves::DoneCollapse> collapse_by_volume(Network& network, int vertices,
-                                                          const PerVertex<char>& barred,
-                                                          double short_length) {
+std::vector<DoneCollapse> collapse_by_volume(Network& network, int vertices, const PerVertex<char>& barred,
+                                             double short_length) {
     return Reduction(network, barred, short_length).run(vertices);
 }
 

@@ -22,8 +22,7 @@ namespace neuralmesh {
 /// most. \return what was collapsed, in order
 /// Source: Lindstrom and Turk, "Fast and memory efficient polygonal simplification" (1998); the cost is their
 /// volume optimization. O(vertices log vertices).
-std::vector<VertexMoves::DoneCollapse> collapse_by_volume(Network& network, int vertices,
-                                                          const PerVertex<char>& barred,
-                                                          double short_length = 0);
+std::vector<DoneCollapse> collapse_by_volume(Network& network, int vertices, const PerVertex<char>& barred,
+                                             double short_length = 0);
 
 }  // namespace neuralmesh

@@ -10,8 +10,7 @@
 
 #include "tests/unit/fit/fit_scene.h"
 #include "tests/unit/support/targets.h"
-#include "vcg_core/fit/boundary_mending.h"
-#include "vcg_core/fit/boundary_targets.h"
+#include "vcg_core/fit/boundary.h"
 #include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/fit.h"
 

@@ -96,13 +96,5 @@ TEST(CreaseMoves, NothingMovesWithMuchNoise) {
     EXPECT_EQ(count_moved(moves_of(scene, 0.5 * kEdge)), 0);
 }
 
-TEST(CreaseMoves, ThreadsDoNotMatter) {
-    const FitScene scene = roof_scene(0.05 * kEdge);
-    const PerVertex<Vector3> one = moves_of(scene, 0.05 * kEdge, 1);
-    const PerVertex<Vector3> three = moves_of(scene, 0.05 * kEdge, 3);
-    EXPECT_GT(count_moved(one), kColumns / 2);
-    for (VertexId v = 0; v < one.size(); ++v) EXPECT_EQ(one[v], three[v]);
-}
-
 }  // namespace
 }  // namespace neuralmesh

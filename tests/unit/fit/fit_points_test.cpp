@@ -139,20 +139,6 @@ TEST(PointsByFace, HaveEveryPointWithItsNearestFace) {
     EXPECT_EQ(i, 2000U);
 }
 
-TEST(PointsByFace, UpdateTheirFeet) {
-    FitScene scene(referee::network_of(shapes::icosphere(2)), shapes::sphere_cloud(2000));
-    ThreadTeam team(2);
-    for (Vector3& p : scene.surface.positions) p *= 1.1F;
-    scene.points.update_feet(scene.surface, team);
-    for (int f = 0; f < scene.surface.face_count(); ++f)
-        for (const PointsByFace::Assignment& a : scene.points.of(f)) {
-            const Foot foot = foot_on_triangle(a.point, scene.surface.corner(f, 0),
-                                               scene.surface.corner(f, 1), scene.surface.corner(f, 2));
-            EXPECT_EQ(a.foot.squared_distance, foot.squared_distance);
-            EXPECT_EQ(a.foot.weights, foot.weights);
-        }
-}
-
 TEST(NoiseVariance, IsThatOfANoisyPlane) {
     ThreadTeam team(2);
     const Surface plane(referee::network_of(shapes::grid(10, 10)));
@@ -161,6 +147,15 @@ TEST(NoiseVariance, IsThatOfANoisyPlane) {
             points_on(plane, 100, [&](Random& random) { return sigma * normal_deviate(random); });
         EXPECT_NEAR(noise_variance(plane, points, team) / (sigma * sigma), 1, 0.05);
     }
+}
+
+TEST(NoiseVariance, OfEachPlaceIsThatOfTheNoise) {
+    constexpr double kNoise = 0.04;
+    const double deviation = kNoise / std::sqrt(5.0);  // along one axis, of noise that fills a ball
+    const FitScene scene(referee::network_of(shapes::icosphere(3)), shapes::sphere_cloud(20000, kNoise));
+    const PerVertex<float> variances = local_variances(scene.network, scene.surface, scene.points);
+    for (const VertexId v : scene.network.vertices())
+        EXPECT_NEAR(std::sqrt(static_cast<double>(variances[v])), deviation, 0.15 * deviation);
 }
 
 TEST(NoiseVariance, IsNotThatOfTheMisfit) {

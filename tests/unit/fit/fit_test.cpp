@@ -12,7 +12,7 @@
 
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/targets.h"
-#include "vcg_core/fit/rms_error.h"
+#include "vcg_core/fit/point_errors.h"
 #include "vcg_core/mesh/self_crossings.h"
 
 namespace neuralmesh {
@@ -196,34 +196,13 @@ TEST(Fit, RemovesTheVerticesOfLeastCost) {
         FitOptions options;
         options.reduce_to = 60;
         options.by_volume = by_volume;
-        const FitReport report = fit(network, target, options);
+        fit(network, target, options);
         EXPECT_LT(5 * 60, before) << "far fewer than the ids in use";
         EXPECT_EQ(network.vertex_count(), 60);
         EXPECT_EQ(network.validate(), "");
         EXPECT_EQ(network.genus(), 0);
-        EXPECT_TRUE(report.improved);
         EXPECT_LT(rms(target, network), 1e-3);
     }
-}
-
-// A surface that was learned with few signals may not have followed a spike yet. Taken for layers, the points
-// there would hold the fit back, with 17 times the error.
-TEST(Fit, TakesNoSpikeOfALaggingSurfaceForLayers) {
-    const auto with_spike = [](vcg::Point3d p, double height) {
-        const double angle = std::acos(p[2] / p.Norm()) / 0.25;
-        return p * (1 + height * std::exp(-angle * angle));
-    };
-    Cloud cloud = shapes::sphere_cloud(60000);
-    for (vcg::Point3d& p : cloud) p = with_spike(p, 1);
-    const TargetSpace target = target_of(cloud);
-    Shape lagging = shapes::icosphere(4);
-    for (vcg::Point3d& p : lagging.positions) p = with_spike(p, 0.5);
-    Network network = network_in_frame(target, lagging);
-    FitOptions options;
-    options.reduce_to = 400;
-    options.by_volume = true;
-    fit(network, target, options);
-    EXPECT_LT(rms(target, network), 1e-3);
 }
 
 TEST(Fit, CancelledInTheReductionItLeavesASoundMesh) {
@@ -292,16 +271,6 @@ TEST(Fit, ReportsHowMuchOfItIsDone) {
         EXPECT_LT(progress.standing_still, 2) << "the first round of the reduction removes none";
         EXPECT_GT(progress.last, 0.6);
     }
-}
-
-TEST(Fit, StopsWhenAskedTo) {
-    const TargetSpace target = target_of(shapes::sphere_cloud(5000));
-    Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(2), 1.1));
-    const Network before = network;
-    Stop stop;
-    const FitReport report = fit_to_points(network, target, {}, 1, 1, stop);
-    EXPECT_EQ(report.rounds, 0);
-    EXPECT_TRUE(same_bytes(before, network));
 }
 
 TEST(Fit, RemovesNoMoreThanTheTopologyAllows) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/fit/refine.h"
+#include "vcg_core/fit/redistribute.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,6 @@
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
-#include "vcg_core/fit/sources.h"
 #include "vcg_core/mesh/self_crossings.h"
 #include "vcg_core/reconstruct.h"
 
@@ -54,13 +53,6 @@ TEST(Refine, SplitsBoundaryEdgesToo) {
         for (const VertexId u : network.ring(v))
             longest = std::max(longest, (network.position(u) - network.position(v)).Norm());
     EXPECT_LT(longest, 0.06);
-}
-
-TEST(Refine, LeavesEnoughVerticesAlone) {
-    Network network = referee::network_of(shapes::icosphere(2));
-    NoProgress progress;
-    EXPECT_EQ(refine(network, 100, NewVertices::curved, progress), 0);
-    EXPECT_EQ(network.vertex_count(), 162);
 }
 
 TEST(Refine, EndsWhenProgressAsksToStop) {
@@ -127,15 +119,6 @@ TEST(FewPoints, MakeASmoothOpenMesh) {
     for (const vcg::Point3d& p : mesh.positions) positions.push_back(vcg::Point3f::Construct(p));
     ThreadTeam team(1);
     EXPECT_TRUE(self_crossings(Surface(Network(positions, mesh.faces)), team).empty());
-}
-
-TEST(FewPoints, EnoughPointsGiveNoWarning) {
-    Settings settings;
-    settings.target_vertices = 300;
-    NoProgress progress;
-    const NeuralMesh mesh = reconstruct(soundness::target_of(shapes::sphere_cloud(700)), settings, progress);
-    EXPECT_EQ(mesh.report.vertices, 300);
-    EXPECT_FALSE(soundness::has_warning(mesh, "carry about"));
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // The reported distance of the points from the mesh: exact for small clouds, of random points for large ones.
-#include "vcg_core/fit/rms_error.h"
+#include "vcg_core/fit/point_errors.h"
 
 #include <gtest/gtest.h>
 

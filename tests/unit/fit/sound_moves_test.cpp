@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Long moves reach their places, and stop where the surface would cut itself.
-#include "vcg_core/fit/sound_moves.h"
+#include "vcg_core/fit/sound_meshes.h"
 
 #include <gtest/gtest.h>
 
@@ -62,15 +62,6 @@ TEST(SoundMoves, StopBeforeTheSidesCross) {
         if (moves[v] != Vector3(0, 0, 0)) farthest = std::max(farthest, network.position(v)[0]);
     EXPECT_GT(farthest, 0.8F) << "the hollow does come closer to the outside";
     EXPECT_LT(farthest, 1);
-}
-
-TEST(SoundMoves, DoNotDependOnTheThreads) {
-    Network one = hollow_ball(0.6), three = hollow_ball(0.6);
-    const PerVertex<Vector3> moves = moves_to(one, 0.8F, 0.76F, 0.8F);
-    ThreadTeam alone(1), team(3);
-    move_soundly(one, moves, alone);
-    move_soundly(three, moves, team);
-    for (const VertexId v : one.vertices()) EXPECT_EQ(one.position(v), three.position(v));
 }
 
 }  // namespace

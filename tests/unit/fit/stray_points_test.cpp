@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Which points are astray, on a sphere with points above it.
-#include "vcg_core/fit/stray_points.h"
+#include "vcg_core/fit/noise.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Folds of a surface that was seen from one side are smoothed out, and no step of the fit makes new ones.
-#include "vcg_core/fit/sound_start.h"
+#include "vcg_core/fit/sound_meshes.h"
 
 #include <gtest/gtest.h>
 

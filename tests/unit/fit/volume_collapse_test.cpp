@@ -82,7 +82,7 @@ TEST_P(VolumeCollapseWith, TakesTheEdgeOfLeastCostToItsPlace) {
         const auto cost_of = [&](VertexId a, VertexId b) {
             return place_of(before, a, b).second + cost_of_length(before, a, b, short_length);
         };
-        const std::vector<VertexMoves::DoneCollapse> done =
+        const std::vector<DoneCollapse> done =
             collapse_by_volume(network, network.vertex_count() - 1, nobody(network), short_length);
         ASSERT_EQ(done.size(), 1U);
         const Eigen::Vector3d place = place_of(before, done[0].gone, done[0].into).first;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The colours of a cloud, at the vertices of the mesh that was learned from it.
+// Colours of the vertices: those that show the feature measure, and those of the cloud that the mesh was
+// learned from.
 #pragma once
+
+#include <vector>
 
 #include "vcg_core/base/color.h"
 #include "vcg_core/base/progress.h"
@@ -11,6 +14,13 @@
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
+
+/// One colour per counter from the light two thirds of the map "magma" (van der Walt and Smith, 2015), which
+/// is perceptually uniform and readable without colour vision: light yellow at the 2nd percentile and below,
+/// purple at the 98th and above, so that a few extreme counters do not hide the rest. Smooth parts, usually
+/// the most of a surface, get the light end, so that they are readable under a renderer's shading.
+/// O(counters).
+std::vector<Color> counter_colors(const std::vector<float>& counters);
 
 /// A colour for every slot of \p network; white for free slots and for components near which there are no
 /// points.

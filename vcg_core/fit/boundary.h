@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Where the points end along the boundary of an open surface.
+// The boundary of an open surface: where the points end along it, its notches that the points do not have,
+// and faces along it that no points support.
 #pragma once
 
 #include <array>
@@ -37,8 +38,21 @@ struct BoundaryTarget {
 std::vector<BoundaryTarget> find_boundary_targets(const Network& network, const Surface& surface,
                                                   const PointsByFace& points);
 
-/// Points per area around every vertex, over two rings. Faces with a boundary edge do not count: the points
-/// beyond the boundary are theirs, too. 0 where there are no other faces. O(vertices).
-PerVertex<float> inner_density(const Network& network, const Surface& surface, const PointsByFace& points);
+/// The boundary vertices whose notch Network::fill_notch() ought to fill: it holds about as many points as
+/// the density around lets expect, or is too narrow for any. The new face would not fold. O(points around the
+/// boundary).
+std::vector<VertexId> find_notches(const Network& network, const Surface& surface,
+                                   const PointsByFace& points);
+
+/// Fills the \p notches that have no \p barred corner and none in common with an earlier one. \return their
+/// number
+int fill_notches(Network& network, const std::vector<VertexId>& notches, const PerVertex<char>& barred);
+
+/// Opens the faces at the boundary whose third corner is an inner vertex (Network::open_face) and that hold
+/// hardly a point where the density around lets expect many. Each lays the next ones open. Vertices of
+/// \p barred stay. O(faces along the boundary + faces opened). \return the number of faces opened
+/// \pre \p surface is that of \p network
+int open_webs(Network& network, const Surface& surface, const PointsByFace& points,
+              const PerVertex<char>& barred);
 
 }  // namespace neuralmesh

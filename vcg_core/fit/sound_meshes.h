@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The mesh that the fit begins with: as free of self-crossings as can be.
+// Meshes that do not cut themselves: the one that the fit begins with, and long moves of its vertices.
 #pragma once
 
 #include <optional>
@@ -31,5 +31,23 @@ std::optional<std::vector<SelfCrossing>> make_sound(Network& network, ThreadTeam
 /// little of that: inside of it vertices are in the middle of their neighbours already. Without a viewer
 /// nothing moves. O(vertices).
 void unfold(Network& network);
+
+/// Laplacian smoothing of \p network around its self-crossings, over neighbourhoods that widen from round to
+/// round; boundary vertices move along the boundary only. Where self-crossings remain, the surface around
+/// them gets its old positions back. No other vertex moves. Gives up, leaving the network unchanged, if more
+/// than 100 pairs of face boxes per face overlap. The result does not depend on the number of threads.
+///
+/// \param progress asked before every round; if it asks to stop, the network stays unchanged
+/// \return the remaining self-crossings, sorted; nothing if stopped
+///
+/// Cost: that of self_crossings() once and of update_self_crossings() per round.
+std::optional<std::vector<SelfCrossing>> untangle(Network& network, ThreadTeam& team, Progress& progress);
+
+/// Moves the vertices of \p network by \p moves, in at most twelve steps, of which none exceeds MoveLimits or
+/// adds a self-crossing. Self-crossings at the start are smoothed out first where untangle() can. A vertex
+/// that is held up in one step goes on in the next; in the end some may be short of their places. The result
+/// does not depend on the number of threads. Cost: that of untangle(), and per step of MoveLimits and some
+/// searches for crossings.
+void move_soundly(Network& network, PerVertex<Vector3> moves, ThreadTeam& team);
 
 }  // namespace neuralmesh
