@@ -33,6 +33,7 @@ struct Lattice {
     float step = 1;                ///< distance between nodes
     vcg::Point3f corner{0, 0, 0};  ///< position of node (0, 0, 0)
 
+    Lattice() = default;
     /// Covers \p box and \p margin further nodes on each side, centred on the box.
     Lattice(const vcg::Box3f& box, float node_step, int margin);
 
