@@ -23,7 +23,6 @@ using Neighbours = std::vector<NearestPoints::Neighbour>;
 constexpr int kSpacingNeighbour = CloudSurvey::kNeighbour;  ///< the distance to it is a point's spacing
 constexpr int kWideCount = 48, kNarrowCount = 16;
 constexpr Place kSampleStride = CloudSurvey::kRun;  ///< one of so many points tells the usual spacing
-constexpr std::size_t kSamplesAround = 5;
 constexpr float kSparse = 2;   ///< suspects are sparser than usual by this factor
 constexpr Place kWindow = 64;  ///< places to each side that are looked at before a search
 constexpr std::size_t kChunk = 1024;
@@ -108,14 +107,7 @@ void Suspects::note_spacings(const CloudSurvey& survey) {
     std::vector<float> samples;
     for (const float squared : survey.squared_spacings) samples.push_back(std::sqrt(squared));
     of_all_ = median(samples);
-    around_.resize(samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        const std::size_t begin = i - std::min(i, kSamplesAround / 2);
-        const std::size_t end = std::min(samples.size(), i + kSamplesAround / 2 + 1);
-        const auto at = samples.begin();
-        around_[i] =
-            median<float>({at + static_cast<std::ptrdiff_t>(begin), at + static_cast<std::ptrdiff_t>(end)});
-    }
+    around_ = running_median(samples);
 }
 
 /// Are there kSpacingNeighbour points within \p radius, among those of nearby places? True for nearly all
