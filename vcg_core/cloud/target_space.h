@@ -20,7 +20,6 @@
 #include "vcg_core/base/packed_normal.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/base/span.h"
-#include "vcg_core/cloud/alias_table.h"
 #include "vcg_core/cloud/point_areas.h"
 
 namespace neuralmesh {
