@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vcg_core/cloud/float_steps.h"
+#include "vcg_core/rounded_coordinates.h"
 
 namespace neuralmesh::detail {
 

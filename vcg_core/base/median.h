@@ -18,4 +18,18 @@ Number median(std::vector<Number> values) {
     return *middle;
 }
 
+/// The median of each value, the two before and the two after it.
+template <class Number>
+std::vector<Number> running_median(const std::vector<Number>& values) {
+    constexpr std::size_t kBeside = 2;
+    std::vector<Number> result;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const auto begin = values.begin() + static_cast<std::ptrdiff_t>(i - std::min(i, kBeside));
+        const auto end =
+            values.begin() + static_cast<std::ptrdiff_t>(std::min(values.size(), i + kBeside + 1));
+        result.push_back(median<Number>({begin, end}));
+    }
+    return result;
+}
+
 }  // namespace neuralmesh

@@ -13,7 +13,7 @@
 
 #include "vcg_core/base/color.h"
 #include "vcg_core/base/packed_normal.h"
-#include "vcg_core/cloud/float_steps.h"
+#include "vcg_core/rounded_coordinates.h"
 
 namespace neuralmesh::c_api {
 

@@ -23,10 +23,9 @@ using Neighbours = std::vector<NearestPoints::Neighbour>;
 constexpr int kSpacingNeighbour = CloudSurvey::kNeighbour;  ///< the distance to it is a point's spacing
 constexpr int kWideCount = 48, kNarrowCount = 16;
 constexpr Place kSampleStride = CloudSurvey::kRun;  ///< one of so many points tells the usual spacing
-constexpr std::size_t kSamplesAround = 5;
 constexpr float kSparse = 2;   ///< suspects are sparser than usual by this factor
 constexpr Place kWindow = 64;  ///< places to each side that are looked at before a search
-constexpr std::size_t kChunk = 1024;
+constexpr int kChunk = 1024;
 constexpr float kMostRatio = 100;  ///< of spacings: neighbours may coincide
 
 /// The places of suspects and what is known of them.
@@ -36,7 +35,6 @@ public:
         note_spacings(survey);
         find();
         if (suspects_.empty()) return;
-        gather_neighbours();
         measure();
         combine();
     }
@@ -64,7 +62,6 @@ private:
     void find();
     std::vector<Place> lifted() const;
     bool has_close_neighbours(Place place, float radius) const;
-    void gather_neighbours();
     void measure();
     double evidence_alone(std::size_t suspect) const;
     void combine();
@@ -108,14 +105,7 @@ void Suspects::note_spacings(const CloudSurvey& survey) {
     std::vector<float> samples;
     for (const float squared : survey.squared_spacings) samples.push_back(std::sqrt(squared));
     of_all_ = median(samples);
-    around_.resize(samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        const std::size_t begin = i - std::min(i, kSamplesAround / 2);
-        const std::size_t end = std::min(samples.size(), i + kSamplesAround / 2 + 1);
-        const auto at = samples.begin();
-        around_[i] =
-            median<float>({at + static_cast<std::ptrdiff_t>(begin), at + static_cast<std::ptrdiff_t>(end)});
-    }
+    around_ = running_median(samples);
 }
 
 /// Are there kSpacingNeighbour points within \p radius, among those of nearby places? True for nearly all
@@ -134,19 +124,15 @@ bool Suspects::has_close_neighbours(Place place, float radius) const {
 }
 
 void Suspects::find() {
-    std::vector<std::vector<Suspect>> found((cloud_.size() + kChunk - 1) / kChunk);
-    for_chunks(cloud_.size(), kChunk, team_, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-        Neighbours scratch;
-        for (std::size_t i = begin; i < end; ++i) {
+    suspects_ = parallel_collect<Suspect>(
+        static_cast<int>(cloud_.size()), kChunk, team_, [&](int i, std::vector<Suspect>& found) {
             const auto place = static_cast<Place>(i);
             const float radius = kSparse * std::min(of_all_, around_[place / kSampleStride]);
-            if (has_close_neighbours(place, radius)) continue;
+            if (has_close_neighbours(place, radius)) return;
+            Neighbours scratch;
             const float own = spacing(place, scratch);
-            if (own > radius) found[chunk].push_back({place, own});
-        }
-    });
-    for (const std::vector<Suspect>& part : found)
-        suspects_.insert(suspects_.end(), part.begin(), part.end());
+            if (own > radius) found.push_back({place, own});
+        });
 }
 
 /// Points that are a little sparser than usual and off the plane of their neighbours. In a cloud with hardly
@@ -155,56 +141,43 @@ std::vector<Place> Suspects::lifted() const {
     constexpr float kSparser = 1.35F;
     constexpr double kSpacing = 1.78;  // that of even points on a plane in distances to the tenth neighbour
     constexpr double kLeast = 0.3, kLifted = 4;
-    std::vector<std::vector<Place>> found((cloud_.size() + kChunk - 1) / kChunk);
-    for_chunks(cloud_.size(), kChunk, team_, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-        Neighbours near;
-        std::vector<Place> places;
-        for (std::size_t i = begin; i < end; ++i) {
+    return parallel_collect<Place>(
+        static_cast<int>(cloud_.size()), kChunk, team_, [&](int i, std::vector<Place>& found) {
             const auto place = static_cast<Place>(i);
             const float usual = std::min(of_all_, around_[place / kSampleStride]);
-            if (has_close_neighbours(place, kSparser * usual)) continue;
+            if (has_close_neighbours(place, kSparser * usual)) return;
+            Neighbours near;
             cloud_.nearest(place, kNarrowCount, near);
-            if (std::sqrt(near[kSpacingNeighbour - 1].squared_distance) <= kSparser * usual) continue;
-            places.clear();
+            if (std::sqrt(near[kSpacingNeighbour - 1].squared_distance) <= kSparser * usual) return;
+            std::vector<Place> places;
             for (const NearestPoints::Neighbour& n : near) places.push_back(n.place);
             const double least = kLeast * static_cast<double>(usual) / kSpacing;
-            if (relative_plane_distance(cloud_, place, places, least) > kLifted)
-                found[chunk].push_back(place);
-        }
-    });
-    std::vector<Place> all;
-    for (const std::vector<Place>& part : found) all.insert(all.end(), part.begin(), part.end());
-    return all;
-}
-
-void Suspects::gather_neighbours() {
-    is_suspect_.assign(cloud_.size(), 0);
-    for (const Suspect& s : suspects_) is_suspect_[s.place] = 1;
-    neighbours_.resize(suspects_.size() * kWideCount);
-    for_chunks(suspects_.size(), kChunk / 16, team_, [&](std::size_t, std::size_t begin, std::size_t end) {
-        Neighbours near;
-        for (std::size_t i = begin; i < end; ++i) {
-            cloud_.nearest(suspects_[i].place, kWideCount, near);
-            for (std::size_t k = 0; k < kWideCount; ++k) neighbours_[i * kWideCount + k] = near[k].place;
-        }
-    });
+            if (relative_plane_distance(cloud_, place, places, least) > kLifted) found.push_back(place);
+        });
 }
 
 void Suspects::measure() {
+    is_suspect_.assign(cloud_.size(), 0);
+    for (const Suspect& s : suspects_) is_suspect_[s.place] = 1;
+    neighbours_.resize(suspects_.size() * kWideCount);
     in_plane_.resize(suspects_.size());
     narrow_.resize(suspects_.size());
     wide_.resize(suspects_.size());
-    for_chunks(suspects_.size(), kChunk / 16, team_, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for(static_cast<int>(suspects_.size()), kChunk / 16, team_, [&](int number) {
+        const auto i = static_cast<std::size_t>(number);
+        Neighbours near;
         std::vector<Place> around;
-        for (std::size_t i = begin; i < end; ++i) {
-            around.clear();
-            for (int k = 0; k < kNarrowCount; ++k) around.push_back(neighbour(i, k));
-            in_plane_[i] = continues_plane(cloud_, suspects_[i].place, around) ? 1 : 0;
-            around.push_back(suspects_[i].place);
-            narrow_[i] = surface_variation(cloud_, around);
-            for (int k = kNarrowCount; k < kWideCount; ++k) around.push_back(neighbour(i, k));
-            wide_[i] = surface_variation(cloud_, around);
-        }
+        cloud_.nearest(suspects_[i].place, kWideCount, near);
+        for (const NearestPoints::Neighbour& n : near) around.push_back(n.place);
+        std::copy(around.begin(), around.end(),
+                  neighbours_.begin() + static_cast<std::ptrdiff_t>(i * kWideCount));
+        const std::vector<Place> wide = around;
+        around.resize(kNarrowCount);
+        in_plane_[i] = continues_plane(cloud_, suspects_[i].place, around) ? 1 : 0;
+        around.push_back(suspects_[i].place);
+        narrow_[i] = surface_variation(cloud_, around);
+        around.insert(around.end(), wide.begin() + kNarrowCount, wide.end());
+        wide_[i] = surface_variation(cloud_, around);
     });
 }
 

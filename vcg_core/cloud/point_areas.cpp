@@ -12,9 +12,6 @@ namespace neuralmesh {
 namespace {
 
 constexpr std::size_t kFewestPoints = 1024;
-/// The area of a point is its squared spacing, up to a factor. The median of so many runs takes out most of
-/// what it varies by chance, and single outliers.
-constexpr std::size_t kSmoothed = 5;
 /// A cloud is uneven if a fifth of its surface has more than kUneven times the area per point that a tenth of
 /// its points have. Even random clouds of the models of tests/experiments/accuracy, 2,000 to 100,000 points
 /// with and without noise, have 1.3 to 1.6 times; clouds of density 10:1 have 3.6 to 4.5. The vertices of
@@ -24,19 +21,6 @@ constexpr float kUneven = 2.5F;
 /// Bound on the ratio of an area to the median: the few points of the far end of a room must not draw all
 /// signals. Room scans have 1000:1 and more between the percentiles.
 constexpr float kMostAreaRatio = 100;
-
-/// The median of each value and those before and after it.
-std::vector<float> smoothed(const std::vector<float>& values) {
-    std::vector<float> result(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::size_t begin = i - std::min(i, kSmoothed / 2);
-        const std::size_t end = std::min(values.size(), i + kSmoothed / 2 + 1);
-        const auto at = values.begin();
-        result[i] =
-            median<float>({at + static_cast<std::ptrdiff_t>(begin), at + static_cast<std::ptrdiff_t>(end)});
-    }
-    return result;
-}
 
 struct Spread {
     float low;     ///< the area that kLow of the points fall short of
@@ -75,13 +59,38 @@ std::optional<PointAreas> areas_if_uneven(const CloudSurvey& survey) {
     const NearestPoints& cloud = survey.cloud;
     if (cloud.size() < kFewestPoints) return std::nullopt;
     PointAreas result;
-    result.of_run = smoothed(survey.squared_spacings);
+    // The area of a point is its squared spacing, up to a factor. The median of five runs takes out most of
+    // what it varies by chance, and single outliers.
+    result.of_run = running_median(survey.squared_spacings);
     const Spread spread = spread_of(result.of_run);
     if (!(spread.high > kUneven * spread.low) || !(spread.median > 0)) return std::nullopt;
     normalise(result.of_run, spread.median, cloud.size());
     result.points.reserve(cloud.size());
     for (NearestPoints::Place p = 0; p < cloud.size(); ++p) result.points.push_back(cloud.point(p));
     return result;
+}
+
+AliasTable::AliasTable(const std::vector<double>& weights) : columns_(weights.size()) {
+    const double mean =
+        std::accumulate(weights.begin(), weights.end(), 0.0) / static_cast<double>(weights.size());
+    std::vector<double> left(weights.size());  // of the probability, in columns
+    std::vector<std::uint32_t> small;
+    std::vector<std::uint32_t> large;
+    for (std::uint32_t i = 0; i < weights.size(); ++i) {
+        left[i] = weights[i] / mean;
+        columns_[i] = {0xffffffffU, i};
+        (left[i] < 1 ? small : large).push_back(i);
+    }
+    while (!small.empty() && !large.empty()) {
+        const std::uint32_t filled = small.back();
+        const std::uint32_t giver = large.back();
+        small.pop_back();
+        columns_[filled] = {static_cast<std::uint32_t>(std::min(left[filled] * 0x1p32, 0x1p32 - 1)), giver};
+        left[giver] -= 1 - left[filled];
+        if (left[giver] >= 1) continue;
+        large.pop_back();
+        small.push_back(giver);
+    }
 }
 
 }  // namespace neuralmesh

@@ -6,13 +6,9 @@
 #include <vcg/space/line3.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <tuple>
 #include <utility>
-
-#include "vcg_core/base/bits.h"
-#include "vcg_core/base/platform.h"
 
 namespace neuralmesh {
 
@@ -22,50 +18,11 @@ namespace {
 constexpr double kSmallExtent = 1e-3;
 /// If a larger share of the points are duplicates, they are removed.
 constexpr double kMaxDuplicates = 0.1;
-/// Size of the samples that estimate this share.
-constexpr std::size_t kSampleSize = 100000;
 /// Points closer to a line, in diagonals, count as on it.
 constexpr float kCollinear = 1e-6F;
 
 bool by_coordinates(const vcg::Point3f& p, const vcg::Point3f& q) {
     return std::tie(p[0], p[1], p[2]) < std::tie(q[0], q[1], q[2]);
-}
-
-/// Hash of a point; 0 and -0 are equal.
-std::uint32_t hash_of(const vcg::Point3f& p) {
-    std::uint64_t hash = 0;
-    for (int k = 0; k < 3; ++k) {
-        hash = (hash ^ bit_cast<std::uint32_t>(p[k] + 0.0F)) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 29;
-    }
-    return static_cast<std::uint32_t>(hash >> 32);
-}
-
-/// Sorts \p points and removes duplicates.
-void remove_duplicates(std::vector<vcg::Point3f>& points) {
-    std::sort(points.begin(), points.end(), by_coordinates);
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-}
-
-double share_of_duplicates(std::vector<vcg::Point3f> points) {
-    const auto all = static_cast<double>(points.size());
-    remove_duplicates(points);
-    return all > 0 ? 1 - static_cast<double>(points.size()) / all : 0;
-}
-
-/// Takes two samples of points: all duplicates of random places show places with few duplicates each, random
-/// points show places with many.
-double estimated_share_of_duplicates(const std::vector<vcg::Point3f>& points) {
-    const std::size_t stride = points.size() / kSampleSize + 1;
-    if (stride == 1) return share_of_duplicates(points);
-    std::vector<vcg::Point3f> of_random_places;
-    std::vector<vcg::Point3f> random_points;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (hash_of(points[i]) % stride == 0) of_random_places.push_back(points[i]);
-        if (i % stride == 0) random_points.push_back(points[i]);
-    }
-    return std::max(share_of_duplicates(std::move(of_random_places)),
-                    share_of_duplicates(std::move(random_points)));
 }
 
 vcg::Point3f interpolated(const vcg::Point3f& a, const vcg::Point3f& b, const vcg::Point3f& c, float u,
@@ -183,11 +140,14 @@ std::optional<TargetSpace> TargetSpace::without(const std::vector<std::uint8_t>&
 }
 
 std::optional<TargetSpace> TargetSpace::each_place_once() const {
-    if (is_exact() || estimated_share_of_duplicates(positions_) <= kMaxDuplicates) return std::nullopt;
+    if (is_exact()) return std::nullopt;
     TargetSpace once;
     once.frame_ = frame_;
     once.positions_ = positions_;
-    remove_duplicates(once.positions_);
+    std::sort(once.positions_.begin(), once.positions_.end(), by_coordinates);
+    once.positions_.erase(std::unique(once.positions_.begin(), once.positions_.end()), once.positions_.end());
+    const auto all = static_cast<double>(positions_.size());
+    if (1 - static_cast<double>(once.positions_.size()) / all <= kMaxDuplicates) return std::nullopt;
     if (!has_colors() && !has_normals()) return once;
     const auto begin = once.positions_.begin();
     if (has_colors()) once.colors_.resize(once.positions_.size());
@@ -240,23 +200,6 @@ TargetSpace TargetSpace::moved_in_batches(const std::function<void(Span<vcg::Poi
 vcg::Point3f TargetSpace::sample(Random& random) const {
     if (!is_exact()) return positions_[draw_point(random)];
     return move_ ? move_(draw_exact(random)) : draw_exact(random);
-}
-
-void TargetSpace::sample_each(Random& random, Span<vcg::Point3f> samples) const {
-    if (is_exact()) {
-        for (vcg::Point3f& p : samples) p = sample(random);
-        return;
-    }
-    constexpr int kAtATime = 32;  // reads that the processor has under way
-    std::array<std::size_t, kAtATime> drawn;
-    for (int i = 0; i < samples.size(); i += kAtATime) {
-        const int count = std::min(kAtATime, samples.size() - i);
-        for (int k = 0; k < count; ++k) {
-            drawn[static_cast<std::size_t>(k)] = draw_point(random);
-            prefetch(&positions_[drawn[static_cast<std::size_t>(k)]]);
-        }
-        for (int k = 0; k < count; ++k) samples[i + k] = positions_[drawn[static_cast<std::size_t>(k)]];
-    }
 }
 
 std::size_t TargetSpace::draw_point(Random& random) const {

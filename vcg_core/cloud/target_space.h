@@ -20,7 +20,6 @@
 #include "vcg_core/base/packed_normal.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/base/span.h"
-#include "vcg_core/cloud/alias_table.h"
 #include "vcg_core/cloud/point_areas.h"
 
 namespace neuralmesh {
@@ -72,8 +71,8 @@ public:
     /// and !has_faces()
     void set_normals(std::vector<PackedNormal> normals);
 
-    /// Tells how far single precision has rounded coordinates, see float_steps.h. The targets made of this
-    /// one do not keep it.
+    /// Tells how far single precision has rounded coordinates, see rounded_coordinates.h. The targets made of
+    /// this one do not keep it.
     void set_rounding(double step) { rounding_ = step; }
     /// In the units of the input; 0: not, or too little to matter.
     double rounding() const { return rounding_; }
@@ -82,9 +81,6 @@ public:
     /// proportion to their weights, or uniform over the area of the triangles. O(1) for points, O(log n) for
     /// n triangles.
     vcg::Point3f sample(Random& random) const;
-    /// Fills \p samples with what as many calls of sample() would return. Points that do not fit into the
-    /// cache take a quarter of the time, because reading one does not wait for the one before.
-    void sample_each(Random& random, Span<vcg::Point3f> samples) const;
 
     struct ColoredPoint {
         vcg::Point3f position;
@@ -107,8 +103,7 @@ public:
     TargetSpace moved_in_batches(const std::function<void(Span<vcg::Point3f>)>& move) const;
 
     /// The cloud without duplicate points, in the same frame, if more than a tenth of the points are exact
-    /// duplicates; nothing otherwise, or for triangles. The share is estimated from samples of about 100,000
-    /// points and exact for smaller clouds. O(points), or O(points log points) if duplicates are removed.
+    /// duplicates; nothing otherwise, or for triangles. O(points log points)
     std::optional<TargetSpace> each_place_once() const;
 
     /// The cloud with weights by which signals are even over the surface, in another order and the same

@@ -32,13 +32,6 @@ void turn(Network& network, const Turned& turned) {
     network = Network(positions, faces);
 }
 
-std::vector<char> components_with_boundary(const Network& network, const PerVertex<int>& component) {
-    std::vector<char> open(static_cast<std::size_t>(network.component_count()), 0);
-    for (const VertexId v : network.vertices())
-        if (network.ring(v).open != 0) open[static_cast<std::size_t>(component[v])] = 1;
-    return open;
-}
-
 }  // namespace
 
 bool FacingVote::is_clear() const {
@@ -53,8 +46,8 @@ double FacingVote::share_along() const {
 std::vector<FacingVote> facing_votes(const Network& network, const TargetSpace& target) {
     std::vector<FacingVote> votes(static_cast<std::size_t>(network.component_count()));
     const PerVertex<int> component = network.components();
-    const std::vector<char> open = components_with_boundary(network, component);
-    for (std::size_t i = 0; i < votes.size(); ++i) votes[i].open = open[i] != 0;
+    for (const VertexId v : network.vertices())
+        if (network.ring(v).open != 0) votes[static_cast<std::size_t>(component[v])].open = true;
     if (!target.has_normals()) return votes;
     const Surface surface(network);
     const FaceTree tree(surface);

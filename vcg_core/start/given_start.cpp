@@ -207,11 +207,10 @@ vcg::Box3f box_of(const std::vector<vcg::Point3f>& points) {
 
 /// With a margin, because boxes may be flat: those of a plane and of points on it only touch, or not even
 /// that.
-bool lie_apart(const vcg::Box3f& a, const vcg::Box3f& b) {
+bool lie_apart(vcg::Box3f a, const vcg::Box3f& b) {
     constexpr float kMargin = 0.05F;  // in diagonals of the target
-    for (int k = 0; k < 3; ++k)
-        if (a.min[k] > b.max[k] + kMargin || b.min[k] > a.max[k] + kMargin) return true;
-    return false;
+    a.Offset(kMargin);
+    return !a.Collide(b);
 }
 
 }  // namespace

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "vcg_core/base/ablation.h"
 
@@ -39,11 +41,6 @@ public:
     std::vector<NodeId> deepest_of_hollows() const;
 
 private:
-    /// Places between two spaces, by the number of layers there: one or three, or two.
-    struct Contact {
-        int a, b;
-        std::array<int, 2> places{};
-    };
     struct View {
         int space;
         bool through_wall;
@@ -64,7 +61,8 @@ private:
     PerNode<int> space_;           ///< kOutside: none
     std::vector<NodeId> deepest_;  ///< of each space but the outside
     std::vector<Kind> kinds_;
-    std::vector<Contact> contacts_;
+    /// Places between two spaces, by the number of layers there: one or three, or two.
+    std::map<std::pair<int, int>, std::array<int, 2>> contacts_;
 };
 
 Spaces::Spaces(const Lattice& lattice, const PerNode<SquaredRadius>& distances,
@@ -105,29 +103,21 @@ void Spaces::look_from(const LayerPlace& place) {
     const std::optional<View> up = first_void(place.position, place.normal, place.above);
     const std::optional<View> down = first_void(place.position, -place.normal, place.below);
     if (!up || !down || up->space == down->space) return;
-    const auto [a, b] = std::minmax(up->space, down->space);
-    const std::size_t walled = up->through_wall != down->through_wall ? 1 : 0;
-    for (Contact& contact : contacts_)
-        if (contact.a == a && contact.b == b) {
-            ++contact.places[walled];
-            return;
-        }
-    contacts_.push_back({a, b});
-    ++contacts_.back().places[walled];
+    ++contacts_[std::minmax(up->space, down->space)][up->through_wall != down->through_wall ? 1 : 0];
 }
 
 std::vector<Spaces::Told> Spaces::what_contacts_tell() const {
     std::vector<Told> told(kinds_.size());
-    const auto count = [&](int space, int other, const Contact& contact) {
+    const auto count = [&](int space, int other, const std::array<int, 2>& places) {
         Told& here = told[static_cast<std::size_t>(space)];
-        here.all += contact.places[0] + contact.places[1];
+        here.all += places[0] + places[1];
         if (kind(other) == Kind::unknown) return;
-        here.known += contact.places[0] + contact.places[1];
-        here.says_void += contact.places[kind(other) == Kind::material ? 0 : 1];
+        here.known += places[0] + places[1];
+        here.says_void += places[kind(other) == Kind::material ? 0 : 1];
     };
-    for (const Contact& contact : contacts_) {
-        count(contact.a, contact.b, contact);
-        count(contact.b, contact.a, contact);
+    for (const auto& [spaces, places] : contacts_) {
+        count(spaces.first, spaces.second, places);
+        count(spaces.second, spaces.first, places);
     }
     return told;
 }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -33,8 +34,20 @@ struct Lattice {
     float step = 1;                ///< distance between nodes
     vcg::Point3f corner{0, 0, 0};  ///< position of node (0, 0, 0)
 
+    Lattice() = default;
     /// Covers \p box and \p margin further nodes on each side, centred on the box.
-    Lattice(const vcg::Box3f& box, float node_step, int margin);
+    Lattice(const vcg::Box3f& box, float node_step, int margin) : step(node_step) {
+        const auto nodes = [&](float extent) {
+            const double steps = static_cast<double>(extent) / static_cast<double>(node_step);
+            return static_cast<int>(std::ceil(steps)) + 1 + 2 * margin;
+        };
+        nx = nodes(box.DimX());
+        ny = nodes(box.DimY());
+        nz = nodes(box.DimZ());
+        const vcg::Point3f extent(static_cast<float>(nx - 1), static_cast<float>(ny - 1),
+                                  static_cast<float>(nz - 1));
+        corner = box.Center() - extent * (step * 0.5F);
+    }
 
     NodeId size() const { return nx * ny * nz; }
     NodeId index(int x, int y, int z) const { return (z * ny + y) * nx + x; }
@@ -62,10 +75,16 @@ struct Lattice {
         return position(x, y, z);
     }
     /// The node nearest to \p p, or size() if no node is within half a step along each axis.
-    NodeId node_of(const vcg::Point3f& p) const;
+    NodeId node_of(const vcg::Point3f& p) const {
+        const vcg::Point3f q = (p - corner) * (1.0F / step) + vcg::Point3f(0.5F, 0.5F, 0.5F);
+        // Compared as floats: a coordinate far outside does not fit into an int.
+        const float fx = static_cast<float>(nx), fy = static_cast<float>(ny), fz = static_cast<float>(nz);
+        if (!(q[0] >= 0 && q[1] >= 0 && q[2] >= 0 && q[0] < fx && q[1] < fy && q[2] < fz)) return size();
+        return index(static_cast<int>(q[0]), static_cast<int>(q[1]), static_cast<int>(q[2]));
+    }
 };
 
-float longest_side(const vcg::Box3f& box);
+inline float longest_side(const vcg::Box3f& box) { return std::max({box.DimX(), box.DimY(), box.DimZ()}); }
 
 /// Nodes are adjacent if an edge of the Freudenthal subdivision joins them (Kuhn's six tetrahedra per cube).
 /// On it foreground and background have the same connectivity, so that marching tetrahedra give a mesh of

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 #include "vcg_core/base/disjoint_sets.h"
@@ -39,44 +38,6 @@ Link link_of(const std::vector<Point3f>& positions, const std::vector<Point3f>& 
     return {1 - std::abs(agreement) + across, a, b, agreement < 0};
 }
 
-/// Union-find in which every point knows whether its normal is opposite to that of its root.
-class Sides {
-public:
-    explicit Sides(std::size_t count) : parent_(count), flipped_(count, 0) {
-        std::iota(parent_.begin(), parent_.end(), 0);
-    }
-    struct Root {
-        int point;
-        bool flipped;
-    };
-    Root root(int i) {
-        int top = i;
-        char flips = 0;
-        while (parent_[at(top)] != top) {
-            flips = static_cast<char>(flips ^ flipped_[at(top)]);
-            top = parent_[at(top)];
-        }
-        for (int k = i; parent_[at(k)] != k;) {  // paths become short
-            const int next = parent_[at(k)];
-            const char own = flipped_[at(k)];
-            parent_[at(k)] = top;
-            flipped_[at(k)] = flips;
-            flips = static_cast<char>(flips ^ own);
-            k = next;
-        }
-        return {top, i != top && flipped_[at(i)] != 0};
-    }
-    void join(const Root& a, const Root& b, bool opposite) {
-        const int low = std::min(a.point, b.point), high = std::max(a.point, b.point);
-        parent_[at(high)] = low;
-        flipped_[at(high)] = (a.flipped != b.flipped) != opposite ? 1 : 0;
-    }
-
-private:
-    std::vector<int> parent_;
-    std::vector<char> flipped_;
-};
-
 std::vector<int> parts_of(const std::vector<Link>& links, int count) {
     DisjointSets sets(count);
     for (const Link& link : links)
@@ -105,20 +66,23 @@ Orientation orient_normals(const std::vector<Point3f>& positions,
     std::sort(links.begin(), links.end(), [](const Link& x, const Link& y) {
         return std::tie(x.weight, x.a, x.b) < std::tie(y.weight, y.a, y.b);
     });
-    Sides sides(at(count + 1));
+    // Sets of normals that agree; those of the points from count + 1 on are the opposite ones.
+    DisjointSets sides(2 * (count + 1));
+    const auto opposite = [count](int i) { return i + count + 1; };
     for (const Link& link : links) {
-        const Sides::Root a = sides.root(link.a), b = sides.root(link.b);
-        if (a.point != b.point) {
-            sides.join(a, b, link.opposite);
-        } else if ((a.flipped != b.flipped) != link.opposite && link.weight < kSureWeight && link.b < count) {
+        const int b = link.opposite ? opposite(link.b) : link.b, not_b = link.opposite ? link.b : opposite(b);
+        if (sides.find(link.a) != sides.find(not_b)) {
+            sides.join(link.a, b);
+            sides.join(opposite(link.a), not_b);
+        } else if (link.weight < kSureWeight && link.b < count) {
             result.contradictions.push_back((positions[at(link.a)] + positions[at(link.b)]) / 2);
         }
     }
-    const Sides::Root viewer = sides.root(count);
+    const int front = sides.find(count), back = sides.find(opposite(count));
     for (int i = 0; i < count; ++i) {
-        const Sides::Root root = sides.root(i);
-        const bool over = root.point == viewer.point && viewer.flipped;
-        if (root.flipped != over) normals[at(i)] = -normals[at(i)];
+        // Of a part that no viewer is linked to, the first normal stays.
+        const int own = sides.find(i), other = sides.find(opposite(i));
+        if (own == back || (own != front && other < own)) normals[at(i)] = -normals[at(i)];
     }
     return result;
 }

@@ -252,13 +252,6 @@ void fill_small_holes(Sheet& sheet, const OpenStartOptions& options, OpenStart& 
     for (const auto* loop : left) filler.fill(*loop);
 }
 
-IndexedMesh<float> indexed(const Network& network) {
-    IndexedMesh<float> mesh;
-    for (VertexId v = 0; v < network.slot_count(); ++v) mesh.positions.push_back(network.position(v));
-    mesh.faces = network.faces();
-    return mesh;
-}
-
 void set_outliers(std::vector<std::uint8_t> outliers, bool learn, OpenStart& result) {
     const auto ignored = static_cast<std::size_t>(std::count(outliers.begin(), outliers.end(), 1));
     result.left_out = static_cast<double>(ignored) / static_cast<double>(outliers.size());
@@ -317,12 +310,11 @@ void turn_parts(const std::optional<Point3f>& viewer, const TargetSpace& target,
 
 /// Copies the mesh and its topology to \p result.
 void write_mesh(const Network& network, OpenStart& result) {
-    IndexedMesh<float> mesh = indexed(network);
+    for (const VertexId v : network.vertices()) result.positions.push_back(network.position(v));
+    result.faces = network.faces();
     result.components = network.component_count();
     result.genus = network.genus();
     result.loops = network.boundary_loop_count();
-    result.positions = std::move(mesh.positions);
-    result.faces = std::move(mesh.faces);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@
 #include "vcg_core/base/random.h"
 #include "vcg_core/cloud/surface_survey.h"
 #include "vcg_core/cloud/target_space.h"
-#include "vcg_core/mesh/ring.h"
+#include "vcg_core/mesh/indexed_mesh.h"
 
 namespace neuralmesh {
 
@@ -59,9 +59,7 @@ struct OpenStartOptions {
 };
 
 /// An oriented 2-manifold with or without boundary (simplicial, valences up to 12) in the core's frame.
-struct OpenStart {
-    std::vector<vcg::Point3f> positions;
-    std::vector<Triangle> faces;
+struct OpenStart : IndexedMesh<float> {
     /// It can be reduced to so many vertices, or to OpenStartOptions::target_vertices.
     int fewest_vertices = 0;
     int components = 0;

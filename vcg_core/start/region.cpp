@@ -161,7 +161,8 @@ double points_per_occupied_node(const PerNode<std::uint32_t>& counts) {
 
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step,
                const std::vector<LayerPlace>& places) {
-    Region region(Lattice(box, step, Region::kMargin));
+    Region region;
+    region.lattice = Lattice(box, step, Region::kMargin);
     region.counts = without_fringe(region.lattice, count_points(region.lattice, points));
     region.distances = squared_distances(region.lattice, region.counts, Region::kMaxRadius);
     seal(points, box, places, region);

@@ -31,9 +31,6 @@ struct Region {
     long long total_points = 0;
     long long min_points = 0;     ///< that a component holds
     std::vector<NodeId> hollows;  ///< a node in each
-
-    /// The other members are empty until examine() fills them.
-    explicit Region(const Lattice& nodes) : lattice(nodes) {}
 };
 
 /// Examines \p points on a lattice over \p box with nodes \p step apart.

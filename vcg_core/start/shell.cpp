@@ -216,15 +216,9 @@ void warn_of_open_surface(StartMesh& result) {
 
 }  // namespace
 
-struct Shell::Examined {
-    const std::vector<Point3f>& points;
-    const ShellOptions options;
-    LatticeSurvey survey;
-    Enclosure enclosure;
-};
-
 Shell::Shell(const std::vector<Point3f>& points, Surveys& surveys, const ShellOptions& options,
-             Progress& progress) {
+             Progress& progress)
+    : points_(points), options_(options) {
     progress(0.0, "Start mesh: measuring the density of the cloud");
     Box3f box;
     for (const Point3f& p : points) box.Add(p);
@@ -232,34 +226,27 @@ Shell::Shell(const std::vector<Point3f>& points, Surveys& surveys, const ShellOp
     ThreadTeam team(thread_count(options.threads));
     const std::vector<LayerPlace> places = layer_places(surveys.points(), team);
     PartOf counting(progress, 0.2, 0.7);
-    LatticeSurvey survey = survey_lattices(points, places, box, options.threads, counting);
-    const Enclosure enclosure = enclosure_of(survey, places, surveys);
-    examined_.reset(new Examined{points, options, std::move(survey), enclosure});
+    survey_ = survey_lattices(points, places, box, options.threads, counting);
+    enclosure_ = enclosure_of(survey_, places, surveys);
 }
-
-Shell::~Shell() = default;
-
-const Enclosure& Shell::enclosure() const { return examined_->enclosure; }
 
 StartMesh Shell::mesh(Progress& progress) const {
     progress(0.7, "Start mesh: building the mesh");
-    const std::vector<Point3f>& points = examined_->points;
-    const LatticeSurvey& survey = examined_->survey;
-    const Region& region = survey.region;
-    ClosedMesh closed = closed_mesh(region, survey.vote);
+    const Region& region = survey_.region;
+    ClosedMesh closed = closed_mesh(region, survey_.vote);
     if (closed.network.vertex_count() == 0)
         throw InputError(
             "No part of the cloud holds enough points for a start mesh around it. Choose the tetrahedron as start mesh, or remove scattered points first.");
     StartMesh result;
-    static_cast<Enclosure&>(result) = examined_->enclosure;
-    set_mesh(closed, region, points.size(), examined_->options, progress, result);
+    static_cast<Enclosure&>(result) = enclosure_;
+    set_mesh(closed, region, points_.size(), options_, progress, result);
     progress(0.9, "Start mesh: measuring it");
-    set_figures(survey, closed.level, result);
-    set_outliers(points, region, closed, examined_->options.learn_outliers, result);
-    warn_of_uncertain_topology(survey, result);
+    set_figures(survey_, closed.level, result);
+    set_outliers(points_, region, closed, options_.learn_outliers, result);
+    warn_of_uncertain_topology(survey_, result);
     warn_of_open_surface(result);
     const std::string outliers =
-        warning_of_outliers(result.ignored_points, static_cast<long long>(points.size()), region.min_points,
+        warning_of_outliers(result.ignored_points, static_cast<long long>(points_.size()), region.min_points,
                             result.outliers.empty());
     if (!outliers.empty()) result.warnings.push_back(outliers);
     progress(1.0, "Start mesh: done");

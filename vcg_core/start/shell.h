@@ -25,12 +25,12 @@
 #include <vcg/space/point3.h>
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "vcg_core/base/progress.h"
 #include "vcg_core/mesh/indexed_mesh.h"
+#include "vcg_core/start/lattice_survey.h"
 
 namespace neuralmesh {
 
@@ -102,17 +102,15 @@ public:
     /// progress gets fractions up to 0.7 of both steps; its answer to stop is ignored.
     Shell(const std::vector<vcg::Point3f>& points, Surveys& surveys, const ShellOptions& options,
           Progress& progress);
-    ~Shell();
-    Shell(const Shell&) = delete;
-    Shell& operator=(const Shell&) = delete;
-
-    const Enclosure& enclosure() const;
+    const Enclosure& enclosure() const { return enclosure_; }
     /// The mesh. \throws InputError if no part of the cloud holds enough points
     StartMesh mesh(Progress& progress) const;
 
 private:
-    struct Examined;
-    std::unique_ptr<const Examined> examined_;
+    const std::vector<vcg::Point3f>& points_;
+    const ShellOptions options_;
+    LatticeSurvey survey_;
+    Enclosure enclosure_;
 };
 
 }  // namespace neuralmesh

@@ -64,20 +64,6 @@ TEST(OppositeLayers, OfDepthsInStepsAreNone) {
     }
 }
 
-TEST(OppositeLayers, DoNotDependOnTheThreads) {
-    std::vector<vcg::Point3f> points;
-    for (const vcg::Point3d& p : two_spheres(5)) points.push_back(vcg::Point3f::Construct(p));
-    ThreadTeam one(1), three(3);
-    const CloudSurvey survey(points, 1);
-    const std::vector<LayerPlace> places = layer_places(survey, one), same = layer_places(survey, three);
-    ASSERT_EQ(places.size(), same.size());
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        EXPECT_EQ(places[i].position, same[i].position);
-        EXPECT_EQ(places[i].above, same[i].above);
-        EXPECT_EQ(places[i].below, same[i].below);
-    }
-}
-
 TEST(OppositeLayers, OfCloudsWithoutASurfaceAreNone) {
     EXPECT_EQ(share_of(shapes::Cloud(100, vcg::Point3d(1, 2, 3))), 0);
     EXPECT_EQ(share_of(shapes::sphere_cloud(5)), 0);

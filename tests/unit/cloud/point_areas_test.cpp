@@ -76,20 +76,6 @@ TEST(PointAreas, OfAFarEndAreAtMostAHundredTimesTheMedian) {
     EXPECT_NEAR(times, 100, 1);
 }
 
-TEST(PointAreas, HoldThePointsAndDoNotDependOnThreads) {
-    const std::vector<vcg::Point3f> points = in_float(shapes::uneven_sphere_cloud(20000, 20));
-    const auto one = areas_of(points, 1);
-    const auto four = areas_of(points, 4);
-    ASSERT_TRUE(one && four);
-    EXPECT_EQ(one->points, four->points);
-    EXPECT_EQ(one->of_run, four->of_run);
-    auto given = points;
-    auto held = one->points;
-    std::sort(given.begin(), given.end());
-    std::sort(held.begin(), held.end());
-    EXPECT_EQ(given, held);
-}
-
 TEST(TargetSpaceEvenly, SignalsAreEvenOverTheSurface) {
     const TargetSpace given = target_of(shapes::uneven_sphere_cloud(50000, 20));
     const auto even = given.evenly(CloudSurvey(given.positions(), 1));

@@ -141,16 +141,6 @@ TEST(SurfaceSurvey, SeesTheTwoLayersOfAThinWall) {
     EXPECT_FALSE(survey_of(sheet(20000, 0.3F, [](float) { return 0.02F; })).layers().two);
 }
 
-TEST(SurfaceSurvey, DoesNotDependOnThreads) {
-    const std::vector<Point3f> points = sheet(30000, 0.5F, [](float x) { return 0.01F * x; });
-    const SurfaceSurvey one = survey_of(points, 1), three = survey_of(points, 3);
-    ASSERT_EQ(one.places().size(), three.places().size());
-    for (std::size_t i = 0; i < one.places().size(); ++i) {
-        EXPECT_EQ(one.places()[i].deviation, three.places()[i].deviation);
-        EXPECT_EQ(one.places()[i].radius, three.places()[i].radius);
-    }
-}
-
 double noise_in_edges(const shapes::Cloud& cloud, int vertices) {
     std::vector<Point3f> points;
     for (const vcg::Point3d& p : cloud) points.push_back(Point3f::Construct(p));

@@ -107,13 +107,6 @@ TEST(TargetSpace, RefusesABoxBeyondDoublePrecision) {
     expect_complaint(placed(shapes::sphere_cloud(50), {{0, 0, 0}, 1e-200}), "scale it");
 }
 
-TEST(TargetSpace, AcceptsCoordinatesNearTheLimitOfDouble) {
-    const double far = 1.7e308;
-    const TargetSpace target = target_of({{far, 0, 0}, {far, 1, 0}, {far, 0, 1}, {far, 1, 1}});
-    EXPECT_EQ(target.frame().centre, Point3d(far, 0.5, 0.5));
-    for (const vcg::Point3f& p : target.positions()) EXPECT_EQ(p[0], 0);
-}
-
 TEST(TargetSpace, FrameIsCentredWithDiagonalOne) {
     for (const Placement& place : kPlacements) {
         const Cloud cloud = placed(shapes::box_cloud(2000, {1, 2, 3}), place);
@@ -213,20 +206,6 @@ TEST(TargetSpace, DrawsUniformlyWithinATriangle) {
     }
     EXPECT_LT(chi_square(seen, std::vector<double>(seen.size(), n / double(cells * cells))),
               limit(cells * cells - 1));
-}
-
-TEST(TargetSpace, DrawsTheSameSamplesTogether) {
-    const TargetSpace cloud = target_of(shapes::uneven_sphere_cloud(3000, 20));
-    const std::optional<TargetSpace> weighted = cloud.evenly(CloudSurvey(cloud.positions(), 1));
-    ASSERT_TRUE(weighted.has_value());
-    for (const TargetSpace& target : {cloud, *weighted, target_of(shapes::cube())}) {
-        Random one_by_one(4), together(4);
-        for (const std::size_t count : {0, 1, 31, 32, 33, 100}) {
-            std::vector<vcg::Point3f> drawn(count);
-            target.sample_each(together, {drawn.data(), drawn.data() + count});
-            for (const vcg::Point3f& p : drawn) ASSERT_EQ(p, target.sample(one_by_one)) << count;
-        }
-    }
 }
 
 TEST(TargetSpace, MovesWhatItDraws) {
@@ -331,21 +310,6 @@ TEST(TargetSpace, RemovesManyDuplicates) {
     cloud[0] = {0.0, 0.5, 0.5};
     for (int i = 0; i < 112; ++i) cloud.push_back(cloud[static_cast<std::size_t>(i)]);
     EXPECT_EQ(without_duplicates(cloud).size(), 1000U);
-}
-
-/// Clouds whose share of duplicates is estimated: many duplicates of one point, and one each of many.
-TEST(TargetSpace, FindsDuplicatesInLargeClouds) {
-    Cloud heavy = shapes::sphere_cloud(300000);
-    heavy.insert(heavy.end(), 200000, heavy[5]);
-    EXPECT_EQ(without_duplicates(heavy).size(), 300000U);
-    Cloud twice = shapes::sphere_cloud(300000);
-    for (std::size_t i = 0; i < 60000; ++i) twice.push_back(twice[i]);
-    EXPECT_EQ(without_duplicates(twice).size(), 300000U);
-}
-
-TEST(TargetSpace, DoesNotTreatFacesAsDuplicates) {
-    shapes::Shape shape = shapes::cube();
-    EXPECT_FALSE(target_of(shape).each_place_once().has_value());
 }
 
 /// A number in every normal: a digit to the base of 100 in each coordinate.

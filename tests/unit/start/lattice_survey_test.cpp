@@ -14,15 +14,6 @@ namespace {
 
 TEST(TopologyVote, NothingToVoteOn) { EXPECT_FALSE(persistent_topology({}).found); }
 
-TEST(TopologyVote, OneTopologyHasAllVotes) {
-    const TopologyVote vote = persistent_topology({{1, 2, 3}, {2, 2, 3}, {4, 2, 3}, {5, 2, 3}});
-    EXPECT_TRUE(vote.found);
-    EXPECT_EQ(vote.components, 2);
-    EXPECT_EQ(vote.genus, 3);
-    EXPECT_DOUBLE_EQ(vote.confidence, 1);
-    EXPECT_EQ(vote.level, 1);
-}
-
 TEST(TopologyVote, ThePersistentTopologyWins) {
     const TopologyVote vote =
         persistent_topology({{1, 1, 3}, {2, 1, 1}, {4, 1, 1}, {8, 1, 1}, {9, 1, 1}, {16, 1, 1}});
@@ -37,15 +28,6 @@ TEST(TopologyVote, SmallerRadiiCountMore) {
     const TopologyVote vote = persistent_topology({{1, 1, 2}, {3, 1, 2}, {4, 1, 0}, {25, 1, 0}});
     EXPECT_EQ(vote.genus, 2);
     EXPECT_DOUBLE_EQ(vote.confidence, 0.5 / (0.5 + 1 / 2.0 - 1 / 6.0));
-}
-
-TEST(TopologyVote, ComponentsCountLikeHandles) {
-    const TopologyVote vote = persistent_topology({{1, 4, 0}, {2, 1, 0}, {4, 4, 0}, {64, 4, 0}});
-    EXPECT_EQ(vote.components, 4);
-    // Two ranges of one topology: their votes add up, and the one with more votes gives the level.
-    const double first = 1 - 1 / std::sqrt(2.0), second = 1 / 2.0 - 1 / 9.0;
-    EXPECT_DOUBLE_EQ(vote.confidence, (first + second) / (1 - 1 / 9.0));
-    EXPECT_EQ(vote.level, 4);
 }
 
 TEST(TopologyVote, OccupiedNodesCountAsHalfAStep) {

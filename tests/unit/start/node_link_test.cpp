@@ -19,20 +19,6 @@ NeighbourSet set_of(const Neighbours& neighbours, NodeId i, const Member& member
     return neighbours_in(neighbours, i, neighbours.places(i), member);
 }
 
-TEST(NodeLink, NeighboursAreTakenInTheOrderOfTheOffsets) {
-    const Lattice lattice = small_lattice();
-    const NodeId middle = lattice.index(5, 6, 7);
-    const Neighbours neighbours(lattice);
-    for (int k = 0; k < kNeighbourCount; ++k) {
-        const NodeOffset& offset = kNeighbourOffsets[static_cast<std::size_t>(k)];
-        const NodeId there = lattice.index(5 + offset[0], 6 + offset[1], 7 + offset[2]);
-        EXPECT_EQ(neighbours.at(middle, k), there);
-        EXPECT_EQ(set_of(neighbours, middle, [&](NodeId j) { return j == there; }), 1U << k);
-    }
-    const NeighbourSet of_corner = set_of(neighbours, 0, [](NodeId) { return true; });
-    EXPECT_EQ(of_corner, 0b01010101010101U) << "those with no coordinate below 0";
-}
-
 TEST(NodeLink, ConnectedSetsAreThoseOfOneComponent) {
     const Lattice lattice = small_lattice();
     const NodeId middle = lattice.index(5, 6, 7);

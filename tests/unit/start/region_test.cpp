@@ -32,24 +32,6 @@ Region region_of(const std::vector<Point3f>& points, float step) {
     return examine(points, vcg::Box3f(Point3f(-1, -1, -1), Point3f(1, 1, 1)), step);
 }
 
-TEST(Region, PointsAreCountedAtTheirNodes) {
-    const Lattice lattice(vcg::Box3f(Point3f(0, 0, 0), Point3f(4, 4, 4)), 1, 1);
-    const PerNode<std::uint32_t> counts =
-        count_points(lattice, {{0.1F, 0, 0}, {0, -0.2F, 0.3F}, {2, 3, 4}, {9, 0, 0}});
-    EXPECT_EQ(counts[lattice.node_of({0, 0, 0})], 2U);
-    EXPECT_EQ(counts[lattice.node_of({2, 3, 4})], 1U);
-    EXPECT_DOUBLE_EQ(points_per_occupied_node(counts), 1.5);
-    EXPECT_DOUBLE_EQ(points_per_occupied_node(PerNode<std::uint32_t>(8, 0)), 0);
-}
-
-TEST(Region, ASphereEnclosesSpace) {
-    const Region region = region_of(sphere(20000), 0.05F);
-    EXPECT_TRUE(region.encloses_space);
-    EXPECT_EQ(region.clearance[region.lattice.node_of({0, 0, 0})], 0);
-    EXPECT_EQ(region.total_points, 20000);
-    EXPECT_EQ(region.min_points, 200);
-}
-
 TEST(Region, KnowsTheShareOfTheSurfaceThatEnclosesNothing) {
     const auto share = [](const std::vector<Point3f>& points) {
         return thin_parts(examine(points, vcg::Box3f(Point3f(-1, -1, -1), Point3f(5, 1, 1)), 0.05F), {})

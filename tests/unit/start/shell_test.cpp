@@ -69,16 +69,6 @@ TEST(Shell, Sphere) {
     }
 }
 
-TEST(Shell, Torus) {
-    const StartMesh mesh = shell_of_samples(shell_shapes::torus(1, 0.3), 20000);
-    expect_topology(mesh, 1, 1);
-    EXPECT_GT(mesh.confidence, 0.5);
-}
-
-TEST(Shell, LinkedToriStayLinked) {
-    expect_topology(shell_of_samples(shell_shapes::chain(4, 1, 0.2, 1.3), 20000), 4, 4);
-}
-
 TEST(Shell, ThinWalledCupStaysOpen) {
     const StartMesh mesh = shell_of_samples(shell_shapes::cup(1, 2, 0.06), 20000);
     expect_topology(mesh, 1, 0);
