@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <cstring>
 
-#include "vcg_core/base/bits.h"
 #include "vcg_core/base/platform.h"
 
 #ifdef NEURALMESH_SSE2

@@ -11,7 +11,6 @@
 #include <tuple>
 #include <utility>
 
-#include "vcg_core/base/bits.h"
 #include "vcg_core/base/platform.h"
 
 namespace neuralmesh {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "vcg_core/base/bits.h"
 #include "vcg_core/base/platform.h"
 
 namespace neuralmesh {
