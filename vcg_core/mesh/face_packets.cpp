@@ -157,4 +157,9 @@ std::vector<Hit> FaceTree::nearest(const std::vector<Vector3>& points, ThreadTea
     return hits;
 }
 
+Hit FaceTree::nearest(const Vector3& p) const {
+    ThreadTeam alone(1);
+    return nearest(std::vector<Vector3>{p}, alone).front();
+}
+
 }  // namespace neuralmesh

@@ -3,7 +3,6 @@
 
 #include "vcg_core/mesh/face_tree.h"
 
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -124,40 +123,6 @@ void FaceTree::set_boxes(const Surface& surface, ThreadTeam& team) {
             node.box = nodes_[n + 1].box.merged(nodes_[node.right].box);
         }
     }
-}
-
-Hit FaceTree::nearest(const Vector3& p) const {
-    struct Waiting {
-        float squared_distance;
-        int node;
-    };
-    const auto waiting_at = [&](int n) { return Waiting{nodes_[n].box.squaredExteriorDistance(p), n}; };
-    Hit best{-1, {std::numeric_limits<float>::max(), {1, 0, 0}}};
-    float bound = best.foot.squared_distance;
-    std::array<Waiting, kStack> stack;
-    std::size_t height = 0;
-    if (!nodes_.empty()) stack[height++] = waiting_at(0);
-    while (height > 0) {
-        Waiting nearer = stack[--height];
-        // Down to a leaf by the nearer child; the other waits.
-        while (nearer.squared_distance <= bound && !nodes_[nearer.node].is_leaf()) {
-            Waiting further = waiting_at(nodes_[nearer.node].right);
-            nearer = waiting_at(nearer.node + 1);
-            if (further.squared_distance < nearer.squared_distance) std::swap(nearer, further);
-            if (further.squared_distance <= bound) stack[height++] = further;
-        }
-        if (nearer.squared_distance > bound) continue;
-        const Node& leaf = nodes_[nearer.node];
-        for (int i = leaf.begin; i < leaf.end; ++i) {
-            const Foot foot = foot_on_triangle(corners_[i].ab, corners_[i].ac, p - corners_[i].a);
-            const int face = order_[i];
-            if (foot.squared_distance < best.foot.squared_distance ||
-                (foot.squared_distance == best.foot.squared_distance && face < best.face))
-                best = {face, foot};
-        }
-        bound = best.foot.squared_distance * kShare + kSquaredRounding;
-    }
-    return best;
 }
 
 }  // namespace neuralmesh
