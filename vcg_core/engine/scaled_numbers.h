@@ -56,8 +56,8 @@ public:
     /// New numbers are 0.
     void resize(int size) { keys_.resize(size, kZero); }
     void set_zero(int i) { keys_[i] = kZero; }
-    /// Number i becomes that of \p order[i], or 0 where that is -1. O(n).
-    void renumber(const std::vector<std::int32_t>& order) { keys_ = permuted(keys_, order, kZero); }
+    /// Number i becomes that of \p order[i]. O(n).
+    void renumber(const std::vector<std::int32_t>& order) { keys_ = permuted(keys_, order); }
     void prefetch(int i) const { prefetch_for_write(&keys_[i]); }
 
 private:

@@ -45,9 +45,9 @@ public:
         if (top == tops_.end() || *top == kNone) return -1;
         return highest_of(static_cast<int>(top - tops_.begin()));
     }
-    /// Index i gets the key of \p order[i]; it does not take part where that is -1. O(n).
+    /// Index i gets the key of \p order[i]. O(n).
     void renumber(const std::vector<std::int32_t>& order) {
-        keys_ = permuted(keys_, order, kNone);
+        keys_ = permuted(keys_, order);
         tops_.clear();
         resize(keys_.size());
         for (int block = 0; block < tops_.size(); ++block) tops_[block] = keys_[highest_of(block)];

@@ -19,7 +19,6 @@
 #include "vcg_core/learning/growth_schedule.h"
 #include "vcg_core/learning/learner_options.h"
 #include "vcg_core/learning/learning_state.h"
-#include "vcg_core/learning/memory_order.h"
 #include "vcg_core/learning/normal_turn.h"
 #include "vcg_core/learning/stop_reason.h"
 #include "vcg_core/learning/window_mean.h"
@@ -119,7 +118,6 @@ private:
     SignalStream stream_;
     BasicStepBatch batch_;
     BatchLimit batch_limit_;
-    MemoryOrder memory_order_;
     Saturation saturation_;
     std::int64_t last_report_ = 0;
     Random topology_random_;

@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "vcg_core/base/error.h"
-#include "vcg_core/mesh/free_ids.h"
 #include "vcg_core/mesh/ring.h"
 
 namespace neuralmesh {
@@ -113,8 +112,8 @@ public:
     /// Renumbers the vertices to 0 .. vertex_count() - 1 and keeps their order. Invalidates all ids, for
     /// example those in a WinnerSearch. \return per old slot the new id, or -1. O(vertices).
     PerVertex<VertexId> compact();
-    /// Renumbers the vertices: order[i] is the old id of vertex i, or -1 to make id i free. Every used id
-    /// occurs once. Later splits take a free id near the id of the parent. \return as compact(). O(vertices).
+    /// Renumbers the vertices: order[i] is the old id of vertex i. Every used id occurs once. \return as
+    /// compact(). O(vertices).
     PerVertex<VertexId> renumber(const std::vector<VertexId>& order);
 
     /// O(vertices), as all functions from here on.
@@ -141,7 +140,7 @@ public:
 
 private:
     Ring& ring_of(VertexId v) { return rings_[static_cast<std::size_t>(v)]; }
-    VertexId new_vertex(VertexId parent, const vcg::Point3f& where);
+    VertexId new_vertex(const vcg::Point3f& where);
     void enter_fan(VertexId v, VertexId u, VertexId shared_begin, VertexId shared_end);
     std::string validate_edge(VertexId v, int i) const;
     /// Rings after an exchange of faces; those of vertices without faces have valence 0.
@@ -154,8 +153,7 @@ private:
 
     std::vector<Ring> rings_;
     std::vector<VertexRecord> slots_{kSentinel};  ///< slot v is element v + 1
-    std::vector<VertexId> free_;                 ///< removed ids while gaps_ is empty
-    FreeIds gaps_;                               ///< free ids of a network that renumber() left with gaps
+    std::vector<VertexId> free_;                  ///< removed ids
     int vertex_count_ = 0;
     std::optional<vcg::Point3f> viewer_;
 };

@@ -124,13 +124,10 @@ void Network::exchange_faces(const std::vector<Triangle>& gone, const std::vecto
             "This exchange of faces would break the network; ask can_exchange_faces() first.");
     free_.reserve(free_.size() + changed.size());
     for (const auto& [v, after] : changed) {
-        if (after.valence == 0 && gaps_.count() > 0) {
-            gaps_.add(v);
-        } else if (after.valence == 0) {
-            free_.push_back(v);
-        }
-        vertex_count_ -= after.valence == 0 ? 1 : 0;
-        ring_of(v) = after.valence == 0 ? Ring{} : after;
+        ring_of(v) = after;
+        if (after.valence != 0) continue;
+        free_.push_back(v);
+        --vertex_count_;
     }
 }
 
@@ -238,7 +235,7 @@ std::string Network::validate() const {
     if (count != vertex_count_)
         return "The network is broken: it counts " + std::to_string(vertex_count_) + " vertices but holds " +
                std::to_string(count) + ".";
-    if (count + static_cast<int>(free_.size()) + gaps_.count() != slot_count())
+    if (count + static_cast<int>(free_.size()) != slot_count())
         return "The network is broken: free and used slots do not add up.";
     return {};
 }

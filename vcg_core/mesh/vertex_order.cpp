@@ -4,7 +4,6 @@
 #include "vcg_core/mesh/vertex_order.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -34,19 +33,6 @@ std::vector<VertexId> morton_order(const Network& network) {
     order.reserve(codes.size());
     for (const auto& [code, v] : codes) order.push_back(v);
     return order;
-}
-
-std::vector<VertexId> interleave_free(const std::vector<VertexId>& ids, int count) {
-    std::vector<VertexId> result;
-    result.reserve(ids.size() + static_cast<std::size_t>(count));
-    const auto size = static_cast<std::int64_t>(ids.size());
-    std::int64_t i = 0;
-    for (const VertexId v : ids) {
-        result.push_back(v);
-        if ((i + 1) * count / size > i * count / size) result.push_back(-1);
-        ++i;
-    }
-    return result;
 }
 
 }  // namespace neuralmesh
