@@ -128,7 +128,7 @@ public:
     PerVertex<int> components() const;
     /// Orients every closed component so that its faces are counter-clockwise seen from outside of the body:
     /// the enclosed volume becomes positive, and negative for components within an odd number of others,
-    /// which are hollows.
+    /// which are hollows: within most of it, where one cuts another. O(components^2 + faces x the depth).
     void orient_outward();
     int boundary_loop_count() const;
     /// Sum over the components, from the Euler characteristic: components - (euler + loops) / 2.

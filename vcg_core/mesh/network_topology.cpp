@@ -3,11 +3,12 @@
 
 // Operations on the whole network: construction from faces, exchange of faces, counts, orientation,
 // validation.
+#include <vcg/space/box3.h>
+
 #include <algorithm>
 #include <map>
 #include <utility>
 
-#include "vcg_core/mesh/nesting.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
@@ -58,6 +59,74 @@ std::string breach_at(VertexId v, const char* what) {
 }
 
 bool finite(const vcg::Point3f& p) { return (p - p) == vcg::Point3f(0, 0, 0); }
+
+/// Of so many places of a component most are within another, or are not. An odd number.
+constexpr std::size_t kPlaces = 9;
+
+/// Twice the signed area of a triangle, seen along the x axis. Exact but for the last sum.
+double area_along_x(const vcg::Point3d& a, const vcg::Point3d& b, const vcg::Point3d& c) {
+    return (b[1] - a[1]) * (c[2] - a[2]) - (c[1] - a[1]) * (b[2] - a[2]);
+}
+
+/// Whether the line from \p p along the x axis passes the edge of \p a and \p b on its left, seen along the
+/// axis. Depends on no order of the two, so that of two faces at the edge one is hit, also if it is met.
+bool passes(const vcg::Point3d& p, const vcg::Point3d& a, const vcg::Point3d& b) {
+    if ((a[1] > p[1]) == (b[1] > p[1])) return false;
+    return (a[1] < b[1] ? area_along_x(a, b, p) : area_along_x(b, a, p)) > 0;
+}
+
+/// Whether the ray from \p p along the x axis hits the face \p a \p b \p c.
+bool hits(const vcg::Point3d& p, const vcg::Point3d& a, const vcg::Point3d& b, const vcg::Point3d& c) {
+    const int edges = (passes(p, a, b) ? 1 : 0) + (passes(p, b, c) ? 1 : 0) + (passes(p, c, a) ? 1 : 0);
+    if (edges % 2 == 0) return false;
+    const vcg::Point3d normal = (b - a) ^ (c - a);
+    if (normal[0] == 0) return false;
+    return (normal * (a - p)) / normal[0] > 0;
+}
+
+/// A component of the network.
+struct Part {
+    std::vector<VertexId> vertices;
+    std::vector<Triangle> faces;
+    vcg::Box3d box;
+    bool is_open = false;
+    double volume = 0;  ///< that the faces enclose, times 6
+};
+
+vcg::Point3d place_of(const Network& network, VertexId v) {
+    return vcg::Point3d::Construct(network.position(v));
+}
+
+std::vector<Part> parts_of(const Network& network) {
+    const PerVertex<int> component = network.components();
+    const int count = component.empty() ? 0 : 1 + *std::max_element(component.begin(), component.end());
+    std::vector<Part> parts(static_cast<std::size_t>(count));
+    const auto of = [&](VertexId v) -> Part& { return parts[static_cast<std::size_t>(component[v])]; };
+    for (const VertexId v : network.vertices()) {
+        of(v).vertices.push_back(v);
+        of(v).box.Add(place_of(network, v));
+        of(v).is_open = of(v).is_open || network.ring(v).open != 0;
+    }
+    for (const Triangle& f : network.faces()) {
+        of(f[0]).faces.push_back(f);
+        of(f[0]).volume += place_of(network, f[0]) * (place_of(network, f[1]) ^ place_of(network, f[2]));
+    }
+    return parts;
+}
+
+/// Whether most of \p part is within the closed part \p around.
+bool is_within(const Network& network, const Part& part, const Part& around) {
+    std::size_t within = 0;
+    for (std::size_t k = 0; k < kPlaces; ++k) {
+        const vcg::Point3d p = place_of(network, part.vertices[k * part.vertices.size() / kPlaces]);
+        if (!around.box.IsIn(p)) continue;
+        const auto hit = std::count_if(around.faces.begin(), around.faces.end(), [&](const Triangle& f) {
+            return hits(p, place_of(network, f[0]), place_of(network, f[1]), place_of(network, f[2]));
+        });
+        within += hit % 2 != 0 ? 1 : 0;
+    }
+    return within > kPlaces / 2;
+}
 
 }  // namespace
 
@@ -182,23 +251,18 @@ int Network::component_count() const {
 }
 
 void Network::orient_outward() {
-    const PerVertex<int> component = components();
-    const int count = component.empty() ? 0 : 1 + *std::max_element(component.begin(), component.end());
-    const std::vector<int> depths = nesting_depths(*this, component, count);
-    Indexed<double> volume(slot_count(), 0.0);  // of each component, times 6
-    Indexed<char> open(slot_count(), 0);
-    for (const Triangle& f : faces()) {
-        const auto p = [&](std::size_t k) { return vcg::Point3d::Construct(position(f[k])); };
-        volume[component[f[0]]] += p(0) * (p(1) ^ p(2));
-    }
-    for (const VertexId v : vertices())
-        if (ring(v).open != 0) open[component[v]] = 1;
-    for (const VertexId v : vertices()) {
-        const bool hollow = depths[static_cast<std::size_t>(component[v])] % 2 != 0;
-        if (open[component[v]] != 0 || (hollow ? -volume[component[v]] : volume[component[v]]) >= 0) continue;
-        Ring& r = ring_of(v);
-        std::reverse(r.begin(), r.end());
-        r.pad_cyclically();
+    const std::vector<Part> parts = parts_of(*this);
+    for (const Part& part : parts) {
+        if (part.is_open) continue;
+        const auto depth = std::count_if(parts.begin(), parts.end(), [&](const Part& around) {
+            return &around != &part && !around.is_open && is_within(*this, part, around);
+        });
+        if ((depth % 2 != 0 ? -part.volume : part.volume) >= 0) continue;
+        for (const VertexId v : part.vertices) {
+            Ring& r = ring_of(v);
+            std::reverse(r.begin(), r.end());
+            r.pad_cyclically();
+        }
     }
 }
 
