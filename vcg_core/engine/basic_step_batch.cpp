@@ -107,19 +107,18 @@ void ComputedSteps::compute_group(const BatchInput& input, const vcg::Point3f* s
 const std::vector<StepResult>& BasicStepBatch::take(const vcg::Point3f* signals, int count,
                                                     const StepRates& rates, Network& network,
                                                     WinnerSearch& search) {
-    threads_ = std::clamp(count / kLeastPerThread, 1, team_.members());
+    const int threads = std::clamp(count / kLeastPerThread, 1, team_.members());
     // With several threads, one has moved all vertices, and they are in the cache of its core.
-    const bool out_of_cache = threads_ > 1 || network.vertex_count() >= kLeastOutOfCache;
+    const bool out_of_cache = threads > 1 || network.vertex_count() >= kLeastOutOfCache;
     const BatchInput input{signals, rates, network, search, out_of_cache};
-    for (int part = 0; part < threads_; ++part)
-        parts_[static_cast<std::size_t>(part)].reserve((count + threads_ - 1) / threads_);
-    team_.parallel(threads_, [&](int /*member*/, int part) {
-        const int first = count * part / threads_;
-        parts_[static_cast<std::size_t>(part)].compute(input, first, count * (part + 1) / threads_ - first);
+    for (int part = 0; part < threads; ++part)
+        parts_[static_cast<std::size_t>(part)].reserve((count + threads - 1) / threads);
+    team_.parallel(threads, [&](int /*member*/, int part) {
+        const int first = count * part / threads;
+        parts_[static_cast<std::size_t>(part)].compute(input, first, count * (part + 1) / threads - first);
     });
     results_.clear();
-    for (int part = 0; part < threads_; ++part)
-        apply(parts_[static_cast<std::size_t>(part)], network, search);
+    for (int part = 0; part < threads; ++part) apply(parts_[static_cast<std::size_t>(part)], network, search);
     return results_;
 }
 

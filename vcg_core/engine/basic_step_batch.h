@@ -82,22 +82,13 @@ public:
     const std::vector<StepResult>& take(const vcg::Point3f* signals, int count, const StepRates& rates,
                                         Network& network, WinnerSearch& search);
 
-    /// Starts \p body() on another thread; the destructor of the result waits for its end. Destroy the result
-    /// before the next take(). Does nothing if the last batch ran on one thread. See
-    /// ThreadTeam::run_in_background().
-    template <class Body>
-    ThreadTeam::BackgroundTask run_in_background(const Body& body) {
-        return threads_ > 1 ? team_.run_in_background(body) : ThreadTeam::BackgroundTask();
-    }
-
-    /// The threads that compute the batches. Not to be used while anything runs in the background.
+    /// The threads that compute the batches.
     ThreadTeam& team() { return team_; }
 
 private:
     void apply(const ComputedSteps& steps, const Network& network, WinnerSearch& search);
 
     ThreadTeam team_;
-    int threads_ = 1;                   ///< of the last batch
     std::vector<ComputedSteps> parts_;  ///< by thread
     std::vector<StepResult> results_;
 };

@@ -43,7 +43,7 @@ Learner::Learner(const TargetSpace& target, const LearnerOptions& options, Netwo
              options.smoothing_steps},
       mean_delta_(options.normalization_window),
       schedule_(options, state_.network.vertex_count()),
-      stream_(target, options.random_seed, BasicStepBatch::kMostSignals),
+      random_(stream_seed(options.random_seed, Stream::learning)),
       batch_(options.threads),
       topology_random_(stream_seed(options.random_seed, Stream::topology)) {}
 
@@ -113,11 +113,11 @@ void Learner::keep_boundary_signals(const std::vector<StepResult>& steps, const 
 /// Draws and learns \p count signals. Calls \p after_signal() after the counters of each.
 template <class AfterSignal>
 void Learner::learn_batch(int count, const AfterSignal& after_signal) {
-    const vcg::Point3f* signals = stream_.take(count);
+    drawn_.clear();
+    for (int i = 0; i < count; ++i) drawn_.push_back(target_.sample(random_));
+    const vcg::Point3f* signals = drawn_.data();
     const std::vector<StepResult>& steps = basic_steps(signals, count);
     if (mends_notches_) keep_boundary_signals(steps, signals);
-    const auto draw = [&] { stream_.draw_ahead(count); };
-    const auto drawing = batch_.run_in_background(draw);
     const auto last = static_cast<std::size_t>(count) - 1;
     for (std::size_t i = 0; i <= last; ++i) {
         const VertexId soon = steps[std::min(i + kPrefetchDistance, last)].winner;

@@ -11,7 +11,6 @@
 
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/random.h"
-#include "vcg_core/cloud/signal_stream.h"
 #include "vcg_core/cloud/target_space.h"
 #include "vcg_core/engine/basic_step_batch.h"
 #include "vcg_core/engine/batch_limit.h"
@@ -115,7 +114,8 @@ private:
     bool forced_ = false;
     bool mends_notches_ = false;  ///< needs the signals that boundary vertices win
 
-    SignalStream stream_;
+    Random random_;                    ///< of the signals
+    std::vector<vcg::Point3f> drawn_;  ///< those of the last batch
     BasicStepBatch batch_;
     BatchLimit batch_limit_;
     Saturation saturation_;
