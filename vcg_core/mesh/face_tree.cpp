@@ -13,8 +13,6 @@ namespace neuralmesh {
 namespace {
 
 constexpr int kChunk = 512;
-/// Subtrees of at most so many faces are built by one thread.
-constexpr int kFacesAtATime = 2048;
 
 std::vector<int> all_faces(const Surface& surface) {
     std::vector<int> faces(surface.faces.vector().size());
@@ -46,10 +44,7 @@ void FaceTree::build(const Surface& surface, ThreadTeam& team) {
         entries[i] = {surface.corner(f, 0) + surface.corner(f, 1) + surface.corner(f, 2), f};
     });
     nodes_.resize(node_count(order_.size()));
-    std::vector<Subtree> subtrees;
-    divide_to_subtrees(entries, {0, 0, order_.size()}, subtrees);
-    parallel_for(static_cast<int>(subtrees.size()), 1, team,
-                 [&](int i) { divide_to_leaves(entries, subtrees[static_cast<std::size_t>(i)]); });
+    divide(entries, 0, 0, order_.size());
     for (int i = 0; i < order_.size(); ++i) order_[i] = entries[i].face;
     set_boxes(surface, team);
 }
@@ -69,11 +64,10 @@ int FaceTree::node_count(int faces) {
     return 2 * (parts + divided) - 1;
 }
 
-/// Makes the node, and divides its faces at the median. \return false if it is a leaf
-bool FaceTree::divide(Indexed<Entry>& entries, const Subtree& tree, std::array<Subtree, 2>& halves) {
-    const auto [node, begin, end] = tree;
+/// Makes the node of the faces from \p begin to \p end, and, divided at the median, those below it.
+void FaceTree::divide(Indexed<Entry>& entries, int node, int begin, int end) {
     nodes_[node] = {Box(), begin, end, -1};
-    if (end - begin <= kLeafFaces) return false;
+    if (end - begin <= kLeafFaces) return;
     Box box;
     for (int i = begin; i < end; ++i) box.extend(entries[i].centre);
     Eigen::Index axis = 0;
@@ -86,24 +80,8 @@ bool FaceTree::divide(Indexed<Entry>& entries, const Subtree& tree, std::array<S
                          return x < y || (x == y && a.face < b.face);
                      });
     nodes_[node].right = node + 1 + node_count(middle - begin);
-    halves = {{{node + 1, begin, middle}, {nodes_[node].right, middle, end}}};
-    return true;
-}
-
-void FaceTree::divide_to_subtrees(Indexed<Entry>& entries, const Subtree& tree,
-                                  std::vector<Subtree>& subtrees) {
-    std::array<Subtree, 2> halves;
-    if (tree.end - tree.begin <= kFacesAtATime) {
-        subtrees.push_back(tree);
-    } else if (divide(entries, tree, halves)) {
-        for (const Subtree& half : halves) divide_to_subtrees(entries, half, subtrees);
-    }
-}
-
-void FaceTree::divide_to_leaves(Indexed<Entry>& entries, const Subtree& tree) {
-    std::array<Subtree, 2> halves;
-    if (!divide(entries, tree, halves)) return;
-    for (const Subtree& half : halves) divide_to_leaves(entries, half);
+    divide(entries, node + 1, begin, middle);
+    divide(entries, nodes_[node].right, middle, end);
 }
 
 void FaceTree::set_boxes(const Surface& surface, ThreadTeam& team) {
