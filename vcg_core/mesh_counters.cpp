@@ -13,7 +13,7 @@
 #include "vcg_core/learn_and_fit.h"
 #include "vcg_core/learning/learner.h"
 #include "vcg_core/learning_task.h"
-#include "vcg_core/mesh/vertex_order.h"
+#include "vcg_core/mesh/network.h"
 #include "vcg_core/start/given_start.h"
 
 namespace neuralmesh {

@@ -12,7 +12,6 @@
 #include "allocations.h"
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
-#include "vcg_core/mesh/vertex_order.h"
 
 namespace neuralmesh {
 namespace {

@@ -13,7 +13,6 @@
 #include "vcg_core/base/simd.h"
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/engine/eight_steps.h"
-#include "vcg_core/engine/step_rates.h"
 #include "vcg_core/engine/winner_search.h"
 #include "vcg_core/mesh/network.h"
 

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "vcg_core/engine/step_rates.h"
-
 namespace neuralmesh {
 
 namespace {

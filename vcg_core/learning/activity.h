@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "vcg_core/base/permuted.h"
+#include "vcg_core/base/indexed.h"
 #include "vcg_core/base/platform.h"
 #include "vcg_core/engine/basic_step_batch.h"
 #include "vcg_core/engine/batch_limit.h"

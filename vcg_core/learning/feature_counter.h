@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "vcg_core/base/permuted.h"
+#include "vcg_core/base/indexed.h"
 #include "vcg_core/base/platform.h"
 #include "vcg_core/mesh/ring.h"
 

@@ -20,7 +20,6 @@
 #include "vcg_core/learning/learning_state.h"
 #include "vcg_core/learning/normal_turn.h"
 #include "vcg_core/learning/stop_reason.h"
-#include "vcg_core/learning/window_mean.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {

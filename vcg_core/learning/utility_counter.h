@@ -14,7 +14,6 @@
 
 #include "vcg_core/base/platform.h"
 #include "vcg_core/engine/scaled_numbers.h"
-#include "vcg_core/engine/tournament.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/ring.h"
 

@@ -189,4 +189,8 @@ private:
 
 inline Network::Vertices Network::vertices() const { return Vertices(*this); }
 
+/// The used ids of \p network along the Z-order curve of their positions (Morton 1966): near vertices mostly
+/// get near places. Positions beyond [-1, 1]^3 count as if on its border. O(n log n).
+std::vector<VertexId> morton_order(const Network& network);
+
 }  // namespace neuralmesh

@@ -4,6 +4,7 @@
 // Membranes: regions of a mesh that no points support. They span gaps, plug handles and bridge parts.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "vcg_core/topology/face_signals.h"
@@ -42,5 +43,15 @@ bool face_each_other(const Surface& surface, const Membrane& a, const Membrane& 
 /// Finds the rims of \p membrane.faces and the rest. \return false if the surface would be no manifold
 /// without them
 bool complete(const Surface& surface, const FaceSignals& signals, Membrane& membrane);
+
+/// Groups of three and more certain membranes, by their indices, each near to another of its group. If a
+/// group has more than \p most_rims rims, only those of its membranes that lack the most signals. The
+/// membranes of a group come in this order. \p edge: mean length. O(product of the lengths of all rims)
+std::vector<std::vector<int>> membrane_groups(const Surface& surface, const std::vector<Membrane>& membranes,
+                                              float edge, std::size_t most_rims);
+
+/// Leaves faces out of membranes until no two of them share a vertex: at a vertex that two share, all faces
+/// but those of the first. \return false if that leaves a membrane without faces
+bool take_apart(const Surface& surface, const FaceSignals& signals, std::vector<Membrane>& membranes);
 
 }  // namespace neuralmesh

@@ -15,7 +15,7 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/mesh/face_tree.h"
-#include "vcg_core/topology/membrane_groups.h"
+#include "vcg_core/topology/membranes.h"
 #include "vcg_core/topology/surroundings.h"
 
 namespace neuralmesh {
