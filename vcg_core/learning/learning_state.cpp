@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "vcg_core/mesh/flips.h"
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/mesh/valence_flips.h"
 
 namespace neuralmesh {
 
