@@ -24,7 +24,7 @@ INERT = [
     (r"base/(thread_team|platform|parallel_for)\.|engine/basic_step_batch\.cpp:"
      r"kLeastPerThread|:kLeastOrdered$|:kLeastOutOfCache$|:k\w*Ahead$|:kPrefetchDistance$|"
      r"base/cheapest_first\.h:", "speed: the same result"),
-    (r"engine/(winner_search|tournament|scaled_numbers|eight_steps)|mesh/(face_tree|face_packets|vertex_order)|"
+    (r"engine/(winner_search|scaled_numbers|eight_steps\.cpp|eight_steps\.h:kMost$)|mesh/face_tree|"
      r"cloud/nearest_points|start/clearance",
      "a search or an order: an exact result, found faster"),
     (r"base/(logarithm|random|packed_normal|even_mesh)\.h:|:k(PiF|White|DegreesPerRadian|DeviationPerMedian|UnitBallVolume|"

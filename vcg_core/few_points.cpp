@@ -19,8 +19,8 @@ NEURALMESH_END_UNINITIALIZED();
 
 #include "vcg_core/cloud/nearest_points.h"
 #include "vcg_core/fit/redistribute.h"
+#include "vcg_core/mesh/flips.h"
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/mesh/shape_flips.h"
 
 namespace neuralmesh {
 namespace {

@@ -9,8 +9,8 @@
 #include "vcg_core/base/random.h"
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/fit/redistribute.h"
+#include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/simplify.h"
-#include "vcg_core/mesh/vertex_order.h"
 
 namespace neuralmesh {
 

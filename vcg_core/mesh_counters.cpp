@@ -13,7 +13,7 @@
 #include "vcg_core/learn_and_fit.h"
 #include "vcg_core/learning/learner.h"
 #include "vcg_core/learning_task.h"
-#include "vcg_core/mesh/vertex_order.h"
+#include "vcg_core/mesh/network.h"
 #include "vcg_core/start/given_start.h"
 
 namespace neuralmesh {
@@ -25,7 +25,7 @@ namespace {
 /// six of 10.
 constexpr int kSignalsPerRound = 20;
 
-/// The network of a given mesh. It is in the order into which learning would bring it (memory_order.h), so
+/// The network of a given mesh. It is in the order into which learning would bring it (LearningState), so
 /// that ids stay the same.
 struct WorkingCopy {
     Network network;

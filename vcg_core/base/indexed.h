@@ -4,8 +4,10 @@
 // An array indexed by signed ids, such as those of vertices and faces.
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <utility>
 #include <vector>
@@ -67,5 +69,15 @@ public:
 private:
     Vector values_;
 };
+
+/// \p values permuted: result[i] = values[order[i]]. Keeps the capacity that \p values has reserved for
+/// growth.
+template <class T>
+Indexed<T> permuted(const Indexed<T>& values, const std::vector<std::int32_t>& order) {
+    Indexed<T> result;
+    result.reserve(static_cast<int>(std::max(values.vector().capacity(), order.size())));
+    for (const std::int32_t i : order) result.push_back(values[i]);
+    return result;
+}
 
 }  // namespace neuralmesh

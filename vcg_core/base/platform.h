@@ -8,6 +8,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
 
 #if defined(__GNUC__) && !defined(NEURALMESH_PORTABLE)
 #define NEURALMESH_GNU
@@ -57,6 +59,16 @@ NEURALMESH_ALWAYS_INLINE void prefetch_for_write([[maybe_unused]] const void* ad
 #ifdef NEURALMESH_GNU
     __builtin_prefetch(address, 1);
 #endif
+}
+
+/// std::bit_cast of C++20.
+template <class To, class From>
+To bit_cast(const From& from) noexcept {
+    static_assert(sizeof(To) == sizeof(From) && std::is_trivially_copyable_v<To> &&
+                  std::is_trivially_copyable_v<From>);
+    To to;
+    std::memcpy(&to, &from, sizeof to);
+    return to;
 }
 
 /// Number of set bits.

@@ -49,27 +49,19 @@ void ThreadTeam::beat() {
     beat_();
 }
 
+/// Lets the helpers claim all chunks but 0, executes that and those that no helper has claimed, and waits for
+/// the others.
 void ThreadTeam::start(Call call, const void* body, int chunks) {
-    // Chunk 0 is not offered: claiming it would move the word's cache line to the caller and back.
-    offer(call, body, (bit(chunks - 1) - 1) << 1);
-    call(body, 0, 0);
-    finish();
-}
-
-/// Lets members claim the chunks whose bits are set.
-void ThreadTeam::offer(Call call, const void* body, std::uint64_t chunks) {
     call_ = call;
     body_ = body;
-    open_.store(bit_count(chunks), std::memory_order_relaxed);
-    unclaimed_.store(chunks);
+    open_.store(chunks - 1, std::memory_order_relaxed);
+    // Chunk 0 is not offered: claiming it would move the word's cache line to the caller and back.
+    unclaimed_.store((bit(chunks - 1) - 1) << 1);
     if (asleep_.load() > 0) {
         const std::lock_guard<std::mutex> lock(mutex_);
         wake_.notify_all();
     }
-}
-
-/// Executes the chunks that no helper has claimed and waits for the others.
-void ThreadTeam::finish() {
+    call(body, 0, 0);
     work(0);
     for (int turn = 0; open_.load(std::memory_order_acquire) > 0; ++turn) {
         if (turn < kSpins) {

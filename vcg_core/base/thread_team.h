@@ -65,38 +65,12 @@ public:
               &body, chunks);
     }
 
-    /// The call started by run_in_background(); the destructor waits for its end.
-    class [[nodiscard]] BackgroundTask {
-    public:
-        BackgroundTask() = default;  ///< no call
-        explicit BackgroundTask(ThreadTeam& team) : team_(&team) {}
-        ~BackgroundTask() {
-            if (team_ != nullptr) team_->finish();
-        }
-        BackgroundTask(const BackgroundTask&) = delete;
-        BackgroundTask& operator=(const BackgroundTask&) = delete;
-
-    private:
-        ThreadTeam* team_ = nullptr;
-    };
-
-    /// Calls \p body() once, in a helper, or in the destructor of the result if no helper has started it by
-    /// then. Until the result is destroyed, the caller must not use the team or any data that \p body uses.
-    /// \p body must not throw and must outlive the result.
-    template <class Body>
-    BackgroundTask run_in_background(const Body& body) {
-        offer([](const void* b, int, int) { (*static_cast<const Body*>(b))(); }, &body, bit(1));
-        return BackgroundTask(*this);
-    }
-
 private:
     using Call = void (*)(const void* body, int member, int chunk);
 
     static constexpr std::uint64_t bit(int i) { return std::uint64_t{1} << i; }
 
     void start(Call call, const void* body, int chunks);
-    void offer(Call call, const void* body, std::uint64_t chunks);
-    void finish();
     bool work(int member);
     void help(int member);
 

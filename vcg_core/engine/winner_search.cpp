@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "vcg_core/base/bits.h"
 #include "vcg_core/base/platform.h"
 
 namespace neuralmesh {
@@ -84,7 +83,7 @@ NEURALMESH_MULTIVERSIONED RankedVertex scan_eight_cells(const VertexRecord* slot
     do {
         Four points[8];
         for (int i = 0; i < 8; ++i) points[i] = load_raw(&slots[links[i]]);
-        EightVectors p;
+        EightVectors p{};  // GCC thinks that it is read
         EightInts next;
         transpose(points, p, next);
         std::memcpy(links, &next, sizeof links);

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "vcg_core/base/permuted.h"
+#include "vcg_core/base/indexed.h"
 #include "vcg_core/base/platform.h"
 #include "vcg_core/engine/basic_step_batch.h"
 #include "vcg_core/engine/batch_limit.h"
@@ -42,9 +42,7 @@ public:
     void set(VertexId v, std::int64_t signal) { last_active_[v] = signal; }
     bool active_since(VertexId v, std::int64_t signal) const { return last_active_[v] > signal; }
     /// As UtilityCounters::renumber().
-    void renumber(const std::vector<VertexId>& order) {
-        last_active_ = permuted(last_active_, order, std::int64_t{0});
-    }
+    void renumber(const std::vector<VertexId>& order) { last_active_ = permuted(last_active_, order); }
 
 private:
     int active_neighbours(const Network& network, VertexId v, std::int64_t signal) const {

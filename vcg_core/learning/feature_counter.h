@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "vcg_core/base/permuted.h"
+#include "vcg_core/base/indexed.h"
 #include "vcg_core/base/platform.h"
 #include "vcg_core/mesh/ring.h"
 
@@ -30,7 +30,7 @@ public:
     void prefetch(VertexId v) const { prefetch_for_write(&values_[v]); }
     float value(VertexId v) const { return values_[v]; }
     /// As UtilityCounters::renumber().
-    void renumber(const std::vector<VertexId>& order) { values_ = permuted(values_, order, 0.0F); }
+    void renumber(const std::vector<VertexId>& order) { values_ = permuted(values_, order); }
     /// A new vertex starts with its parent's counter: it lies in the same place.
     void inherit(VertexId parent, VertexId child) { values_[child] = values_[parent]; }
 

@@ -4,18 +4,46 @@
 // The network with everything that learning stores per vertex.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "vcg_core/engine/winner_search.h"
 #include "vcg_core/learning/activity.h"
-#include "vcg_core/learning/boundary_signals.h"
 #include "vcg_core/learning/feature_counter.h"
 #include "vcg_core/learning/learner_options.h"
 #include "vcg_core/learning/utility_counter.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
+
+/// The signals that boundary vertices have won, by their winners: they tell a notch in the boundary from an
+/// opening of the cloud.
+class BoundarySignals {
+public:
+    void add(VertexId winner, const vcg::Point3f& signal) {
+        won_.emplace_back(winner, signal);
+        sorted_ = false;
+    }
+    void clear() { won_.clear(); }
+
+    /// Whether \p accepts any signal that \p winner has won. O(log n), and O(n log n) after signals were
+    /// added.
+    template <class Accepts>
+    bool any_of(VertexId winner, const Accepts& accepts) {
+        const auto earlier = [](const Won& a, const Won& b) { return a.first < b.first; };
+        if (!sorted_) std::stable_sort(won_.begin(), won_.end(), earlier);
+        sorted_ = true;
+        const auto range = std::equal_range(won_.begin(), won_.end(), Won(winner, {}), earlier);
+        return std::any_of(range.first, range.second, [&](const Won& won) { return accepts(won.second); });
+    }
+
+private:
+    using Won = std::pair<VertexId, vcg::Point3f>;
+    std::vector<Won> won_;
+    bool sorted_ = true;
+};
 
 /// What the steps of the paper read and change. Change the connectivity only through the members below: they
 /// keep the winner search and the counters consistent with the network.
@@ -35,8 +63,12 @@ struct LearningState {
     /// Flips edges of \p v where that brings valences closer to 6 and hardly changes the surface. Does
     /// nothing to the letter of the paper.
     void regularise(VertexId v);
-    /// Network::renumber().
-    void renumber(const std::vector<VertexId>& order);
+    /// Renumbers the vertices along a space-filling curve: those that a Basic Step visits then share cache
+    /// lines and pages. If \p growing, only once the network has grown by a quarter, else if there were
+    /// splits or collapses since the last time. Small networks fit into the cache and keep their order.
+    /// Results change only where they depend on the order of ids, as ties and the order of collapses do.
+    /// O(n log n) then, O(1) otherwise.
+    void keep_near_in_memory(bool growing);
 
     /// True if options switch off all that the paper does not have: maturity, batches, edge flips.
     bool to_the_letter() const { return options.min_wins_per_split == 0; }
@@ -52,6 +84,10 @@ struct LearningState {
     std::int64_t splits = 0;
     std::int64_t collapses = 0;
     std::int64_t splits_refused = 0;  ///< because the points carry no shorter edges
+
+private:
+    int ordered_vertices_ = 0;           ///< when last renumbered
+    std::int64_t ordered_changes_ = -1;  ///< splits and collapses then
 };
 
 }  // namespace neuralmesh

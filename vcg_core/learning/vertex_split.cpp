@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "vcg_core/mesh/valence_flips.h"
+#include "vcg_core/mesh/flips.h"
 
 namespace neuralmesh {
 

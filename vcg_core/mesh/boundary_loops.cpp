@@ -124,36 +124,10 @@ bool HoleFiller::cut_ear(Filling& filling) {
     return true;
 }
 
-/// Closes the rest by a face, or by a fan around a new vertex.
-bool HoleFiller::finish(Filling& filling) {
-    const std::vector<VertexId>& rest = filling.rest;
-    if (rest.size() == 3 &&
-        std::all_of(rest.begin(), rest.end(), [&](VertexId v) { return neighbours(v).size() >= 3; })) {
-        filling.faces.push_back({rest[0], rest[2], rest[1]});
-        return true;
-    }
-    if (static_cast<int>(rest.size()) > most_neighbours_ ||
-        std::any_of(rest.begin(), rest.end(), [&](VertexId v) { return full(v); }))
-        return false;
-    const auto centre = static_cast<VertexId>(mesh_.positions.size());
-    Point3f position(0, 0, 0);
-    for (const VertexId v : rest)
-        position += mesh_.positions[static_cast<std::size_t>(v)] / static_cast<float>(rest.size());
-    mesh_.positions.push_back(position);
-    neighbours_.emplace_back();
-    for (std::size_t i = 0; i < rest.size(); ++i) {
-        join(filling, centre, rest[i]);
-        filling.faces.push_back({rest[(i + 1) % rest.size()], rest[i], centre});
-    }
-    return true;
-}
-
-/// Takes back what \p filling has done to the neighbours and to the positions.
+/// Takes back what \p filling has done to the neighbours.
 void HoleFiller::undo(const Filling& filling) {
     for (auto edge = filling.edges.rbegin(); edge != filling.edges.rend(); ++edge)
         for (const VertexId v : *edge) neighbours(v).pop_back();
-    mesh_.positions.resize(filling.vertices_before);
-    neighbours_.resize(filling.vertices_before);
 }
 
 bool HoleFiller::fill(const std::vector<VertexId>& loop, float most_width) {
@@ -167,24 +141,23 @@ bool HoleFiller::fill(const std::vector<VertexId>& loop, float most_width) {
     }
     const float most_area = most_width * length / 4;
     if (area.Norm() > most_area) return false;
-    for (const bool ears : {true, false}) {
-        Filling filling;
-        filling.rest = loop;
-        filling.vertices_before = mesh_.positions.size();
-        while (ears && filling.rest.size() > 3 && cut_ear(filling)) {
-        }
-        if (finish(filling)) {
-            float sum = 0;
-            for (const Triangle& f : filling.faces)
-                sum += area_vector(at(f[0]), at(f[1]), at(f[2])).Norm() / 2;
-            if (sum <= most_area) {
-                mesh_.faces.insert(mesh_.faces.end(), filling.faces.begin(), filling.faces.end());
-                return true;
-            }
-        }
-        undo(filling);
+    Filling filling;
+    filling.rest = loop;
+    while (filling.rest.size() > 3 && cut_ear(filling)) {
     }
-    return false;
+    const std::vector<VertexId>& rest = filling.rest;
+    const bool closes = rest.size() == 3 && std::all_of(rest.begin(), rest.end(), [&](VertexId v) {
+                            return neighbours(v).size() >= 3;
+                        });
+    float sum = 0;
+    if (closes) filling.faces.push_back({rest[0], rest[2], rest[1]});
+    for (const Triangle& f : filling.faces) sum += area_vector(at(f[0]), at(f[1]), at(f[2])).Norm() / 2;
+    if (!closes || sum > most_area) {
+        undo(filling);
+        return false;
+    }
+    mesh_.faces.insert(mesh_.faces.end(), filling.faces.begin(), filling.faces.end());
+    return true;
 }
 
 }  // namespace neuralmesh

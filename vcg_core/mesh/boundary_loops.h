@@ -32,10 +32,10 @@ public:
                int most_neighbours);
 
     /// Fills the hole that \p loop, one of the loops, bounds by cutting ears, those of the smallest angle
-    /// first. Where no ear can be cut any more, the rest gets a fan around a new vertex, or else the whole
-    /// hole. The mesh stays a simplicial manifold. \return false, with the mesh unchanged, if that cannot be.
-    /// Nor is a hole filled that is wider than \p most_width across: four areas over the length of the loop,
-    /// the diameter of a round hole and twice the width of a long crack. O(n^2), O(n) for most wide holes.
+    /// first. The mesh stays a simplicial manifold. \return false, with the mesh unchanged, if that cannot
+    /// be. Nor is a hole filled that is wider than \p most_width across: four areas over the length of the
+    /// loop, the diameter of a round hole and twice the width of a long crack. O(n^2), O(n) for most wide
+    /// holes.
     bool fill(const std::vector<VertexId>& loop, float most_width = std::numeric_limits<float>::infinity());
 
 private:
@@ -44,7 +44,6 @@ private:
         std::vector<VertexId> rest;
         std::vector<Triangle> faces;
         std::vector<std::array<VertexId, 2>> edges;
-        std::size_t vertices_before = 0;  ///< of the mesh
     };
     std::vector<VertexId>& neighbours(VertexId v) { return neighbours_[static_cast<std::size_t>(v)]; }
     const std::vector<VertexId>& neighbours(VertexId v) const {
@@ -53,7 +52,6 @@ private:
     bool full(VertexId v) const { return static_cast<int>(neighbours(v).size()) >= most_neighbours_; }
     float sharpness(const Filling& filling, std::size_t i) const;
     bool cut_ear(Filling& filling);
-    bool finish(Filling& filling);
     void undo(const Filling& filling);
     void join(Filling& filling, VertexId a, VertexId b);
 

@@ -3,19 +3,21 @@
 
 #include "vcg_core/mesh/face_tree.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 #include "vcg_core/base/parallel_for.h"
+#include "vcg_core/base/z_order.h"
+#include "vcg_core/mesh/triangle_lanes.h"
 
 namespace neuralmesh {
 
 namespace {
 
 constexpr int kChunk = 512;
-/// Subtrees of at most so many faces are built by one thread.
-constexpr int kFacesAtATime = 2048;
 
 std::vector<int> all_faces(const Surface& surface) {
     std::vector<int> faces(surface.faces.vector().size());
@@ -47,10 +49,7 @@ void FaceTree::build(const Surface& surface, ThreadTeam& team) {
         entries[i] = {surface.corner(f, 0) + surface.corner(f, 1) + surface.corner(f, 2), f};
     });
     nodes_.resize(node_count(order_.size()));
-    std::vector<Subtree> subtrees;
-    divide_to_subtrees(entries, {0, 0, order_.size()}, subtrees);
-    parallel_for(static_cast<int>(subtrees.size()), 1, team,
-                 [&](int i) { divide_to_leaves(entries, subtrees[static_cast<std::size_t>(i)]); });
+    divide(entries, 0, 0, order_.size());
     for (int i = 0; i < order_.size(); ++i) order_[i] = entries[i].face;
     set_boxes(surface, team);
 }
@@ -70,11 +69,10 @@ int FaceTree::node_count(int faces) {
     return 2 * (parts + divided) - 1;
 }
 
-/// Makes the node, and divides its faces at the median. \return false if it is a leaf
-bool FaceTree::divide(Indexed<Entry>& entries, const Subtree& tree, std::array<Subtree, 2>& halves) {
-    const auto [node, begin, end] = tree;
+/// Makes the node of the faces from \p begin to \p end, and, divided at the median, those below it.
+void FaceTree::divide(Indexed<Entry>& entries, int node, int begin, int end) {
     nodes_[node] = {Box(), begin, end, -1};
-    if (end - begin <= kLeafFaces) return false;
+    if (end - begin <= kLeafFaces) return;
     Box box;
     for (int i = begin; i < end; ++i) box.extend(entries[i].centre);
     Eigen::Index axis = 0;
@@ -87,24 +85,8 @@ bool FaceTree::divide(Indexed<Entry>& entries, const Subtree& tree, std::array<S
                          return x < y || (x == y && a.face < b.face);
                      });
     nodes_[node].right = node + 1 + node_count(middle - begin);
-    halves = {{{node + 1, begin, middle}, {nodes_[node].right, middle, end}}};
-    return true;
-}
-
-void FaceTree::divide_to_subtrees(Indexed<Entry>& entries, const Subtree& tree,
-                                  std::vector<Subtree>& subtrees) {
-    std::array<Subtree, 2> halves;
-    if (tree.end - tree.begin <= kFacesAtATime) {
-        subtrees.push_back(tree);
-    } else if (divide(entries, tree, halves)) {
-        for (const Subtree& half : halves) divide_to_subtrees(entries, half, subtrees);
-    }
-}
-
-void FaceTree::divide_to_leaves(Indexed<Entry>& entries, const Subtree& tree) {
-    std::array<Subtree, 2> halves;
-    if (!divide(entries, tree, halves)) return;
-    for (const Subtree& half : halves) divide_to_leaves(entries, half);
+    divide(entries, node + 1, begin, middle);
+    divide(entries, nodes_[node].right, middle, end);
 }
 
 void FaceTree::set_boxes(const Surface& surface, ThreadTeam& team) {
@@ -126,38 +108,153 @@ void FaceTree::set_boxes(const Surface& surface, ThreadTeam& team) {
     }
 }
 
-Hit FaceTree::nearest(const Vector3& p) const {
+// The nearest faces: packets of eight points that are near each other pass through the tree together. Source:
+// Wald et al., "Interactive Rendering with Coherent Ray Tracing" (2001), for rays.
+namespace {
+
+constexpr std::size_t kLanes = 8;
+constexpr std::size_t kPackets = 64;  ///< per task of a thread
+
+/// Sorts points by cells along the Z-order curve: about as many cells as points, in \p box.
+std::vector<std::uint32_t> along_z_order(const std::vector<Vector3>& points, const Eigen::AlignedBox3f& box,
+                                         ThreadTeam& team) {
+    constexpr int kMostBits = 7;
+    int bits = 1;
+    while (bits < kMostBits && std::size_t{1} << (3 * bits) < points.size()) ++bits;
+    const auto cells = static_cast<float>(1 << bits);
+    constexpr float kLeastSize = 1e-20F;  // of a flat box
+    const Vector3 scale = cells * box.sizes().cwiseMax(kLeastSize).cwiseInverse();
+    std::vector<std::uint32_t> cell(points.size());
+    for_chunks(points.size(), kLanes * kPackets, team, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vector3 at = (points[i] - box.min()).cwiseProduct(scale).cwiseMax(0.0F).cwiseMin(cells - 1);
+            cell[i] = static_cast<std::uint32_t>(z_order(static_cast<std::uint64_t>(at[0]),
+                                                         static_cast<std::uint64_t>(at[1]),
+                                                         static_cast<std::uint64_t>(at[2])));
+        }
+    });
+    std::vector<std::uint32_t> next((std::size_t{1} << (3 * bits)) + 1, 0);
+    for (const std::uint32_t c : cell) ++next[c + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<std::uint32_t> order(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) order[next[cell[i]]++] = static_cast<std::uint32_t>(i);
+    return order;
+}
+
+NEURALMESH_ALWAYS_INLINE void larger(const Eight& a, const Eight& b, Eight& result) {
+    choose(a > b, a, b, result);
+}
+
+/// AlignedBox::squaredExteriorDistance() of eight points.
+NEURALMESH_ALWAYS_INLINE void squared_distance_to(const Eigen::AlignedBox3f& box, const EightVectors& p,
+                                                  Eight& result) {
+    const Eight zero = Eight{};
+    Eight x, y, z;
+    larger(box.min()[0] - p.x, p.x - box.max()[0], x);
+    larger(box.min()[1] - p.y, p.y - box.max()[1], y);
+    larger(box.min()[2] - p.z, p.z - box.max()[2], z);
+    larger(x, zero, x);
+    larger(y, zero, y);
+    larger(z, zero, z);
+    result = x * x + y * y + z * z;
+}
+
+}  // namespace
+
+struct FaceTree::Packet {
+    EightVectors points;
+    Eight least;      ///< squared distance so far
+    Eight bound;      ///< on the squared distance of boxes to look at
+    EightInts face;   ///< at the least distance; -1: none
+    EightInts place;  ///< of the face in the order of the tree
+
+    NEURALMESH_MULTIVERSIONED static void search(Packet& packet, const FaceTree& tree);
+    NEURALMESH_ALWAYS_INLINE static void look_at(Packet& packet, const FaceTree& tree, int place);
+};
+
+void FaceTree::Packet::look_at(Packet& packet, const FaceTree& tree, int place) {
+    Eight squared;
+    squared_distance_to(tree.boxes_[place], packet.points, squared);
+    if (!any(~(squared > packet.bound))) return;
+    const Corners& corners = tree.corners_[place];
+    const EightVectors ap{packet.points.x - corners.a[0], packet.points.y - corners.a[1],
+                          packet.points.z - corners.a[2]};
+    squared_distance_to_triangle(corners.ab, corners.ac, ap, squared);
+    const EightInts face = EightInts{} + tree.order_[place];
+    const EightInts better = (squared < packet.least) | ((squared == packet.least) & (face < packet.face));
+    choose(better, squared, packet.least, packet.least);
+    packet.bound = packet.least * kShare + kSquaredRounding;
+    choose(better, face, packet.face, packet.face);
+    choose(better, EightInts{} + place, packet.place, packet.place);
+}
+
+/// The descent follows a point in the middle of the packet.
+void FaceTree::Packet::search(Packet& packet, const FaceTree& tree) {
+    constexpr std::size_t kMiddle = kLanes / 2;
     struct Waiting {
-        float squared_distance;
+        Eight squared_distance;
         int node;
     };
-    const auto waiting_at = [&](int n) { return Waiting{nodes_[n].box.squaredExteriorDistance(p), n}; };
-    Hit best{-1, {std::numeric_limits<float>::max(), {1, 0, 0}}};
-    float bound = best.foot.squared_distance;
-    std::array<Waiting, kStack> stack;
+    Waiting stack[kStack];
     std::size_t height = 0;
-    if (!nodes_.empty()) stack[height++] = waiting_at(0);
+    stack[height++] = {Eight{}, 0};
     while (height > 0) {
-        Waiting nearer = stack[--height];
-        // Down to a leaf by the nearer child; the other waits.
-        while (nearer.squared_distance <= bound && !nodes_[nearer.node].is_leaf()) {
-            Waiting further = waiting_at(nodes_[nearer.node].right);
-            nearer = waiting_at(nearer.node + 1);
-            if (further.squared_distance < nearer.squared_distance) std::swap(nearer, further);
-            if (further.squared_distance <= bound) stack[height++] = further;
+        const Waiting& top = stack[--height];
+        if (!any(~(top.squared_distance > packet.bound))) continue;
+        int n = top.node;
+        while (!tree.nodes_[n].is_leaf()) {
+            const int left = n + 1, right = tree.nodes_[n].right;
+            Eight to_left, to_right;
+            squared_distance_to(tree.nodes_[left].box, packet.points, to_left);
+            squared_distance_to(tree.nodes_[right].box, packet.points, to_right);
+            const bool goes_left = any(~(to_left > packet.bound));
+            const bool goes_right = any(~(to_right > packet.bound));
+            if (!goes_left && !goes_right) break;
+            if (goes_left && goes_right) {
+                const bool left_first = to_left[kMiddle] <= to_right[kMiddle];
+                stack[height++] = left_first ? Waiting{to_right, right} : Waiting{to_left, left};
+                n = left_first ? left : right;
+            } else {
+                n = goes_left ? left : right;
+            }
         }
-        if (nearer.squared_distance > bound) continue;
-        const Node& leaf = nodes_[nearer.node];
-        for (int i = leaf.begin; i < leaf.end; ++i) {
-            const Foot foot = foot_on_triangle(corners_[i].ab, corners_[i].ac, p - corners_[i].a);
-            const int face = order_[i];
-            if (foot.squared_distance < best.foot.squared_distance ||
-                (foot.squared_distance == best.foot.squared_distance && face < best.face))
-                best = {face, foot};
-        }
-        bound = best.foot.squared_distance * kShare + kSquaredRounding;
+        const Node& leaf = tree.nodes_[n];
+        for (int i = leaf.begin; leaf.is_leaf() && i < leaf.end; ++i) look_at(packet, tree, i);
     }
-    return best;
+}
+
+std::vector<Hit> FaceTree::nearest(const std::vector<Vector3>& points, ThreadTeam& team) const {
+    constexpr float kFar = std::numeric_limits<float>::max();
+    std::vector<Hit> hits(points.size(), {-1, {kFar, {1, 0, 0}}});
+    if (nodes_.empty()) return hits;
+    const std::vector<std::uint32_t> order = along_z_order(points, nodes_[0].box, team);
+    const auto search_packet = [&](std::size_t first, std::size_t last) {
+        Packet packet;
+        packet.least = packet.bound = Eight{} + kFar;
+        packet.face = packet.place = EightInts{} - 1;
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const Vector3& p = points[order[std::min(first + lane, last)]];
+            packet.points.x[lane] = p[0];
+            packet.points.y[lane] = p[1];
+            packet.points.z[lane] = p[2];
+        }
+        Packet::search(packet, *this);
+        for (std::size_t lane = 0; lane < kLanes && first + lane <= last; ++lane) {
+            if (packet.face[lane] < 0) continue;
+            const Corners& corners = corners_[packet.place[lane]];
+            const std::size_t i = order[first + lane];
+            hits[i] = {packet.face[lane], foot_on_triangle(corners.ab, corners.ac, points[i] - corners.a)};
+        }
+    };
+    for_chunks(points.size(), kLanes * kPackets, team, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; i += kLanes) search_packet(i, end - 1);
+    });
+    return hits;
+}
+
+Hit FaceTree::nearest(const Vector3& p) const {
+    ThreadTeam alone(1);
+    return nearest(std::vector<Vector3>{p}, alone).front();
 }
 
 }  // namespace neuralmesh

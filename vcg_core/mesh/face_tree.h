@@ -25,15 +25,15 @@ public:
     FaceTree(const Surface& surface, ThreadTeam& team);
     /// Over the given \p faces of the surface only.
     FaceTree(const Surface& surface, std::vector<int> faces);
-    /// The same, built on the threads of \p team. The tree does not depend on their number.
+    /// The same, with the boxes computed on the threads of \p team.
     FaceTree(const Surface& surface, std::vector<int> faces, ThreadTeam& team);
 
-    /// The nearest face of \p p, the one of smallest index among equals; face -1 if the tree is empty. Exact
-    /// by foot_on_triangle() for faces up to about 1. O(log faces) expected near the surface.
-    Hit nearest(const Vector3& p) const;
-    /// That of each of \p points, the same bits, in a quarter of the time where they are dense. Does not
-    /// depend on the number of threads. O(points x log faces)
+    /// The nearest face of each of \p points, the one of smallest index among equals; face -1 if the tree is
+    /// empty. Exact by foot_on_triangle() for faces up to about 1. Does not depend on the number of threads.
+    /// O(points x log faces) expected near the surface.
     std::vector<Hit> nearest(const std::vector<Vector3>& points, ThreadTeam& team) const;
+    /// That of one point, in more time than that of one of many.
+    Hit nearest(const Vector3& p) const;
 
     /// The number of nodes. The faces of a leaf are a group; the groups of the other nodes are empty.
     int group_count() const { return nodes_.size(); }
@@ -80,17 +80,11 @@ private:
         Vector3 centre;
         int face;
     };
-    /// A node whose children are not made yet.
-    struct Subtree {
-        int node, begin, end;
-    };
 
     static Box box_of(const Surface& surface, int face);
     void build(const Surface& surface, ThreadTeam& team);
     static int node_count(int faces);
-    bool divide(Indexed<Entry>& entries, const Subtree& tree, std::array<Subtree, 2>& halves);
-    void divide_to_subtrees(Indexed<Entry>& entries, const Subtree& tree, std::vector<Subtree>& subtrees);
-    void divide_to_leaves(Indexed<Entry>& entries, const Subtree& tree);
+    void divide(Indexed<Entry>& entries, int node, int begin, int end);
     void set_boxes(const Surface& surface, ThreadTeam& team);
     struct Packet;
     template <class Visit>

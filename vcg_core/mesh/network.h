@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "vcg_core/base/error.h"
-#include "vcg_core/mesh/free_ids.h"
 #include "vcg_core/mesh/ring.h"
 
 namespace neuralmesh {
@@ -113,8 +112,8 @@ public:
     /// Renumbers the vertices to 0 .. vertex_count() - 1 and keeps their order. Invalidates all ids, for
     /// example those in a WinnerSearch. \return per old slot the new id, or -1. O(vertices).
     PerVertex<VertexId> compact();
-    /// Renumbers the vertices: order[i] is the old id of vertex i, or -1 to make id i free. Every used id
-    /// occurs once. Later splits take a free id near the id of the parent. \return as compact(). O(vertices).
+    /// Renumbers the vertices: order[i] is the old id of vertex i. Every used id occurs once. \return as
+    /// compact(). O(vertices).
     PerVertex<VertexId> renumber(const std::vector<VertexId>& order);
 
     /// O(vertices), as all functions from here on.
@@ -129,7 +128,7 @@ public:
     PerVertex<int> components() const;
     /// Orients every closed component so that its faces are counter-clockwise seen from outside of the body:
     /// the enclosed volume becomes positive, and negative for components within an odd number of others,
-    /// which are hollows.
+    /// which are hollows: within most of it, where one cuts another. O(components^2 + faces x the depth).
     void orient_outward();
     int boundary_loop_count() const;
     /// Sum over the components, from the Euler characteristic: components - (euler + loops) / 2.
@@ -141,7 +140,7 @@ public:
 
 private:
     Ring& ring_of(VertexId v) { return rings_[static_cast<std::size_t>(v)]; }
-    VertexId new_vertex(VertexId parent, const vcg::Point3f& where);
+    VertexId new_vertex(const vcg::Point3f& where);
     void enter_fan(VertexId v, VertexId u, VertexId shared_begin, VertexId shared_end);
     std::string validate_edge(VertexId v, int i) const;
     /// Rings after an exchange of faces; those of vertices without faces have valence 0.
@@ -154,8 +153,7 @@ private:
 
     std::vector<Ring> rings_;
     std::vector<VertexRecord> slots_{kSentinel};  ///< slot v is element v + 1
-    std::vector<VertexId> free_;                 ///< removed ids while gaps_ is empty
-    FreeIds gaps_;                               ///< free ids of a network that renumber() left with gaps
+    std::vector<VertexId> free_;                  ///< removed ids
     int vertex_count_ = 0;
     std::optional<vcg::Point3f> viewer_;
 };
@@ -190,5 +188,9 @@ private:
 };
 
 inline Network::Vertices Network::vertices() const { return Vertices(*this); }
+
+/// The used ids of \p network along the Z-order curve of their positions (Morton 1966): near vertices mostly
+/// get near places. Positions beyond [-1, 1]^3 count as if on its border. O(n log n).
+std::vector<VertexId> morton_order(const Network& network);
 
 }  // namespace neuralmesh

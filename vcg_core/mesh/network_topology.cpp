@@ -3,11 +3,14 @@
 
 // Operations on the whole network: construction from faces, exchange of faces, counts, orientation,
 // validation.
+#include <vcg/space/box3.h>
+
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <utility>
 
-#include "vcg_core/mesh/nesting.h"
+#include "vcg_core/base/z_order.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
@@ -58,6 +61,83 @@ std::string breach_at(VertexId v, const char* what) {
 }
 
 bool finite(const vcg::Point3f& p) { return (p - p) == vcg::Point3f(0, 0, 0); }
+
+/// Of so many places of a component most are within another, or are not. An odd number.
+constexpr std::size_t kPlaces = 9;
+
+/// Twice the signed area of a triangle, seen along the x axis. Exact but for the last sum.
+double area_along_x(const vcg::Point3d& a, const vcg::Point3d& b, const vcg::Point3d& c) {
+    return (b[1] - a[1]) * (c[2] - a[2]) - (c[1] - a[1]) * (b[2] - a[2]);
+}
+
+/// Whether the line from \p p along the x axis passes the edge of \p a and \p b on its left, seen along the
+/// axis. Depends on no order of the two, so that of two faces at the edge one is hit, also if it is met.
+bool passes(const vcg::Point3d& p, const vcg::Point3d& a, const vcg::Point3d& b) {
+    if ((a[1] > p[1]) == (b[1] > p[1])) return false;
+    return (a[1] < b[1] ? area_along_x(a, b, p) : area_along_x(b, a, p)) > 0;
+}
+
+/// Whether the ray from \p p along the x axis hits the face \p a \p b \p c.
+bool hits(const vcg::Point3d& p, const vcg::Point3d& a, const vcg::Point3d& b, const vcg::Point3d& c) {
+    const int edges = (passes(p, a, b) ? 1 : 0) + (passes(p, b, c) ? 1 : 0) + (passes(p, c, a) ? 1 : 0);
+    if (edges % 2 == 0) return false;
+    const vcg::Point3d normal = (b - a) ^ (c - a);
+    if (normal[0] == 0) return false;
+    return (normal * (a - p)) / normal[0] > 0;
+}
+
+/// A component of the network.
+struct Part {
+    std::vector<VertexId> vertices;
+    std::vector<Triangle> faces;
+    vcg::Box3d box;
+    bool is_open = false;
+    double volume = 0;  ///< that the faces enclose, times 6
+};
+
+vcg::Point3d place_of(const Network& network, VertexId v) {
+    return vcg::Point3d::Construct(network.position(v));
+}
+
+std::vector<Part> parts_of(const Network& network) {
+    const PerVertex<int> component = network.components();
+    const int count = component.empty() ? 0 : 1 + *std::max_element(component.begin(), component.end());
+    std::vector<Part> parts(static_cast<std::size_t>(count));
+    const auto of = [&](VertexId v) -> Part& { return parts[static_cast<std::size_t>(component[v])]; };
+    for (const VertexId v : network.vertices()) {
+        of(v).vertices.push_back(v);
+        of(v).box.Add(place_of(network, v));
+        of(v).is_open = of(v).is_open || network.ring(v).open != 0;
+    }
+    for (const Triangle& f : network.faces()) {
+        of(f[0]).faces.push_back(f);
+        of(f[0]).volume += place_of(network, f[0]) * (place_of(network, f[1]) ^ place_of(network, f[2]));
+    }
+    return parts;
+}
+
+/// Whether most of \p part is within the closed part \p around.
+bool is_within(const Network& network, const Part& part, const Part& around) {
+    std::size_t within = 0;
+    for (std::size_t k = 0; k < kPlaces; ++k) {
+        const vcg::Point3d p = place_of(network, part.vertices[k * part.vertices.size() / kPlaces]);
+        if (!around.box.IsIn(p)) continue;
+        const auto hit = std::count_if(around.faces.begin(), around.faces.end(), [&](const Triangle& f) {
+            return hits(p, place_of(network, f[0]), place_of(network, f[1]), place_of(network, f[2]));
+        });
+        within += hit % 2 != 0 ? 1 : 0;
+    }
+    return within > kPlaces / 2;
+}
+
+/// Of 2^21 cells along [-1, 1].
+std::uint64_t cell_of(float coordinate) {
+    return static_cast<std::uint64_t>((std::clamp(coordinate, -1.0F, 0.999F) + 1) * 0x1p20F);
+}
+
+std::uint64_t morton_code(const vcg::Point3f& p) {
+    return z_order(cell_of(p[0]), cell_of(p[1]), cell_of(p[2]));
+}
 
 }  // namespace
 
@@ -124,13 +204,10 @@ void Network::exchange_faces(const std::vector<Triangle>& gone, const std::vecto
             "This exchange of faces would break the network; ask can_exchange_faces() first.");
     free_.reserve(free_.size() + changed.size());
     for (const auto& [v, after] : changed) {
-        if (after.valence == 0 && gaps_.count() > 0) {
-            gaps_.add(v);
-        } else if (after.valence == 0) {
-            free_.push_back(v);
-        }
-        vertex_count_ -= after.valence == 0 ? 1 : 0;
-        ring_of(v) = after.valence == 0 ? Ring{} : after;
+        ring_of(v) = after;
+        if (after.valence != 0) continue;
+        free_.push_back(v);
+        --vertex_count_;
     }
 }
 
@@ -185,23 +262,18 @@ int Network::component_count() const {
 }
 
 void Network::orient_outward() {
-    const PerVertex<int> component = components();
-    const int count = component.empty() ? 0 : 1 + *std::max_element(component.begin(), component.end());
-    const std::vector<int> depths = nesting_depths(*this, component, count);
-    Indexed<double> volume(slot_count(), 0.0);  // of each component, times 6
-    Indexed<char> open(slot_count(), 0);
-    for (const Triangle& f : faces()) {
-        const auto p = [&](std::size_t k) { return vcg::Point3d::Construct(position(f[k])); };
-        volume[component[f[0]]] += p(0) * (p(1) ^ p(2));
-    }
-    for (const VertexId v : vertices())
-        if (ring(v).open != 0) open[component[v]] = 1;
-    for (const VertexId v : vertices()) {
-        const bool hollow = depths[static_cast<std::size_t>(component[v])] % 2 != 0;
-        if (open[component[v]] != 0 || (hollow ? -volume[component[v]] : volume[component[v]]) >= 0) continue;
-        Ring& r = ring_of(v);
-        std::reverse(r.begin(), r.end());
-        r.pad_cyclically();
+    const std::vector<Part> parts = parts_of(*this);
+    for (const Part& part : parts) {
+        if (part.is_open) continue;
+        const auto depth = std::count_if(parts.begin(), parts.end(), [&](const Part& around) {
+            return &around != &part && !around.is_open && is_within(*this, part, around);
+        });
+        if ((depth % 2 != 0 ? -part.volume : part.volume) >= 0) continue;
+        for (const VertexId v : part.vertices) {
+            Ring& r = ring_of(v);
+            std::reverse(r.begin(), r.end());
+            r.pad_cyclically();
+        }
     }
 }
 
@@ -238,7 +310,7 @@ std::string Network::validate() const {
     if (count != vertex_count_)
         return "The network is broken: it counts " + std::to_string(vertex_count_) + " vertices but holds " +
                std::to_string(count) + ".";
-    if (count + static_cast<int>(free_.size()) + gaps_.count() != slot_count())
+    if (count + static_cast<int>(free_.size()) != slot_count())
         return "The network is broken: free and used slots do not add up.";
     return {};
 }
@@ -262,6 +334,17 @@ std::string Network::validate_edge(VertexId v, int i) const {
     if (x < 0 || wraps || rw.next(x) != v)
         return breach_at(v, "a face differs between the rings of its corners.");
     return {};
+}
+
+std::vector<VertexId> morton_order(const Network& network) {
+    std::vector<std::pair<std::uint64_t, VertexId>> codes;
+    codes.reserve(static_cast<std::size_t>(network.vertex_count()));
+    for (const VertexId v : network.vertices()) codes.emplace_back(morton_code(network.position(v)), v);
+    std::sort(codes.begin(), codes.end());
+    std::vector<VertexId> order;
+    order.reserve(codes.size());
+    for (const auto& [code, v] : codes) order.push_back(v);
+    return order;
 }
 
 }  // namespace neuralmesh

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "vcg_core/base/cheapest_first.h"
+#include "vcg_core/mesh/flips.h"
 #include "vcg_core/mesh/triangle.h"
-#include "vcg_core/mesh/valence_flips.h"
 
 namespace neuralmesh {
 namespace {

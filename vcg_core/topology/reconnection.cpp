@@ -15,7 +15,7 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/mesh/face_tree.h"
-#include "vcg_core/topology/membrane_groups.h"
+#include "vcg_core/topology/membranes.h"
 #include "vcg_core/topology/surroundings.h"
 
 namespace neuralmesh {
@@ -156,8 +156,6 @@ Reconnection Search::best(const std::vector<Membrane>& membranes) const {
 }
 
 bool Search::make(Membrane& membrane, std::vector<int> faces) const {
-    std::sort(faces.begin(), faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     membrane.faces = std::move(faces);
     return complete(surface_, support_, membrane);
 }

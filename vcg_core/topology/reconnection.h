@@ -26,7 +26,7 @@ struct Reconnection {
 /// Membranes may be widened by one or two rings: the surface dents around a hole that it plugs. A joint makes
 /// a handle, or one component of two; closed rims of a tube take a handle away; a membrane with one rim is
 /// closed by a smaller surface. Joints make handles only if \p handles. If \p in_groups, three
-/// and more membranes may be joined, too, see membrane_groups.h: the openings of one hollow, where every
+/// and more membranes may be joined, too, see membranes.h: the openings of one hollow, where every
 /// joint of two leaves a tube that spans the others. Each of them alone leaves \p network a manifold. A
 /// membrane that many others face is left alone, as it is among points that fill space. The search ends when
 /// it has cost its budget, which is in proportion to the faces, those first that lack the most signals; or

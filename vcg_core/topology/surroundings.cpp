@@ -29,14 +29,13 @@ Box box_of(const Surface& surface, const std::vector<int>& faces) {
 
 }  // namespace
 
-/// The bounding boxes of the faces of a patch, of every few of them, which are near each other, and of all.
+/// The bounding boxes of the faces of a patch, and of all.
 class Surroundings::PatchBoxes {
 public:
     PatchBoxes(const std::vector<Triangle>& patch, const PerVertex<Vector3>& positions)
-        : of_face_(patch.size()), of_group_((patch.size() + kGroup - 1) / kGroup) {
+        : of_face_(patch.size()) {
         for (std::size_t p = 0; p < patch.size(); ++p) {
             for (const VertexId v : patch[p]) of_face_[p].extend(positions[v]);
-            of_group_[p / kGroup].extend(of_face_[p]);
             all_.extend(of_face_[p]);
         }
     }
@@ -51,18 +50,12 @@ public:
     template <class Visit>
     void for_near(const Vector3& signal, const float& squared, const Visit& visit) const {
         const auto is_near = [&](const Box& box) { return box.squaredExteriorDistance(signal) < squared; };
-        if (!is_near(all_)) return;
-        for (std::size_t group = 0; group < of_group_.size(); ++group) {
-            if (!is_near(of_group_[group])) continue;
-            const std::size_t end = std::min((group + 1) * kGroup, of_face_.size());
-            for (std::size_t p = group * kGroup; p < end; ++p)
-                if (is_near(of_face_[p])) visit(p);
-        }
+        for (std::size_t p = 0; is_near(all_) && p < of_face_.size(); ++p)
+            if (is_near(of_face_[p])) visit(p);
     }
 
 private:
-    static constexpr std::size_t kGroup = 8;
-    std::vector<Box> of_face_, of_group_;
+    std::vector<Box> of_face_;
     Box all_;
 };
 

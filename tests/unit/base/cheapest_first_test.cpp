@@ -61,11 +61,5 @@ TEST(CheapestFirst, TakesWhatAPlainSetTakes) {
     EXPECT_EQ(entry.id, 1);
 }
 
-TEST(CheapestFirst, AnEmptyOneHasNothing) {
-    CheapestFirst<Entry> queue;
-    Entry entry;
-    EXPECT_FALSE(queue.pop(entry, [](const Entry&) { return true; }));
-}
-
 }  // namespace
 }  // namespace neuralmesh

@@ -63,11 +63,5 @@ TEST(ParallelCollect, KeepsTheOrderOfTheIndices) {
     }
 }
 
-TEST(Median, IsTheUpperOfTwoMiddleValues) {
-    EXPECT_EQ(median(std::vector<int>{7}), 7);
-    EXPECT_EQ(median(std::vector<int>{9, 1, 5}), 5);
-    EXPECT_EQ(median(std::vector<double>{4, 1, 3, 2}), 3);
-}
-
 }  // namespace
 }  // namespace neuralmesh

@@ -17,13 +17,6 @@ TEST(Random, GivesTheSameNumbersOnEveryPlatform) {
         EXPECT_EQ(random.bits(), expected);
 }
 
-TEST(Random, EveryPurposeHasItsOwnSequence) {
-    const Stream purposes[] = {Stream::learning, Stream::rms_error, Stream::shell, Stream::fit};
-    for (const Stream a : purposes)
-        for (const Stream b : purposes)
-            EXPECT_EQ(Random(stream_seed(7, a)).bits() == Random(stream_seed(7, b)).bits(), a == b);
-}
-
 TEST(Random, BelowIsUniform) {
     constexpr std::uint32_t kValues = 7;
     constexpr int kDraws = 70000;

@@ -74,25 +74,5 @@ TEST(ThreadTeam, NoTwoMembersTakeOneChunk) {
     }
 }
 
-TEST(ThreadTeam, RunsABackgroundTaskOnce) {
-    for (const int members : {1, 2, 5}) {
-        ThreadTeam team(members);
-        int done = 0;
-        for (int round = 0; round < 3000; ++round) {
-            const auto body = [&] { ++done; };
-            { const ThreadTeam::BackgroundTask task = team.run_in_background(body); }
-            ASSERT_EQ(done, round + 1);
-        }
-    }
-}
-
-TEST(ThreadTeam, ABackgroundTaskRunsInAHelper) {
-    ThreadTeam team(2);
-    std::atomic<bool> helped{false};
-    const auto body = [&] { helped = true; };
-    const ThreadTeam::BackgroundTask task = team.run_in_background(body);
-    while (!helped) std::this_thread::yield();
-}
-
 }  // namespace
 }  // namespace neuralmesh

@@ -132,24 +132,6 @@ TEST(EightSteps, AreBasicSteps) {
     }
 }
 
-TEST(EightSteps, LanesAreIndependent) {
-    const Network network = referee::network_of(cases()[1].shape);
-    const auto winners = winners_like(network, 5, EightSteps::kLanes);
-    std::vector<vcg::Point3f> signals;
-    Random random(8);
-    for (const VertexId w : winners)
-        signals.push_back(network.position(w) + vcg::Point3f::Construct(shapes::in_ball(random) * 0.05));
-    EightSteps eight;
-    Steps together;
-    Steps alone;
-    take(network, winners, signals, {0.06F, 0.05F, 5}, eight, together);
-    for (std::size_t lane = 0; lane < winners.size(); ++lane) {
-        take(network, {winners[lane]}, {signals[lane]}, {0.06F, 0.05F, 5}, eight, alone);
-        for (int i = 0; i <= network.ring(winners[lane]).valence; ++i)
-            for (int k = 0; k < 4; ++k) EXPECT_EQ(together.moved[lane][i][k], alone.moved[0][i][k]);
-    }
-}
-
 TEST(EightSteps, SmoothStarsOfThree) {
     shapes::Shape shape = shapes::tetrahedron();
     for (vcg::Point3d& p : shape.positions) p *= 0.1;
@@ -175,16 +157,6 @@ TEST(EightSteps, MoveBoundaryVerticesOnlyBesideAWinnerOnTheBoundary) {
             const bool beside = network.ring(w).open != 0 && (i == 0 || i + 1 == eight.valence());
             EXPECT_EQ(point_of(steps.moved[0][1 + i]).Norm() > 0, beside);
         }
-    }
-}
-
-TEST(EightSteps, StayInAPlane) {
-    const Network network = referee::network_of(shapes::grid(8, 8));
-    EightSteps eight;
-    Steps steps;
-    for (VertexId w = 0; w < network.slot_count(); ++w) {
-        take(network, {w}, {{0.03F, -0.1F, 0}}, {0.3F, 0.3F, 20}, eight, steps);
-        for (int i = 0; i <= eight.valence(); ++i) EXPECT_EQ(steps.moved[0][i][2], 0);
     }
 }
 

@@ -179,21 +179,6 @@ TEST(WinnerSearch, IsExactWhereAllVerticesCrowdTogetherButOne) {
     }
 }
 
-TEST(WinnerSearch, IsExactOnTheFinestGridAndAcrossCellBorders) {
-    // Edges shorter than the finest cell, all over the frame: there the rounding of cell borders is largest
-    // relative to a cell.
-    Random random(7);
-    Network network = in_frame(shapes::icosphere(4), 1e-7);
-    const auto shift = [&] { return static_cast<float>(random.below(5)) * 0.2F - 0.4F; };
-    WinnerSearch search(network);
-    for (int i = 0; i < 30000; ++i) {
-        const vcg::Point3f place(shift(), shift(), shift());
-        search.move(random_vertex(network, random), place + random_point(random, 2e-5F));
-        const vcg::Point3f s = place + random_point(random, 2e-5F);
-        ASSERT_EQ(search.winner(s), nearest_by_linear_search(network, s)) << "at step " << i;
-    }
-}
-
 // A vertex just within half a cell of the signal may lie outside the eight cells searched first, as their
 // borders are rounded. Then one on the other side, hardly further away, must not win.
 TEST(WinnerSearch, IsExactBesideRoundedCellBorders) {
@@ -223,29 +208,6 @@ TEST(WinnerSearch, IsExactForVerticesAndSignalsOutsideTheFrame) {
         search.move(random_vertex(network, random), random_point(random, i % 2 == 0 ? 20.0F : 0.5F));
         const vcg::Point3f s = random_point(random, i % 3 == 0 ? 30.0F : 6.0F);
         ASSERT_EQ(search.winner(s), nearest_by_linear_search(network, s)) << "at step " << i;
-    }
-}
-
-TEST(WinnerSearch, IsExactAfterMovesThroughManyCells) {
-    Random random(9);
-    Network network = in_frame(shapes::tetrahedron(), 0.001);
-    WinnerSearch search(network);
-    for (int i = 0; i < 100000; ++i)
-        search.move(static_cast<VertexId>(random.below(4)), random_point(random, 0.5F));
-    expect_exact(network, search, random, 500);
-}
-
-TEST(WinnerSearch, IsLinearSearchFarFromTheMesh) {
-    Random random(9);
-    for (const double scale : {0.3, 0.01}) {
-        Network network = in_frame(shapes::icosphere(4), scale);
-        WinnerSearch search(network);
-        for (int step = 0; step < 2000; ++step) {
-            const VertexId v = random_vertex(network, random);
-            search.move(v, network.position(v) + random_point(random, 0.01F));
-            const vcg::Point3f far = random_point(random, step % 2 == 0 ? 0.5F : 3.0F);
-            ASSERT_EQ(search.winner(far), nearest_by_linear_search(network, far)) << "at step " << step;
-        }
     }
 }
 

@@ -119,7 +119,6 @@ TEST(Learner, IsTheReferenceInBatchesOnOneThreadAndOnThree) {
     }
 }
 
-/// With signals drawn by one thread while the other learns the counters.
 TEST(Learner, SettlesAlikeOnOneThreadAndOnTwo) {
     const TargetSpace target = target_of(shapes::torus_cloud(5000));
     NoProgress progress;

@@ -62,26 +62,6 @@ TEST(BoundaryLoops, AreFilledToClosedManifolds) {
     }
 }
 
-TEST(BoundaryLoops, AreFilledAroundANewVertexWhereNoEarCanBeCut) {
-    // The loop around a single triangle, and that of a tube whose vertices may get one neighbour more each.
-    IndexedMesh<float> triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
-    auto loops = boundary_loops(3, triangle.faces);
-    ASSERT_EQ(loops.size(), 1U);
-    EXPECT_TRUE(HoleFiller(triangle, loops, 12).fill(loops[0]));
-    ASSERT_EQ(triangle.positions.size(), 4U);
-    EXPECT_EQ(Network(triangle.positions, triangle.faces).validate(), "");
-    EXPECT_EQ(Network(triangle.positions, triangle.faces).boundary_loop_count(), 0);
-
-    const Network tube = network_of(shapes::tube(5, 3));
-    IndexedMesh<float> mesh = mesh_of(tube);
-    loops = boundary_loops(tube.slot_count(), mesh.faces);
-    HoleFiller filler(mesh, loops, 5);
-    for (const auto& loop : loops) EXPECT_TRUE(filler.fill(loop));
-    EXPECT_EQ(Network(mesh.positions, mesh.faces).validate(), "");
-    EXPECT_EQ(Network(mesh.positions, mesh.faces).boundary_loop_count(), 0);
-    EXPECT_EQ(mesh.positions.size(), tube.faces().size() / 2 + 5 + 2);
-}
-
 TEST(BoundaryLoops, AreFilledIfNarrowAcross) {
     // One end of a tube squeezed to a crack, about 2 long.
     const Network tube = network_of(shapes::tube(40, 3));

@@ -45,33 +45,6 @@ TEST(Network, HasTheCountsOfItsFaces) {
     }
 }
 
-TEST(Network, RingsRunCounterClockwise) {
-    const Network network = network_of(shapes::icosphere(2));
-    for (const VertexId v : network.vertices()) {
-        const Ring& ring = network.ring(v);
-        const vcg::Point3f p = network.position(v);
-        for (int i = 0; i < ring.valence; ++i) {
-            const vcg::Point3f n = (network.position(ring[i]) - p) ^ (network.position(ring.next(i)) - p);
-            EXPECT_GT(n * p, 0);
-            EXPECT_EQ(ring.previous(ring.find(ring.next(i))), ring[i]);
-        }
-    }
-}
-
-TEST(Network, OpenRingsRunFromBoundaryToBoundary) {
-    const Network network = network_of(shapes::grid(4, 4));
-    for (const VertexId v : network.vertices()) {
-        const Ring& ring = network.ring(v);
-        const vcg::Point3f p = network.position(v);
-        const bool at_rim = std::max(std::abs(p[0]), std::abs(p[1])) > 0.49F;
-        ASSERT_EQ(ring.open != 0, at_rim);
-        if (!at_rim) continue;
-        EXPECT_EQ(ring.face_count(), ring.valence - 1);
-        EXPECT_EQ(network.ring(ring[0]).open, 1);
-        EXPECT_EQ(network.ring(ring[ring.valence - 1]).open, 1);
-    }
-}
-
 /// Ids in random order.
 std::vector<VertexId> shuffled_ids(int count, Random& random) {
     std::vector<VertexId> ids(static_cast<std::size_t>(count));
@@ -106,56 +79,6 @@ TEST(Network, RenumberKeepsTheMesh) {
         for (int i = 0; i < before.ring(v).valence; ++i)
             EXPECT_EQ(network.ring(now)[i], moved[before.ring(v)[i]]);
     }
-}
-
-TEST(Network, NewVerticesTakeTheFreeIdsNearTheirParents) {
-    Network network = network_of(shapes::torus_grid(30, 20));
-    std::vector<VertexId> order;
-    for (const VertexId v : network.vertices()) {
-        order.push_back(v);
-        if (order.size() % 5 == 4) order.push_back(-1);
-    }
-    const auto faces = network.face_count();
-    network.renumber(order);
-    EXPECT_EQ(network.validate(), "");
-    EXPECT_EQ(network.vertex_count(), 600);
-    EXPECT_EQ(network.face_count(), faces);
-    EXPECT_EQ(network.slot_count(), 750);
-    EXPECT_FALSE(network.alive(4));
-    for (const VertexId v : {2, 333, 747})
-        EXPECT_EQ(network.split(v, 0, 4, network.position(v)), v / 5 * 5 + 4);
-    EXPECT_EQ(network.slot_count(), 750);
-    EXPECT_EQ(network.validate(), "");
-}
-
-TEST(Network, CompactRenumbersAndChangesNothingElse) {
-    Network network = network_of(shapes::torus_grid(8, 6));
-    Random random(5);
-    for (int step = 0; step < 2000; ++step) random_operation(network, random, 10, 60);
-    for (int step = 0; step < 500; ++step) random_operation(network, random, 1, 1);
-    ASSERT_LT(network.vertex_count(), network.slot_count());
-    const Network before = network;
-    const PerVertex<VertexId> moved = network.compact();
-
-    ASSERT_EQ(moved.size(), before.slot_count());
-    EXPECT_EQ(network.slot_count(), before.vertex_count());
-    expect_sound(network, census(before.faces()));
-    VertexId next = 0;
-    for (VertexId v = 0; v < before.slot_count(); ++v) {
-        const VertexId now = moved[v];
-        ASSERT_EQ(now, before.alive(v) ? next : -1);
-        if (now < 0) continue;
-        ++next;
-        EXPECT_EQ(network.position(now), before.position(v));
-    }
-    std::vector<Triangle> expected = before.faces();
-    for (Triangle& f : expected)
-        for (VertexId& v : f) v = moved[v];
-    EXPECT_EQ(network.faces(), expected);
-    VertexId parent = 0;
-    while (!network.can_split(parent, 0, 2)) ++parent;
-    EXPECT_EQ(network.split(parent, 0, 2, {0, 0, 0}), before.vertex_count());
-    EXPECT_EQ(network.validate(), "");
 }
 
 void expect_refused(const Shape& shape, const char* why) {
@@ -215,12 +138,6 @@ TEST(Network, RefusesTwoFansThatMeetInOneVertex) {
         s.positions.erase(s.positions.begin() + twin);
         expect_refused(s, "a pinched vertex");
     }
-}
-
-TEST(Network, ValidateNamesAPositionThatIsNotFinite) {
-    Network network = network_of(shapes::cube());
-    network.set_position(5, {0, std::numeric_limits<float>::quiet_NaN(), 0});
-    EXPECT_NE(network.validate().find("vertex 5"), std::string::npos);
 }
 
 }  // namespace

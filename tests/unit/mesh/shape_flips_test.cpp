@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/mesh/shape_flips.h"
+#include "vcg_core/mesh/flips.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <array>
 #include <vector>
 
-#include "vcg_core/engine/step_rates.h"
+#include "vcg_core/engine/eight_steps.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh::reference {

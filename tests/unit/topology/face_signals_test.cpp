@@ -99,19 +99,5 @@ TEST(FaceSignals, AMembraneLacksSupportHoweverWideItIs) {
     EXPECT_GT(lacking, 500);
 }
 
-TEST(FaceSignals, DoNotDependOnTheThreads) {
-    const TargetSpace target = target_of(shapes::torus_cloud(20000, 0.02));
-    const Network network = network_in_frame(target, shapes::torus_grid(20, 10));
-    const Surface surface(network);
-    Random random(1);
-    const std::vector<Vector3> signals = fair_sample(target, 5000, random);
-    EXPECT_EQ(signals.size(), 5000U);
-    ThreadTeam one(1), three(3);
-    const FaceSignals a = face_signals(network, surface, signals, one);
-    const FaceSignals b = face_signals(network, surface, signals, three);
-    EXPECT_EQ(a.wins, b.wins);
-    EXPECT_EQ(a.expected, b.expected);
-}
-
 }  // namespace
 }  // namespace neuralmesh

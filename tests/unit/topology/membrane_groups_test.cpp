@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Membranes by hand on a ball: which go together, and that they are taken apart.
-#include "vcg_core/topology/membrane_groups.h"
+#include "vcg_core/topology/membranes.h"
 
 #include <gtest/gtest.h>
 

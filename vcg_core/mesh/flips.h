@@ -2,7 +2,8 @@
 // Copyright the Neural Mesh authors
 
 // Edge flips that bring valences closer to 6, on a boundary to 4, the valences of a regular triangulation
-// (Frey and Borouchaki, "Geometric surface mesh optimization", 1998).
+// (Frey and Borouchaki, "Geometric surface mesh optimization", 1998), or give better shaped faces where the
+// surface is flat.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -58,5 +59,11 @@ int flip_edges_for_valence(Network& network, VertexId v, const FlipRule& rule);
 
 /// The same for all edges of \p network, once each, in the order of their smaller vertices. O(vertices).
 int flip_edges_for_valence(Network& network, const FlipRule& rule);
+
+/// Flips inner edges until no flip that changes the surface by at most \p most, and a hundredth of the new
+/// edge, raises the smaller triangle_quality() of its two faces. That change is the distance between the
+/// edges before and after the flip. Positions stay. O(vertices) for a pass; few passes do. \return the number
+/// of flips
+int flip_edges_for_shape(Network& network, float most);
 
 }  // namespace neuralmesh
