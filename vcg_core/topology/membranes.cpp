@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "vcg_core/base/connected_groups.h"
@@ -15,29 +16,115 @@ namespace {
 
 /// Area of the smallest membrane, in squared mean edges.
 constexpr float kLeastArea = 0.2F;
+/// A membrane of more faces is a part of the surface where the density is misjudged.
+constexpr std::size_t kMostFaces = 2000;
+/// Most times that faces are added to make the rims clean.
+constexpr int kMostRepairs = 8;
 
-/// Chains the edges between the membrane and the other faces, with those on the left. \return false if some
-/// of these faces, or some of the membrane, hang on the others by a corner only
-bool find_rims(const Surface& surface, Membrane& membrane) {
-    const std::vector<int>& faces = membrane.faces;
+class Members {
+public:
+    Members(const Surface& surface, const std::vector<int>& faces)
+        : surface_(surface), in_(faces.begin(), faces.end()) {}
+    bool has(int face) const { return in_.count(face) != 0; }
+    void add(int face) { in_.insert(face); }
+    std::vector<int> faces() const { return {in_.begin(), in_.end()}; }
+
+    /// The other faces around \p v, in fans of faces that share edges.
+    std::vector<std::vector<int>> other_fans(VertexId v) const;
+    /// The other faces that are connected with \p start, if these are at most \p most; else none, and some of
+    /// them are added to \p mainland. None either if one of them is there already.
+    std::vector<int> island(int start, std::size_t most, std::set<int>& mainland) const;
+
+private:
+    const Surface& surface_;
+    std::set<int> in_;
+};
+
+std::vector<std::vector<int>> Members::other_fans(VertexId v) const {
+    std::vector<int> rest;
+    for (const int f : surface_.faces_around(v))
+        if (!has(f)) rest.push_back(f);
+    return connected_groups(std::move(rest), [&](int f, int g) {
+        return face_beyond(surface_, f, 0) == g || face_beyond(surface_, f, 1) == g ||
+               face_beyond(surface_, f, 2) == g;
+    });
+}
+
+std::vector<int> Members::island(int start, std::size_t most, std::set<int>& mainland) const {
+    std::vector<int> found{start};
+    std::set<int> seen{start};
+    bool large = mainland.count(start) != 0;
+    for (std::size_t i = 0; i < found.size() && !large; ++i)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int next = face_beyond(surface_, found[i], k);
+            if (next < 0 || has(next) || !seen.insert(next).second) continue;
+            found.push_back(next);
+            large = large || found.size() > most || mainland.count(next) != 0;
+        }
+    if (!large) return found;
+    mainland.insert(found.begin(), found.end());
+    return {};
+}
+
+/// Adds fans that hang on the membrane by a corner: all but that with the most signals.
+bool add_pinched(const Surface& surface, const FaceSignals& signals, Members& members) {
+    std::set<VertexId> corners;
+    for (const int f : members.faces()) corners.insert(surface.faces[f].begin(), surface.faces[f].end());
+    bool added = false;
+    for (const VertexId v : corners) {
+        std::vector<std::vector<int>> fans = members.other_fans(v);
+        if (fans.size() < 2) continue;
+        const auto wins = [&](const std::vector<int>& fan) {
+            int sum = 0;
+            for (const int f : fan) sum += signals.wins[f];
+            return sum;
+        };
+        std::sort(fans.begin(), fans.end(), [&](const auto& a, const auto& b) {
+            return wins(a) != wins(b) ? wins(a) > wins(b) : a < b;
+        });
+        for (std::size_t i = 1; i < fans.size(); ++i)
+            for (const int f : fans[i]) members.add(f);
+        added = true;
+    }
+    return added;
+}
+
+bool add_islands(const Surface& surface, Members& members) {
+    bool added = false;
+    std::set<int> mainland;
+    const std::vector<int> before = members.faces();
+    for (const int f : before)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int next = face_beyond(surface, f, k);
+            if (next < 0 || members.has(next)) continue;
+            for (const int g : members.island(next, before.size(), mainland)) {
+                members.add(g);
+                added = true;
+            }
+        }
+    return added;
+}
+
+/// Chains the edges between the membrane and the other faces, with those on the left.
+std::vector<Rim> rims_of(const Surface& surface, const Members& members) {
     std::map<VertexId, VertexId> next;
-    for (const int f : faces)
+    for (const int f : members.faces())
         for (std::size_t k = 0; k < 3; ++k) {
             const int beyond = face_beyond(surface, f, k);
-            if (beyond < 0 || std::binary_search(faces.begin(), faces.end(), beyond)) continue;
-            if (!next.emplace(surface.faces[f][(k + 1) % 3], surface.faces[f][k]).second) return false;
+            if (beyond >= 0 && !members.has(beyond))
+                next[surface.faces[f][(k + 1) % 3]] = surface.faces[f][k];
         }
-    membrane.rims.clear();
+    std::vector<Rim> rims;
     while (!next.empty()) {
-        Rim& rim = membrane.rims.emplace_back();
-        for (auto step = next.begin(); step != next.end(); step = next.find(rim.back())) {
-            if (rim.empty()) rim.push_back(step->first);
-            rim.push_back(step->second);
+        rims.emplace_back();
+        for (auto step = next.begin(); step != next.end(); step = next.find(rims.back().back())) {
+            if (rims.back().empty()) rims.back().push_back(step->first);
+            rims.back().push_back(step->second);
             next.erase(step);
         }
-        rim.pop_back();  // back at the first
+        rims.back().pop_back();  // back at the first
     }
-    return true;
+    return rims;
 }
 
 void measure(const Surface& surface, const FaceSignals& signals, Membrane& membrane) {
@@ -102,10 +189,11 @@ bool face_each_other(const Surface& surface, const Membrane& a, const Membrane& 
 }
 
 bool complete(const Surface& surface, const FaceSignals& signals, Membrane& membrane) {
-    std::vector<int>& faces = membrane.faces;
-    std::sort(faces.begin(), faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-    if (!find_rims(surface, membrane)) return false;
+    Members members(surface, membrane.faces);
+    for (int repair = 0; add_islands(surface, members) || add_pinched(surface, signals, members);)
+        if (++repair > kMostRepairs || members.faces().size() > kMostFaces) return false;
+    membrane.faces = members.faces();
+    membrane.rims = rims_of(surface, members);
     measure(surface, signals, membrane);
     return true;
 }

@@ -29,8 +29,9 @@ int face_beyond(const Surface& surface, int face, std::size_t edge);
 double least_lack(const Surface& surface);
 
 /// The membranes of a closed surface: faces that lack support and share edges. A membrane is certain if it
-/// lacks least_lack(). Those that lack a quarter of that are found. Those without which the surface would
-/// be no manifold, as faces hang on each other by a corner only, are left out. O(faces log faces)
+/// lacks least_lack(). Those that lack a quarter of that are found. Faces that would hang on it by a
+/// corner only, or as an island inside, are part of it, so that the surface stays a manifold without it;
+/// membranes that become too large by that are left out. O(faces log faces)
 std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& signals);
 
 /// Membranes are near each other if their rims are no further apart than this many mean edges.
@@ -40,8 +41,8 @@ bool near_each_other(const Surface& surface, const Membrane& a, const Membrane& 
 /// Whether they also face away from each other, as the plugs at both ends of a hole do. Cost as above
 bool face_each_other(const Surface& surface, const Membrane& a, const Membrane& b, float edge);
 
-/// Finds the rims of \p membrane.faces and the rest. \return false if the surface would be no manifold
-/// without them
+/// Completes \p membrane.faces as find_membranes() does, and finds the rims. \return false if that does not
+/// end.
 bool complete(const Surface& surface, const FaceSignals& signals, Membrane& membrane);
 
 /// Groups of three and more certain membranes, by their indices, each near to another of its group. If a

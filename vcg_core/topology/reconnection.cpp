@@ -156,6 +156,8 @@ Reconnection Search::best(const std::vector<Membrane>& membranes) const {
 }
 
 bool Search::make(Membrane& membrane, std::vector<int> faces) const {
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     membrane.faces = std::move(faces);
     return complete(surface_, support_, membrane);
 }

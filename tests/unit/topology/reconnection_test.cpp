@@ -322,7 +322,7 @@ TEST(Reconnection, LeavesMeshesWithBoundaryAndSparseCloudsAlone) {
     EXPECT_EQ(learn(network, sparse), 0);
 }
 
-TEST(Membranes, AreThoseThatLeaveAManifold) {
+TEST(Membranes, AreCompletedSoThatTheRestIsAManifold) {
     const TargetSpace target = target_of(two_spheres(5000));
     const Network network = bridged(target);
     const Surface surface(network);
@@ -353,7 +353,7 @@ TEST(Membranes, AreThoseThatLeaveAManifold) {
             for (std::size_t i = 0; i < rim.size(); ++i)
                 EXPECT_EQ(rest.ring(rim[i])[0], rim[(i + 1) % rim.size()]);
     }
-    EXPECT_GT(completed, 0);
+    EXPECT_GT(completed, 100);
 }
 
 TEST(TopologyStages, ArePassedOnceEachAndEndWithTheGoal) {

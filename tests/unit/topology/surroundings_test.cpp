@@ -79,7 +79,7 @@ void expect_the_plain_gain(bool deep) {
         SCOPED_TRACE(centre);
         const std::vector<Vector3> signals = deep ? with_deep_ones(sample, network, centre) : sample;
         const FaceSignals support = face_signals(network, surface, signals, team);
-        Membrane membrane;  // the faces of two rings
+        Membrane membrane;  // the faces of two rings: the patch has more faces than one group of boxes
         for (const VertexId v : network.ring(centre))
             for (const int f : surface.faces_around(v)) membrane.faces.push_back(f);
         ASSERT_TRUE(complete(surface, support, membrane));
