@@ -70,13 +70,13 @@ private:
     Vector values_;
 };
 
-/// \p values permuted: result[i] = values[order[i]]. Keeps the capacity that \p values has reserved for
-/// growth.
+/// \p values permuted: result[i] = values[order[i]], or \p fill where order[i] is -1. Keeps the capacity that
+/// \p values has reserved for growth.
 template <class T>
-Indexed<T> permuted(const Indexed<T>& values, const std::vector<std::int32_t>& order) {
+Indexed<T> permuted(const Indexed<T>& values, const std::vector<std::int32_t>& order, T fill) {
     Indexed<T> result;
     result.reserve(static_cast<int>(std::max(values.vector().capacity(), order.size())));
-    for (const std::int32_t i : order) result.push_back(values[i]);
+    for (const std::int32_t i : order) result.push_back(i < 0 ? fill : values[i]);
     return result;
 }
 

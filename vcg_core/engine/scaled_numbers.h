@@ -56,8 +56,8 @@ public:
     /// New numbers are 0.
     void resize(int size) { keys_.resize(size, kZero); }
     void set_zero(int i) { keys_[i] = kZero; }
-    /// Number i becomes that of \p order[i]. O(n).
-    void renumber(const std::vector<std::int32_t>& order) { keys_ = permuted(keys_, order); }
+    /// Number i becomes that of \p order[i], or 0 where that is -1. O(n).
+    void renumber(const std::vector<std::int32_t>& order) { keys_ = permuted(keys_, order, kZero); }
     void prefetch(int i) const { prefetch_for_write(&keys_[i]); }
 
 private:
@@ -115,9 +115,9 @@ public:
         if (top == tops_.end() || *top == kNone) return -1;
         return highest_of(static_cast<int>(top - tops_.begin()));
     }
-    /// Index i gets the key of \p order[i]. O(n).
+    /// Index i gets the key of \p order[i]; it does not take part where that is -1. O(n).
     void renumber(const std::vector<std::int32_t>& order) {
-        keys_ = permuted(keys_, order);
+        keys_ = permuted(keys_, order, kNone);
         tops_.clear();
         resize(keys_.size());
         for (int block = 0; block < tops_.size(); ++block) tops_[block] = keys_[highest_of(block)];

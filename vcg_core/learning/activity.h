@@ -42,7 +42,9 @@ public:
     void set(VertexId v, std::int64_t signal) { last_active_[v] = signal; }
     bool active_since(VertexId v, std::int64_t signal) const { return last_active_[v] > signal; }
     /// As UtilityCounters::renumber().
-    void renumber(const std::vector<VertexId>& order) { last_active_ = permuted(last_active_, order); }
+    void renumber(const std::vector<VertexId>& order) {
+        last_active_ = permuted(last_active_, order, std::int64_t{0});
+    }
 
 private:
     int active_neighbours(const Network& network, VertexId v, std::int64_t signal) const {

@@ -30,7 +30,7 @@ public:
     void prefetch(VertexId v) const { prefetch_for_write(&values_[v]); }
     float value(VertexId v) const { return values_[v]; }
     /// As UtilityCounters::renumber().
-    void renumber(const std::vector<VertexId>& order) { values_ = permuted(values_, order); }
+    void renumber(const std::vector<VertexId>& order) { values_ = permuted(values_, order, 0.0F); }
     /// A new vertex starts with its parent's counter: it lies in the same place.
     void inherit(VertexId parent, VertexId child) { values_[child] = values_[parent]; }
 

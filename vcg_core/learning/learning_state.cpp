@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "vcg_core/mesh/flips.h"
-#include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
 
@@ -15,7 +14,6 @@ namespace {
 
 /// Flips are allowed if the normals of both faces before and after differ by less than 18 degrees.
 constexpr float kLeastCosineOfFlip = 0.95F;
-constexpr int kLeastOrdered = 2048;  ///< vertices of a network that outgrows a core's first cache
 
 bool is_flat(const FlipNormals& normals) {
     for (vcg::Point3f n : normals.before) {
@@ -84,15 +82,8 @@ void LearningState::regularise(VertexId v) {
     if (!to_the_letter()) flip_edges_for_valence(network, v, {is_flat});
 }
 
-void LearningState::keep_near_in_memory(bool growing) {
-    const int n = network.vertex_count();
-    const bool due =
-        growing ? n >= ordered_vertices_ + ordered_vertices_ / 4 : ordered_changes_ != splits + collapses;
-    if (n < kLeastOrdered || !due) return;
-    ordered_vertices_ = n;
-    ordered_changes_ = splits + collapses;
+void LearningState::renumber(const std::vector<VertexId>& order) {
     boundary_signals.clear();  // their winners get other numbers
-    const std::vector<VertexId> order = morton_order(network);
     network.renumber(order);
     utility_counters.renumber(order);
     feature_counters.renumber(order);

@@ -63,12 +63,8 @@ struct LearningState {
     /// Flips edges of \p v where that brings valences closer to 6 and hardly changes the surface. Does
     /// nothing to the letter of the paper.
     void regularise(VertexId v);
-    /// Renumbers the vertices along a space-filling curve: those that a Basic Step visits then share cache
-    /// lines and pages. If \p growing, only once the network has grown by a quarter, else if there were
-    /// splits or collapses since the last time. Small networks fit into the cache and keep their order.
-    /// Results change only where they depend on the order of ids, as ties and the order of collapses do.
-    /// O(n log n) then, O(1) otherwise.
-    void keep_near_in_memory(bool growing);
+    /// Network::renumber().
+    void renumber(const std::vector<VertexId>& order);
 
     /// True if options switch off all that the paper does not have: maturity, batches, edge flips.
     bool to_the_letter() const { return options.min_wins_per_split == 0; }
@@ -84,10 +80,6 @@ struct LearningState {
     std::int64_t splits = 0;
     std::int64_t collapses = 0;
     std::int64_t splits_refused = 0;  ///< because the points carry no shorter edges
-
-private:
-    int ordered_vertices_ = 0;           ///< when last renumbered
-    std::int64_t ordered_changes_ = -1;  ///< splits and collapses then
 };
 
 }  // namespace neuralmesh

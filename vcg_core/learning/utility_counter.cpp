@@ -34,7 +34,7 @@ void UtilityCounters::remove(VertexId v) {
 
 void UtilityCounters::renumber(const std::vector<VertexId>& order) {
     counters_.renumber(order);
-    wins_ = permuted(wins_, order);
+    wins_ = permuted(wins_, order, std::int32_t{0});
     tournament_.renumber(order);
 }
 

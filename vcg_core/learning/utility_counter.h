@@ -49,7 +49,8 @@ public:
     void remove(VertexId v);
     /// Excludes v from highest() until its next win. O(log n).
     void defer(VertexId v) { tournament_.set(v, Tournament::kNone); }
-    /// Vertex order[i] gets the id i. Vertices missing from \p order are removed. O(n).
+    /// Vertex order[i] gets the id i. Vertices missing from \p order are removed; where order[i] is -1, i is
+    /// a free id. O(n).
     void renumber(const std::vector<VertexId>& order);
     /// Makes one win sufficient for highest(), from now on and for all vertices. O(n).
     void waive_maturity();

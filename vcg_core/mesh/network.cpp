@@ -74,9 +74,11 @@ void Network::set_position(VertexId v, const vcg::Point3f& p) {
     slot.z = p[2];
 }
 
-VertexId Network::new_vertex(const vcg::Point3f& where) {
+VertexId Network::new_vertex(VertexId parent, const vcg::Point3f& where) {
     VertexId v = slot_count();
-    if (!free_.empty()) {
+    if (gaps_.count() > 0) {
+        v = gaps_.take(parent);
+    } else if (!free_.empty()) {
         v = free_.back();
         free_.pop_back();
     } else {
@@ -109,7 +111,7 @@ bool Network::can_split(VertexId v, int first, int count) const {
 VertexId Network::split(VertexId v, int first, int count, const vcg::Point3f& where) {
     if (!alive(v) || !can_split(v, first, count))
         throw TopologyError("This vertex split would break the network; ask can_split() first.");
-    const VertexId u = new_vertex(where);
+    const VertexId u = new_vertex(v, where);
     Ring& rv = ring_of(v);
     Ring& ru = ring_of(u);
     const bool takes_start = rv.open != 0 && first == 0;
@@ -176,7 +178,12 @@ bool Network::can_collapse(VertexId gone, VertexId kept) const {
 void Network::collapse(VertexId gone, VertexId kept) {
     if (!can_collapse(gone, kept))
         throw TopologyError("This half-edge collapse would break the network; ask can_collapse() first.");
-    free_.push_back(gone);  // first, as it may throw std::bad_alloc
+    // First, as it may throw std::bad_alloc.
+    if (gaps_.count() > 0) {
+        gaps_.add(gone);
+    } else {
+        free_.push_back(gone);
+    }
     Ring rg = ring(gone);
     const bool on_boundary = rg.open != 0;
     const int i = rg.find(kept);
@@ -264,22 +271,31 @@ PerVertex<VertexId> Network::compact() {
 
 PerVertex<VertexId> Network::renumber(const std::vector<VertexId>& order) {
     PerVertex<VertexId> moved(slot_count(), -1);
+    FreeIds gaps;
     VertexId id = 0;
-    for (const VertexId old : order) moved[old] = id++;
+    for (const VertexId old : order) {
+        if (old >= 0) {
+            moved[old] = id;
+        } else {
+            gaps.add(id);
+        }
+        ++id;
+    }
     std::vector<Ring> rings;
     std::vector<VertexRecord> slots_in_order;
     rings.reserve(std::max(rings_.capacity(), order.size()));
     slots_in_order.reserve(std::max(slots_.capacity(), order.size() + 1));
     slots_in_order.push_back(kSentinel);
     for (const VertexId old : order) {
-        rings.push_back(ring(old));
-        slots_in_order.push_back(slots()[old]);
+        rings.push_back(old < 0 ? Ring{} : ring(old));
+        slots_in_order.push_back(old < 0 ? kFreeSlot : slots()[old]);
         for (VertexId& v : rings.back()) v = moved[v];
         rings.back().pad_cyclically();
     }
     rings_.swap(rings);
     slots_.swap(slots_in_order);
     free_.clear();
+    gaps_ = std::move(gaps);
     return moved;
 }
 

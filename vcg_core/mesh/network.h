@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "vcg_core/base/error.h"
+#include "vcg_core/mesh/free_ids.h"
 #include "vcg_core/mesh/ring.h"
 
 namespace neuralmesh {
@@ -112,8 +113,8 @@ public:
     /// Renumbers the vertices to 0 .. vertex_count() - 1 and keeps their order. Invalidates all ids, for
     /// example those in a WinnerSearch. \return per old slot the new id, or -1. O(vertices).
     PerVertex<VertexId> compact();
-    /// Renumbers the vertices: order[i] is the old id of vertex i. Every used id occurs once. \return as
-    /// compact(). O(vertices).
+    /// Renumbers the vertices: order[i] is the old id of vertex i, or -1 to make id i free. Every used id
+    /// occurs once. Later splits take a free id near the id of the parent. \return as compact(). O(vertices).
     PerVertex<VertexId> renumber(const std::vector<VertexId>& order);
 
     /// O(vertices), as all functions from here on.
@@ -140,7 +141,7 @@ public:
 
 private:
     Ring& ring_of(VertexId v) { return rings_[static_cast<std::size_t>(v)]; }
-    VertexId new_vertex(const vcg::Point3f& where);
+    VertexId new_vertex(VertexId parent, const vcg::Point3f& where);
     void enter_fan(VertexId v, VertexId u, VertexId shared_begin, VertexId shared_end);
     std::string validate_edge(VertexId v, int i) const;
     /// Rings after an exchange of faces; those of vertices without faces have valence 0.
@@ -153,7 +154,8 @@ private:
 
     std::vector<Ring> rings_;
     std::vector<VertexRecord> slots_{kSentinel};  ///< slot v is element v + 1
-    std::vector<VertexId> free_;                  ///< removed ids
+    std::vector<VertexId> free_;                 ///< removed ids while gaps_ is empty
+    FreeIds gaps_;                               ///< free ids of a network that renumber() left with gaps
     int vertex_count_ = 0;
     std::optional<vcg::Point3f> viewer_;
 };
@@ -192,5 +194,10 @@ inline Network::Vertices Network::vertices() const { return Vertices(*this); }
 /// The used ids of \p network along the Z-order curve of their positions (Morton 1966): near vertices mostly
 /// get near places. Positions beyond [-1, 1]^3 count as if on its border. O(n log n).
 std::vector<VertexId> morton_order(const Network& network);
+
+/// \p ids, with \p count times -1 (a free id) spread evenly between them: new vertices then find a free id
+/// near that of the vertex they are split from. O(ids + count).
+/// \pre 0 <= count <= ids.size()
+std::vector<VertexId> interleave_free(const std::vector<VertexId>& ids, int count);
 
 }  // namespace neuralmesh

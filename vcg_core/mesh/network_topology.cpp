@@ -204,10 +204,13 @@ void Network::exchange_faces(const std::vector<Triangle>& gone, const std::vecto
             "This exchange of faces would break the network; ask can_exchange_faces() first.");
     free_.reserve(free_.size() + changed.size());
     for (const auto& [v, after] : changed) {
-        ring_of(v) = after;
-        if (after.valence != 0) continue;
-        free_.push_back(v);
-        --vertex_count_;
+        if (after.valence == 0 && gaps_.count() > 0) {
+            gaps_.add(v);
+        } else if (after.valence == 0) {
+            free_.push_back(v);
+        }
+        vertex_count_ -= after.valence == 0 ? 1 : 0;
+        ring_of(v) = after.valence == 0 ? Ring{} : after;
     }
 }
 
@@ -310,7 +313,7 @@ std::string Network::validate() const {
     if (count != vertex_count_)
         return "The network is broken: it counts " + std::to_string(vertex_count_) + " vertices but holds " +
                std::to_string(count) + ".";
-    if (count + static_cast<int>(free_.size()) != slot_count())
+    if (count + static_cast<int>(free_.size()) + gaps_.count() != slot_count())
         return "The network is broken: free and used slots do not add up.";
     return {};
 }
@@ -345,6 +348,19 @@ std::vector<VertexId> morton_order(const Network& network) {
     order.reserve(codes.size());
     for (const auto& [code, v] : codes) order.push_back(v);
     return order;
+}
+
+std::vector<VertexId> interleave_free(const std::vector<VertexId>& ids, int count) {
+    std::vector<VertexId> result;
+    result.reserve(ids.size() + static_cast<std::size_t>(count));
+    const auto size = static_cast<std::int64_t>(ids.size());
+    std::int64_t i = 0;
+    for (const VertexId v : ids) {
+        result.push_back(v);
+        if ((i + 1) * count / size > i * count / size) result.push_back(-1);
+        ++i;
+    }
+    return result;
 }
 
 }  // namespace neuralmesh

@@ -217,13 +217,14 @@ TEST(UtilityCounters, RenumberedAreTheSameUnderNewIds) {
     for (VertexId v = 0; v < kSlots; ++v)
         if (v % 5 != 2) order.push_back((v * 3) % kSlots);  // 700 and 3 share no factor
     std::sort(order.begin(), order.end(), [](VertexId a, VertexId b) { return a * 37 % 701 < b * 37 % 701; });
+    for (const int i : {0, 100, 101, 400}) order.insert(order.begin() + i, -1);
     UtilityCounters renumbered = counters;
     renumbered.renumber(order);
     VertexId best = -1;
     for (std::size_t i = 0; i < order.size(); ++i) {
         const auto v = static_cast<VertexId>(i);
-        EXPECT_EQ(renumbered.value(v), counters.value(order[i]));
-        EXPECT_EQ(renumbered.wins(v), counters.wins(order[i]));
+        EXPECT_EQ(renumbered.value(v), order[i] < 0 ? 0 : counters.value(order[i]));
+        EXPECT_EQ(renumbered.wins(v), order[i] < 0 ? 0 : counters.wins(order[i]));
         if (renumbered.wins(v) >= 3 && (best < 0 || renumbered.value(v) > renumbered.value(best))) best = v;
     }
     EXPECT_EQ(renumbered.highest(), best);

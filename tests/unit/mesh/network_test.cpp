@@ -81,6 +81,26 @@ TEST(Network, RenumberKeepsTheMesh) {
     }
 }
 
+TEST(Network, NewVerticesTakeTheFreeIdsNearTheirParents) {
+    Network network = network_of(shapes::torus_grid(30, 20));
+    std::vector<VertexId> order;
+    for (const VertexId v : network.vertices()) {
+        order.push_back(v);
+        if (order.size() % 5 == 4) order.push_back(-1);
+    }
+    const auto faces = network.face_count();
+    network.renumber(order);
+    EXPECT_EQ(network.validate(), "");
+    EXPECT_EQ(network.vertex_count(), 600);
+    EXPECT_EQ(network.face_count(), faces);
+    EXPECT_EQ(network.slot_count(), 750);
+    EXPECT_FALSE(network.alive(4));
+    for (const VertexId v : {2, 333, 747})
+        EXPECT_EQ(network.split(v, 0, 4, network.position(v)), v / 5 * 5 + 4);
+    EXPECT_EQ(network.slot_count(), 750);
+    EXPECT_EQ(network.validate(), "");
+}
+
 void expect_refused(const Shape& shape, const char* why) {
     EXPECT_THROW(network_of(shape), TopologyError) << why;
 }

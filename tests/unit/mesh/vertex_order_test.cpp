@@ -47,5 +47,29 @@ TEST(VertexOrder, MortonOrderSortsByInterleavedCoordinates) {
     EXPECT_EQ(morton_order(network), expected);
 }
 
+TEST(VertexOrder, InterleaveFreeSpreadsFreeIdsEvenly) {
+    for (const int size : {0, 1, 7, 100})
+        for (int count = 0; count <= size; ++count) {
+            SCOPED_TRACE(testing::Message() << count << " between " << size);
+            std::vector<VertexId> ids(static_cast<std::size_t>(size));
+            for (int i = 0; i < size; ++i) ids[static_cast<std::size_t>(i)] = size - i;
+            const std::vector<VertexId> order = interleave_free(ids, count);
+            int used = 0;
+            int free = 0;
+            for (const VertexId v : order) {
+                if (v >= 0) {
+                    ASSERT_EQ(v, size - used++);
+                } else {
+                    ++free;
+                }
+                // After k of n ids there are count x k / n free ones, but for rounding.
+                ASSERT_LE(free * size, count * used);
+                ASSERT_GE((free + 1) * size, count * (used - 1));
+            }
+            EXPECT_EQ(used, size);
+            EXPECT_EQ(free, count);
+        }
+}
+
 }  // namespace
 }  // namespace neuralmesh
