@@ -31,14 +31,12 @@ os.environ["OMP_NUM_THREADS"] = "1"  # before any OpenMP is loaded
 
 import numpy as np  # noqa: E402
 
-for folder in ("accuracy", "pictures"):
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "experiments" / folder))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "experiments" / "accuracy"))
 import compare_accuracy  # noqa: E402
 import models  # noqa: E402
 import peers  # noqa: E402
 import scan_table  # noqa: E402
 from compare_accuracy import geometric_mean, numbers, table, topology_right  # noqa: E402
-from small_png import make_small  # noqa: E402
 
 import pymeshlab  # noqa: E402
 
@@ -288,7 +286,6 @@ def plot(rows, clock, path):
                   title="the lower left is better: a smaller error in less time")
     figure.tight_layout(rect=(0, .2, 1, 1))
     figure.savefig(path, dpi=100)
-    make_small(path)
 
 
 def main(arguments=None):

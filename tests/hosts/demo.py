@@ -13,7 +13,7 @@ import meshlabserver
 
 BUNNY = Path("/usr/share/glmark2/models/bunny.obj")
 BUNNY_POINTS = Path("out/cloud/bunny_points.ply")
-PICTURE = Path(__file__).resolve().parents[1] / "experiments" / "pictures" / "meshlab_picture.py"
+PICTURE = Path(__file__).resolve().parents[1] / "experiments" / "pictures" / "paint.py"
 
 
 def parsed():
@@ -58,7 +58,7 @@ def error_of(build, arguments, report):
 
 
 def draw(mesh):
-    """Makes a picture of the mesh with MeshLab, in the same folder."""
+    """Makes a picture of the mesh, in the same folder."""
     picture = mesh.with_suffix(".png")
     subprocess.run([sys.executable, str(PICTURE), str(mesh), str(picture)], check=True)
     return picture

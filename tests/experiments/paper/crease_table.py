@@ -4,7 +4,7 @@
 
 """The geometry of creases: how far the true creases are from the mesh, and whether its sharp edges follow them.
 
-    crease_table.py --learn build/tests/learn [--data FOLDER] [--out FOLDER]
+    crease_table.py --plugin LIBRARY.so [--data FOLDER]
 
 True creases are the edges of the true mesh with more than 30 degrees between their faces, as in features.py. Lengths
 are in mean edges of the result.
@@ -12,18 +12,13 @@ are in mean edges of the result.
 - recall: the share of the length of the true creases with a sharp edge (more than 30 degrees) within half a mean edge
 - precision: the share of the length of the sharp edges within half a mean edge of a true crease
 The same of the crease lines that the filter makes: recall, precision and their distance from the creases, both ways
-(means). Prints a table and writes OUT/crease.md and OUT/crease.json.
-"""
-
-import sys
+(means). """
 
 import numpy as np
 import pymeshlab
 from scipy.spatial import cKDTree
 
 import features
-import import_paths  # noqa: F401
-import paper_runs
 from compare_accuracy import table
 
 NEAR = 0.5  # of a mean edge
@@ -78,23 +73,14 @@ def true_creases(vertices, faces, step):
     return along(sharp_edges(v, f[np.linalg.norm(n, axis=1) > 1e-14]), step)
 
 
-def lines_of(case):
-    """The ends of the crease lines of the mesh, as sharp_edges()."""
-    out = case.folder / "lined.ply"
-    paper_runs.learn(case.options.learn, case.cloud, out, target_vertices=case.options.vertices, crease_lines=1)
-    meshes = pymeshlab.MeshSet(verbose=False)
-    meshes.load_new_mesh(f"{out}.creases.ply")
-    lines = meshes.current_mesh()
-    return lines.vertex_matrix()[lines.edge_matrix()]
-
-
-def row_of(case):
-    mesh = case.learned()
+def row_of(name, noise, surface, cloud, vertices):
+    mesh = features.learned_mesh(cloud, vertices)
     edge = float(np.linalg.norm(mesh.positions[mesh.ends[:, 0]] - mesh.positions[mesh.ends[:, 1]], axis=1).mean())
-    truth = true_creases(*case.surface, edge / STEPS)
+    truth = true_creases(*surface, edge / STEPS)
     bevel = distances(truth[0], (mesh.positions, mesh.faces))
-    found = {"edges": sharp_edges(mesh.positions, mesh.faces), "lines": lines_of(case)}
-    return {"model": case.name, "noise": case.noise, "bevel": float(np.average(bevel, weights=truth[1]) / edge),
+    lines = list(features.learned(cloud, vertices, crease_lines=True))[-1]
+    found = {"edges": sharp_edges(mesh.positions, mesh.faces), "lines": lines.vertex_matrix()[lines.edge_matrix()]}
+    return {"model": name, "noise": noise, "bevel": float(np.average(bevel, weights=truth[1]) / edge),
             **{kind: shares(truth, along(ends, edge / STEPS), edge) for kind, ends in found.items()}}
 
 
@@ -104,16 +90,7 @@ def line_of(row):
               for key in ("recall", "precision", "missed", "strayed"))]
 
 
-def main(arguments=None):
-    options = features.parse(arguments, __doc__, noise=(0, 0.1))
-    try:
-        rows = features.kept_rows(row_of, options, "crease.jsonl")
-    except paper_runs.RunError as error:
-        sys.exit(str(error))
-    features.write(options, "crease", table(["model", "noise %", "bevel", "sharp edges: recall", "precision", "missed by",
-                                             "strayed by", "crease lines: recall", "precision", "missed by",
-                                             "strayed by"], map(line_of, rows)), rows)
-
-
 if __name__ == "__main__":
-    main()
+    print(table(["model", "noise %", "bevel", "sharp edges: recall", "precision", "missed by", "strayed by",
+                 "crease lines: recall", "precision", "missed by", "strayed by"],
+                map(line_of, features.rows_of(row_of, features.parse(None, __doc__, noise=(0, 0.1))))))

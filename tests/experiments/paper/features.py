@@ -4,37 +4,35 @@
 
 """What selects features best: the two learned measures at the default threshold, and measures of the final mesh.
 
-    features.py --learn build/tests/learn [--data FOLDER] [--out FOLDER]
+    features.py --plugin LIBRARY.so [--data FOLDER]
 
 True features are the edges of the true mesh with an angle of more than 30 degrees between their faces. A vertex of
 the result is a feature if its distance from one is at most half the mean length of the edges at the vertex. Each
 measure of the final mesh has one threshold for all models, the best for the noise level of the row; it is found with
 the truth. Curvatures are multiplied by the mean edge of the mesh, so that the size of a model does not matter; the
-counter is divided by its mean (eq 7). Prints the F1, mean over the models, and writes OUT/features.md and
-OUT/features.json. Rows are kept in OUT/features, so an interrupted run continues where it stopped.
+counter is divided by its mean (eq 7). Prints the F1, mean over the models.
 """
 
 import argparse
-import json
 import os
 import sys
-from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
 import pymeshlab
 from scipy.spatial import cKDTree
 
-import import_paths  # noqa: F401
-import cad_parts
-import models
-import paper_runs
-from compare_accuracy import numbers, table
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "accuracy"))
+
+import cad_parts  # noqa: E402
+import models  # noqa: E402
+from compare_accuracy import numbers, table  # noqa: E402
 
 CREASE_DEGREES = 30
 MODELS = ("fandisk", "block", "l-block", "crossed-cylinders", "half-filleted-cube", "stepped-shaft", "plate-with-bores",
           "chamfered-wedge")
 CURVATURES = ("Mean Curvature", "RMS Curvature", "ABS Curvature")
+RECONSTRUCTION = "generate_surface_reconstruction_neural_mesh"
 COUNTERS = "compute_scalar_by_neural_normal_counter_per_vertex"
 REMESHING_ROUNDS = 8
 THRESHOLDS = np.geomspace(1e-3, 1e2, 401)
@@ -90,18 +88,6 @@ class Mesh:
         self.positions, self.faces, self.eq6, self.measure = positions, faces, eq6, measure
         self.ends, self.sides = inner_edges(faces)
         self.valence = np.bincount(self.ends.ravel(), minlength=len(positions))
-
-    @classmethod
-    def from_files(cls, paths):
-        """paths: the same mesh twice, with the normal counter and with the crease measure as its quality."""
-        meshes = pymeshlab.MeshSet(verbose=False)
-        for path in paths:
-            meshes.load_new_mesh(str(path))
-        one, other = meshes
-        if not np.array_equal(one.vertex_matrix(), other.vertex_matrix()):
-            raise paper_runs.RunError(f"{paths[0]} and {paths[1]} are different meshes: the feature measure changed more "
-                                      "than the quality.")
-        return cls(one.vertex_matrix(), one.face_matrix(), one.vertex_scalar_array(), other.vertex_scalar_array())
 
     def of_edges(self, values):
         """Mean over the edges at each vertex."""
@@ -168,42 +154,32 @@ def counted(vertices, faces, cloud=None):
     return Mesh(vertices, faces, *values)
 
 
-class Case:
-    """A model with noise: its cloud and its true surface, both made on first use."""
-
-    def __init__(self, name, noise, options):
-        self.name, self.noise, self.options = name, noise, options
-        self.folder = options.out / "features"
-
-    @cached_property
-    def surface(self):
-        return load(self.name, self.options.data)
-
-    @cached_property
-    def cloud(self):
-        path = self.folder / "cloud.ply"
-        models.save_ply(path, models.make_cloud(*self.surface, self.options.samples, self.noise))
-        return path
-
-    def learned(self):
-        """The mesh, learned twice, once for each measure."""
-        paths = [self.folder / f"mesh{measure}.ply" for measure in (0, 1)]
-        for measure, path in enumerate(paths):
-            paper_runs.learn(self.options.learn, self.cloud, path, feature_measure=measure,
-                             target_vertices=self.options.vertices)
-        return Mesh.from_files(paths)
+def learned(cloud, vertices, **parameters):
+    """A MeshSet whose current mesh is learned from the cloud."""
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.add_mesh(pymeshlab.Mesh(cloud))
+    meshes.apply_filter(RECONSTRUCTION, target_vertices=vertices, even_sampling=False, **parameters)
+    return meshes
 
 
-def kept_rows(row_of, options, file):
-    """row_of(case) for every model and noise level; those that an earlier run has kept in the file are not made again."""
-    kept = paper_runs.Kept(options.out / "features" / file, options.learn)
+def learned_mesh(cloud, vertices):
+    """The mesh, learned twice, once for each measure."""
+    meshes = [learned(cloud, vertices, feature_measure=measure) for measure in (0, 1)]
+    one, other = (each.current_mesh() for each in meshes)
+    assert np.array_equal(one.vertex_matrix(), other.vertex_matrix()), "the measure changed more than the quality"
+    return Mesh(one.vertex_matrix(), one.face_matrix(), one.vertex_scalar_array(), other.vertex_scalar_array())
+
+
+def rows_of(row_of, options):
+    """row_of(name, noise, surface, cloud, vertices) for every model and noise level."""
+    pymeshlab.load_plugin(options.plugin)
     rows = []
     for name in options.models:
+        surface = load(name, options.data)
         for noise in options.noise:
-            case = Case(name, noise, options)
-            rows.append(kept.row(partial(row_of, case), name=name, noise=noise, samples=options.samples,
-                                 vertices=options.vertices))
-        print(f"{name}: done", file=sys.stderr, flush=True)
+            cloud = models.make_cloud(*surface, options.samples, noise)
+            rows.append(row_of(name, noise, surface, cloud, options.vertices))
+            print(f"{name}, {noise:g} %: done", file=sys.stderr, flush=True)
     return rows
 
 
@@ -226,11 +202,11 @@ def measures_of(mesh):
         yield kind, edge * values
 
 
-def row_of(case):
+def row_of(name, noise, surface, cloud, vertices):
     """The curves of one model at one noise level."""
-    mesh = case.learned()
-    truth = truth_of(mesh, Creases(*case.surface))
-    return {"model": case.name, "noise": case.noise, "curves": {k: f1_curve(x, truth) for k, x in measures_of(mesh)}}
+    mesh = learned_mesh(cloud, vertices)
+    truth = truth_of(mesh, Creases(*surface))
+    return {"model": name, "noise": noise, "curves": {k: f1_curve(x, truth) for k, x in measures_of(mesh)}}
 
 
 def report(rows):
@@ -246,30 +222,14 @@ def report(rows):
 def parse(arguments, description=__doc__, noise=(0, 0.1, 0.3, 0.6)):
     """The options that tables of features have in common."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--learn", required=True, help="the core as a program (target learn)")
+    parser.add_argument("--plugin", required=True, help="pymeshlab's libfilter_neuralmesh.so")
     parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
     parser.add_argument("--models", type=numbers(str), default=MODELS)
     parser.add_argument("--noise", type=numbers(float), default=noise, help="%% of the diagonal")
     parser.add_argument("--samples", type=int, default=200_000)
     parser.add_argument("--vertices", type=int, default=5000)
-    parser.add_argument("--out", type=Path, default=Path("out/figures"))
     return parser.parse_args(arguments)
 
 
-def write(options, name, text, rows):
-    (options.out / f"{name}.md").write_text(text + "\n")
-    (options.out / f"{name}.json").write_text(json.dumps(rows))
-    print(text)
-
-
-def main(arguments=None):
-    options = parse(arguments)
-    try:
-        rows = kept_rows(row_of, options, "rows.jsonl")
-    except paper_runs.RunError as error:
-        sys.exit(str(error))
-    write(options, "features", report(rows), rows)
-
-
 if __name__ == "__main__":
-    main()
+    print(report(rows_of(row_of, parse(None))))
