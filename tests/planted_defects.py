@@ -113,7 +113,7 @@ class Tree:
             return ["plugins", "write_mlx", "check_mesh"]
         if test == "Instructions.PerSignal":
             return ["learning_loop"]
-        return [] if test in ("IncludeArrows", "Portability", "Names") else [test]
+        return [] if test in ("include_arrows_test", "portability_test", "names_test") else [test]
 
     def compile(self, targets):
         """The compiler's output if it fails, else nothing."""

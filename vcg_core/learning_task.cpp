@@ -29,7 +29,7 @@ namespace {
 constexpr int kLandingSignals = 100, kLandingSignalsOfOpen = 30;
 /// Where walls are thin, few: the start mesh is coarser than what is grown, and the longer it lands the more
 /// of its vertices go through to the other side. Nested boxes half an edge apart have an error of .0005 to
-/// .003 % with 10 or none, and of up to .03 % with 40 and more (wall_table.py).
+/// .003 % with 10 or none, and of up to .03 % with 40 and more (`walls` of ablation.py).
 constexpr int kLandingSignalsAtWalls = 10;
 /// Start vertices for each one asked for, where the fit reduces them: walls of half an edge need seven
 /// (shell.h).

@@ -14,7 +14,6 @@ of the box, and how much larger it is with samples.
 import argparse
 import sys
 import tempfile
-from pathlib import Path
 
 import numpy as np
 import stream

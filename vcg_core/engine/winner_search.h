@@ -4,8 +4,7 @@
 // The winner of a signal: the nearest vertex of a network whose vertices move, are added and are removed. A
 // hashed uniform grid.
 //
-// vcglib's hash table, vcg::SpatialHashTable, takes 2.8 times as long at 10,000 vertices and 3.7 times at
-// 100,000 (tests/bench/winner_search.cpp), and its removing members do not compile.
+// vcglib's hash table, vcg::SpatialHashTable, takes longer, and its removing members do not compile.
 #pragma once
 
 #include <vcg/space/point3.h>

@@ -19,7 +19,7 @@ namespace {
 using vcg::Box3f;
 using vcg::Point3f;
 
-// tests/experiments/tools/shell_topology shows what a change of these figures does.
+// tests/experiments/accuracy/ablation.py shows what a change of these figures does.
 
 /// Of the first lattice. A node costs about 30 bytes and 0.3 microseconds. Where parts nearly touch, a
 /// further lattice has up to eight times as many nodes, and a node takes 9 bytes more for each of at most

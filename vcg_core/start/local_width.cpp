@@ -20,7 +20,7 @@ constexpr float kSkin = 3;
 constexpr float kLeastSteps = 1.5F;
 constexpr int kSmoothingRounds = 2;
 /// Points move by no more than this share of the radius. With 1, where they lie on the shell itself, the
-/// error of a cup with walls of half an edge is 1.6 times that with 0.5 (wall_table.py).
+/// error of a cup with walls of half an edge is 1.6 times that with 0.5 (ablation.py).
 constexpr float kMostRadii = 0.5F;
 
 Point3f star_area_vector(const Network& network, VertexId v) {
@@ -91,7 +91,7 @@ PerVertex<float> thickenings(const Network& shell, const Lattice& lattice, const
         const Widths at = widths_at(lattice, solid, radius, shell.position(v), normals[v], farthest);
         // Moved by a quarter of the room on either side, the wall is still no wider than the gap. Thinner
         // walls, where both sides may be one, are taken for the thinnest that the lattice tells: a blade
-        // whose edges are not moved has twice the error there (wall_table.py).
+        // whose edges are not moved has twice the error there (ablation.py).
         const float wall = std::max(at.wall, kLeastSteps * lattice.step);
         const float room = std::max(0.0F, std::min(at.gap, thick) - wall);
         lengths[v] = std::min(kMostRadii * radius, room / 4);

@@ -12,7 +12,7 @@
 namespace neuralmesh {
 namespace {
 
-// tests/experiments/tools/shell_topology shows what a change of these figures does.
+// tests/experiments/accuracy/ablation.py shows what a change of these figures does.
 
 // A space is sealed if it is this much wider than its opening ...
 constexpr double kWidthRatio = 1.7;

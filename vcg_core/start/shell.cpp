@@ -43,12 +43,12 @@ constexpr double kWorthwhile = 1.25;
 /// The surface of the solid at one level lies between this level and the next.
 constexpr float kHalfLevel = 0.5F;
 /// Edges are this much shorter than walls and gaps are wide. With 1 some vertices land on the wrong side,
-/// with 0.6 no fewer than with this (wall_table.py).
+/// with 0.6 no fewer than with this (ablation.py).
 constexpr double kEdgeOverWidth = 0.75;
 /// Walls thinner than this, in edges of an even mesh of as many vertices as asked for, are learned thicker.
 constexpr double kThickEdges = 1.5;
 /// Points are the two sides of walls where so many of them are on thin ones: with walls of 4 to 7 spacings
-/// .67 at least (wall_table.py), on depth frames and aerial scans .14 at most.
+/// .67 at least (ablation.py), on depth frames and aerial scans .14 at most.
 constexpr double kWalled = 0.35;
 /// The share of the places on thin walls that show it, at the least.
 constexpr double kWallsFound = 0.67;

@@ -19,8 +19,7 @@ from neural_mesh.sizes import check_space, memory_size
 
 # In a result: three coordinates and the quality of 8 bytes, a colour of 4, and two faces of 13.
 BYTES_PER_VERTEX = 62
-# Over 1,000 clouds the memory of a process grows by less than 1 % (tests/bench/batch.py). Formats other than PLY may
-# leak more.
+# Formats other than PLY may leak memory.
 FILES_PER_PROCESS = 500
 INTERRUPTED = 130  # as shells report Ctrl-C
 

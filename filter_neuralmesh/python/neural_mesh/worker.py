@@ -85,8 +85,7 @@ def learn(job: Dict[str, Any]) -> Dict[str, Any]:
 
 
 def return_free_memory() -> None:
-    """Gives the system what earlier clouds have left free: else the process grows by 6 % over 1,000 clouds, not .6 %
-    (tests/bench/batch.py)."""
+    """Gives the system what earlier clouds have left free: else the process grows."""
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # of glibc
     if trim is not None:
         trim(0)

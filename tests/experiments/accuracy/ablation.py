@@ -5,6 +5,7 @@
 """What each optional stage of the reconstruction brings: every stage is skipped, one at a time, over groups of clouds.
 
     ablation.py --plugin LIBRARY.so [--quick | --small] [--data FOLDER] [--real FOLDER] [--out FOLDER] [--minutes N]
+    ablation.py --plugin LIBRARY.so --runs [--groups walls,topology] ...    each run with everything on, by any plugin
 
 LIBRARY is pymeshlab's plugin of a build with -DNEURALMESH_ABLATION=ON. Prints one table (markdown) and writes it to
 OUT/ablation.md. Every run is kept in OUT/ablation.jsonl under the checksum of the plugin, so an interrupted run, or one
@@ -35,8 +36,6 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "paper"))
-
 import cad_parts  # noqa: E402
 import evaluate  # noqa: E402
 import models  # noqa: E402
@@ -46,10 +45,8 @@ import scan_table  # noqa: E402
 import scans  # noqa: E402
 import scenes  # noqa: E402
 import wall_shapes  # noqa: E402
-import wall_table  # noqa: E402
 from accuracy_table import TABLE_MODELS  # noqa: E402
-from compare_accuracy import geometric_mean, numbers, table  # noqa: E402
-from paper_runs import Kept  # noqa: E402
+from compare_accuracy import Kept, geometric_mean, numbers, table  # noqa: E402
 
 LEAST_ERROR, LEAST_TIME = 1.03, 1.10  # that a stage has to bring
 OTHER_SEED = 1000  # added to a seed for the row that says what chance does
@@ -152,7 +149,7 @@ def cad(options):
 def walls(options):
     def shape(name, edges, n):
         make, genus, components = wall_shapes.WALLS[name]
-        surface, _ = wall_table.walled(make, edges, n)
+        surface, _ = wall_shapes.walled(make, edges, n)
         cloud = models.make_cloud(*surface, POINTS_PER_VERTEX_OF_WALLS * n)
         return of_surface(surface, genus, components, cloud, options.scale)
 
@@ -272,7 +269,7 @@ class Runs:
             figures = peers.run("neural", cloud, folder, [task.vertices], plugin=self.options.plugin, settings=settings,
                                 timeout=self.options.timeout, environment=environment)[task.vertices]
             row = {"digest": hashlib.sha256(mesh.read_bytes()).hexdigest()[:16], "cpu": figures["cpu_seconds"],
-                   "asked": asked.read_text().split()}
+                   "asked": asked.read_text().split() if asked.exists() else []}
             if before and before.get("digest") == row["digest"]:
                 row.update((key, before[key]) for key in ("error", "right", "cut"))
             else:
@@ -389,6 +386,16 @@ def measured_table(options, note):
     return text, {", ".join(names): result for names, result in results.items()}
 
 
+def table_of_runs(options):
+    """Each run with everything on, whose topology is right or not."""
+    runs = Runs(options)
+    lines = [[task.group, task.name, task.vertices, seed, row.get("failed") or f"{row['error']:.4f}",
+              "yes" if row.get("right") else "**no**", row.get("cut", "-")]
+             for task in tasks_of(options) for seed in options.seeds
+             if runs.prepare(task) and (row := runs.row(task, seed)) is not None]
+    return table(["group", "cloud", "vertices", "seed", "forward + backward, %", "topology right", "cut faces"], lines)
+
+
 def check_plugin(options):
     """Ends with a sentence if the plugin skips no stages."""
     meshes = Path(options.out / "work")
@@ -417,6 +424,7 @@ def parse(arguments):
     parser.add_argument("--minutes", type=float, default=float("inf"), help="start no run later than this")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="runs at a time")
     parser.add_argument("--timeout", type=float, default=300, help="seconds of one run")
+    parser.add_argument("--runs", action="store_true", help="skip no stages, print each run")
     parser.add_argument("--quick", action="store_true", help="some 40 runs of a second for each stage, one seed")
     parser.add_argument("--small", action="store_true", help="a few runs on models made in code, for the tests")
     options = parser.parse_args(arguments)
@@ -440,6 +448,9 @@ def parse(arguments):
 
 def main(arguments=None):
     options = parse(arguments)
+    if options.runs:
+        print(table_of_runs(options))
+        return {}
     check_plugin(options)
     try:
         text, results = measured_table(options, lambda words: print(words, file=sys.stderr, flush=True))

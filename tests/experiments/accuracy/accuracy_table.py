@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""The table of accuracy and topology, with the goals and whether they are met.
+"""The table of accuracy, with the goals and whether they are met.
 
-    accuracy_table.py --plugin LIBRARY.so | --ours-command 'PROGRAM' [--data FOLDER] [--out FOLDER] [--minutes N]
+    accuracy_table.py --plugin LIBRARY.so [--data FOLDER] [--out FOLDER] [--minutes N]
     accuracy_table.py --plugin LIBRARY.so --small
 
 Results are kept in OUT/kept, ours under the checksum of the program, so an interrupted run, or one that --minutes
@@ -17,7 +17,6 @@ import argparse
 import hashlib
 import json
 import os
-import shlex
 import sys
 import time
 from pathlib import Path
@@ -34,19 +33,15 @@ SMALL_MODELS = ("torus", "two-spheres", "linked-tori", "filleted-cube")
 # With 20,000 points and noise of .3 %, neighbouring parts of the other models cannot be separated.
 SMALL_NOISY_MODELS = ("torus", "filleted-cube")
 PEERS = ("poisson", "poisson-smooth")
-EXTRA_TOPOLOGY = ("turbine",)  # not counted in the goal
-TOPOLOGY_SAMPLES = (20_000, 200_000)
 
 # Goals: ratios over a peer, largest backward over largest forward distance, % of the faces.
 CLEAN_RATIO, NOISE_RATIO, WORST_RATIO, TIME_RATIO, BACK_OVER_FORWARD, SELF_INTERSECTING = .80, .60, 1.2, .5, 3, .1
-TOPOLOGY_MISSES = 1  # of the models
 STUCK = 2.0  # times the median over the seeds
 
 
 def parse(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--plugin", help="pymeshlab's libfilter_neuralmesh.so")
-    parser.add_argument("--ours-command", help="instead of the plugin: PROGRAM IN.ply OUT.ply key=value...")
+    parser.add_argument("--plugin", required=True, help="pymeshlab's libfilter_neuralmesh.so")
     parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
     parser.add_argument("--out", type=Path, default=Path("build/experiments"))
     parser.add_argument("--minutes", type=float, default=float("inf"), help="start no run later than this")
@@ -56,24 +51,18 @@ def parse(arguments):
     parser.add_argument("--models", type=compare_accuracy.numbers(str), help="names of models.py")
     parser.add_argument("--peers", type=compare_accuracy.numbers(str), default=list(PEERS), help="the goals are over the first")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a parameter of ours")
-    parser.add_argument("--only", choices=["accuracy", "topology"], help="one of the two tables")
     parser.add_argument("--small", action="store_true", help="a few quick runs, for the tests")
     options = parser.parse_args(arguments)
-    if not (options.plugin or options.ours_command):
-        parser.error("Give --plugin or --ours-command: the table is about them.")
-    program = Path(options.plugin or shlex.split(options.ours_command)[0])
+    program = Path(options.plugin)
     if not program.exists():
         parser.error(f"There is no {program}: build it first.")
     options.program = hashlib.sha256(program.read_bytes()).hexdigest()[:12]
     options.cloud_seed, options.measure_samples, options.samples = 1, evaluate.SAMPLES, 200_000
     options.settings = dict(word.split("=", 1) for word in options.set)
     options.end = time.monotonic() + 60 * options.minutes
-    options.topology_models = models.TOPOLOGY_MODELS + EXTRA_TOPOLOGY
     if not options.models:
         options.models = [m for m in TABLE_MODELS if options.data or m in models.PUBLIC_MODELS]
         options.models += [] if options.data else [m for m in models.PUBLIC_MODELS if m not in options.models]
-    if not options.data:
-        options.topology_models = (*models.PUBLIC_MODELS, "linked-tori", "two-spheres", "cup")
     if options.small:
         options.samples, options.measure_samples, options.seeds, options.noise = 20_000, 20_000, [1, 2, 3], [0, .3]
         options.models, options.vertices, options.peers = list(SMALL_MODELS), [500], ["poisson"]
@@ -98,12 +87,7 @@ def ours(options, case, counts, seed):
     key = {"program": options.program, "vertices": counts, "seed": seed, "measure": options.measure_samples,
            **options.settings, **case.key()}
     return kept(options, key, lambda: case.rows(
-        "neural", counts, seed, plugin=options.plugin, command=options.ours_command,
-        settings={**options.settings, "random_seed": str(seed)}))
-
-
-def with_samples(options, samples):
-    return argparse.Namespace(**{**vars(options), "samples": samples})
+        "neural", counts, seed, plugin=options.plugin, settings={**options.settings, "random_seed": str(seed)}))
 
 
 def accuracy_rows(options, note):
@@ -176,45 +160,6 @@ def accuracy_table(rows, options):
     return table(header, lines)
 
 
-def case_table(rows, options):
-    """Each case with the scores of its seeds: median, and worst over median."""
-    mine, peer = by_case(rows, "neural"), by_case(rows, options.peers[0])
-    header = ["model", "noise %", "vertices", "seeds", "median error", "worst / median", f"over {options.peers[0]}"]
-    lines = []
-    for key in sorted(mine, key=lambda key: (key[1], key[2], key[0])):
-        median = float(np.median([row["sum_rms"] for row in mine[key]]))
-        over = f"{median / peer[key][0]['sum_rms']:.2f}" if key in peer else "-"
-        lines.append([key[0], f"{key[1]:g}", key[2], len(mine[key]), f"{median:.4f}",
-                      f"{worst_over_median(mine[key]):.2f}", over])
-    return table(header, lines)
-
-
-def topology_table(options, note):
-    """Components and genus of finished meshes."""
-    columns = [(samples, n) for samples in TOPOLOGY_SAMPLES for n in (2000, 10_000)]
-    right, seen, lines = dict.fromkeys(columns, 0), dict.fromkeys(columns, 0), []
-    for name in options.topology_models:
-        model = models.MODELS[name]
-        line = [name, f"{model.components} / {model.genus}"]
-        for samples, n in columns:
-            case = compare_accuracy.Case(name, 0, with_samples(options, samples))
-            rows = ours(options, case, [n], 1)
-            if not rows or "error" in rows[0]:
-                line.append(rows[0]["error"][:40] if rows else "-")
-                continue
-            line.append(f"{rows[0]['components']} / {rows[0]['genus']}"
-                        + ("" if topology_right(rows[0]) else " **no**"))
-            if name not in EXTRA_TOPOLOGY:
-                right[samples, n] += topology_right(rows[0])
-                seen[samples, n] += 1
-        lines.append(line)
-        note(f"topology of {name}: done")
-    lines.append(["right", "goal: all but one", *(f"{right[c]} of {seen[c]} "
-                                                  f"{'yes' if right[c] >= seen[c] - TOPOLOGY_MISSES else '**no**'}"
-                                                  for c in columns)])
-    return table(["model", "components / genus", *(f"{s:,} points, {n:,} vertices" for s, n in columns)], lines)
-
-
 def faults(rows, options):
     """One sentence for each result that must not occur."""
     sentences = [f"{r['method']} failed for {r['model']}, noise {r['noise']:g} %: {r['error']}"
@@ -239,18 +184,13 @@ def main(arguments=None):
     def note(text):
         print(text, file=sys.stderr, flush=True)
 
-    text, found = [], []
     try:
-        if options.only != "topology":
-            rows = accuracy_rows(options, note)
-            text += ["## Accuracy", "", accuracy_table(rows, options), "", "## Seeds", "", case_table(rows, options)]
-            found = faults(rows, options) if options.small else []
-        if options.only != "accuracy" and not options.small:
-            text += ["", "## Topology of the finished mesh", "", topology_table(options, note)]
+        rows = accuracy_rows(options, note)
     except models.ModelError as error:
         sys.exit(str(error))
-    (options.out / "accuracy_table.md").write_text("\n".join(text) + "\n")
-    print("\n".join(text))
+    text, found = accuracy_table(rows, options), faults(rows, options) if options.small else []
+    (options.out / "accuracy_table.md").write_text(text + "\n")
+    print(text)
     sys.exit("\n".join(found) if found else 0)
 
 

@@ -5,6 +5,7 @@
 
 import hashlib
 import json
+from pathlib import Path
 
 import numpy as np
 
@@ -101,3 +102,42 @@ def topology_right(row):
 
 def table(header, lines):
     return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in [header, ["---"] * len(header), *lines])
+
+
+def digest(data):
+    return hashlib.sha256(data).hexdigest()[:16]
+
+
+class Kept:
+    """The rows of an experiment on disk, so that an interrupted run continues where it stopped.
+
+    The key contains the checksum of the program, the cloud and the settings, so only rows of equal runs are reused.
+    The file has one JSON object per line; an incomplete last line is ignored.
+    """
+
+    def __init__(self, path, program):
+        self.path = path
+        self.program = digest(Path(program).read_bytes())
+        self.rows = {}
+        path.parent.mkdir(parents=True, exist_ok=True)
+        for line in path.read_text().splitlines() if path.exists() else ():
+            try:
+                found = json.loads(line)
+            except json.JSONDecodeError:
+                continue
+            self.rows[found["key"]] = found["row"]
+
+    def _word(self, key):
+        return json.dumps({**key, "program": self.program}, sort_keys=True)
+
+    def has(self, **key):
+        return self._word(key) in self.rows
+
+    def row(self, make, **key):
+        """The row under the key; make() makes it if it is missing."""
+        word = self._word(key)
+        if word not in self.rows:
+            self.rows[word] = make()
+            with self.path.open("a") as file:
+                file.write("\n" + json.dumps({"key": word, "row": self.rows[word]}))
+        return self.rows[word]

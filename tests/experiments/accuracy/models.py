@@ -78,9 +78,6 @@ MODELS = {
 # Publicly available: from Debian packages, or made in code.
 PUBLIC_MODELS = ("bunny", "fandisk", "dino", "armadillo", "homer", "knot", "femur", "elephant", "anchor")
 CODE_MODELS = ("sphere", "torus", "linked-tori", "two-spheres", "cup", "filleted-cube", "crossed-cylinders")
-# Those whose genus and number of components are checked.
-TOPOLOGY_MODELS = ("bunny", "koala", "fandisk", "kitten", "rocker-arm", "eight", "feline", "block", "genus3",
-                   "linked-tori", "two-spheres", "cup")
 
 
 def cache_folder():

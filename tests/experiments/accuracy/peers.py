@@ -16,7 +16,6 @@ import argparse
 import json
 import os
 import re
-import shlex
 import signal
 import subprocess
 import sys
@@ -194,7 +193,6 @@ def run_plugin(cloud, folder, counts, plugin, settings):
         report = meshes.apply_filter("generate_surface_reconstruction_neural_mesh", target_vertices=count,
                                      **{key: _typed(value) for key, value in settings.items()})
         seconds, cpu = clock.read()
-        # The quality is the feature counter, which compare_curvature.py reads.
         meshes.save_current_mesh(str(folder / f"{count}.ply"), save_vertex_quality=True, save_vertex_color=False)
         results[count] = {"seconds": seconds, "cpu_seconds": cpu, "peak_mb": _peak_mb() - before, "report": report}
     return results
@@ -211,19 +209,15 @@ def _typed(text):
     return text
 
 
-def run(method, cloud, folder, counts, plugin=None, command=None, settings=None, timeout=300, environment=None):
+def run(method, cloud, folder, counts, plugin=None, settings=None, timeout=300, environment=None):
     """Runs one method on the file cloud for all counts, in other processes. Returns {count: times and memory}.
 
-    method: a name of PEERS, SLOW_PEERS or PEERS_OF_NORMALS, or "neural" with a plugin or a command (started as COMMAND CLOUD OUT
-    target_vertices=N key=value...). settings: parameters of ours or of Screened Poisson. environment: more variables of
-    the processes of a method. Raises PeerError if a process fails or takes longer than timeout seconds.
+    method: a name of PEERS, SLOW_PEERS or PEERS_OF_NORMALS, or "neural" with a plugin. settings: parameters of ours or of
+    Screened Poisson. environment: more variables of the processes of a method. Raises PeerError if a process fails or takes longer than timeout seconds.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     extra = [f"{key}={value}" for key, value in (settings or {}).items()]
-    if command:
-        return {n: _run_command([*shlex.split(command), str(cloud), str(folder / f"{n}.ply"), f"target_vertices={n}",
-                                 *extra], timeout) for n in counts}
     words = [sys.executable, str(Path(__file__).resolve()), method, str(cloud), str(folder)]
     # A peer's runs share one reconstruction; ours share nothing, so each has a process.
     jobs = [[n] for n in counts] if plugin else [counts]
@@ -233,16 +227,6 @@ def run(method, cloud, folder, counts, plugin=None, command=None, settings=None,
         output, _ = _started([*words, "vertices=" + ",".join(map(str, job)), *more], timeout, environment)
         results.update((int(n), figures) for n, figures in json.loads(output.strip().splitlines()[-1]).items())
     return results
-
-
-def _run_command(words, timeout):
-    """Times a whole command, file access included, unless it prints its seconds as JSON or as 'seconds: X'; likewise
-    its cpu_seconds."""
-    output, used = _started(words, timeout)
-    own = dict(re.findall(r'"?\b((?:cpu_)?seconds)"?\s*[:=]\s*([0-9.eE+-]+)', output))
-    return {"seconds": float(own.get("seconds", used["wall"])),
-            "cpu_seconds": float(own.get("cpu_seconds", used["cpu"])),
-            "peak_mb": used["peak_mb"], "output": output.strip()}
 
 
 # A small process that starts the measured one: a child's peak memory includes its parent's at the start.

@@ -6,6 +6,7 @@
 import numpy as np
 import pymeshlab
 
+import open_surfaces
 import shapes
 from cad_parts import extruded
 
@@ -72,6 +73,15 @@ def _combine(meshes, operation, vertices, faces):
     first = meshes.current_mesh_id()
     meshes.add_mesh(pymeshlab.Mesh(vertices, faces))
     getattr(meshes, f"generate_boolean_{operation}")(first_mesh=first, second_mesh=meshes.current_mesh_id())
+
+
+def walled(make, edges, count):
+    """The shape whose wall is as thick as that many mean edges of an even mesh with count vertices, and that thickness. The
+    edge depends on the area, which depends on the wall."""
+    wall = .03
+    for _ in range(4):
+        wall = edges * np.sqrt(4 / np.sqrt(3) * open_surfaces.area_of(*make(wall)) / (2 * count))
+    return make(wall), wall
 
 
 # Name: the shape for a wall, its genus and its number of components.
