@@ -10,7 +10,7 @@
 #   ./run.sh release                       installs each package in a bare Debian and uses it; needs root
 #   ./run.sh platform NAME                 the unit tests on arm64, windows, libcxx (clang's) or portable (plain C++)
 #   ./run.sh bench                         the performance tables
-#   ./run.sh figures                       the tables, figures and screenshots of the documentation
+#   ./run.sh figures                       the tables and pictures of the documentation
 # Missing packages are installed with apt, through sudo unless run by root. Installed packages are not changed.
 set -euo pipefail
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
@@ -23,7 +23,7 @@ venv="$build/venv"
 compile_packages="ca-certificates cmake g++ libeigen3-dev libglew-dev libqt5opengl5-dev meshlab ninja-build python3
     qtbase5-dev xz-utils"
 venv_packages="python3-venv"
-demo_packages="glmark2-data libgl1-mesa-dri python3-numpy python3-pil xauth xdotool xvfb"
+demo_packages="glmark2-data libgl1-mesa-dri python3-numpy python3-pil xauth xvfb"
 bench_packages="libcgal-dev"  # CGAL's surface reconstruction is timed beside ours
 test_packages="binutils libbenchmark-dev libgtest-dev valgrind"
 release_packages="debootstrap lintian qemu-user wine64"
@@ -201,16 +201,10 @@ tests_of_preset() {
 # Removes ctest's lines about tests that pass.
 without_passed() { grep -v -e '^ *Start ' -e ' Passed '; }
 
-# tests_of [OPTION...]: the tests of ctest that the options select, and which of them took longest.
+# tests_of [OPTION...]: the tests of ctest that the options select.
 tests_of() {
-    local failed=0
-    export NEURALMESH_TIMES="$here/$build/times.txt"
-    rm -f "$NEURALMESH_TIMES"
     ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel "$(nproc)" --output-junit tests.xml "$@" |
-        without_passed || failed=1
-    "$python" tests/times.py --report "$NEURALMESH_TIMES"
-    unset NEURALMESH_TIMES
-    [ "$failed" = 0 ] || fail "Tests have failed; their output is above."
+        without_passed || fail "Tests have failed; their output is above."
 }
 
 # The two tiers are described in tests/README.md.
@@ -260,12 +254,16 @@ bench() {
 figures() {
     need $compile_packages $demo_packages $test_packages $venv_packages
     need_venv
-    compile all experiments
+    compile plugins
     local plugin="$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
     say "Accuracy against Poisson and quadric collapse"
     "$venv/bin/python" tests/experiments/accuracy/accuracy_table.py --plugin "$plugin" --out out/figures
-    demo
-    tests/experiments/pictures/figures.sh "$build" screenshots out/figures
+    say "Pictures"
+    "$venv/bin/python" tests/experiments/pictures/pictures.py --plugin "$plugin"
+    local table
+    for table in features crease_table; do
+        "$venv/bin/python" "tests/experiments/paper/$table.py" --plugin "$plugin" --out out/figures
+    done
 }
 
 mkdir -p "$build"

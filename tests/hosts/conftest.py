@@ -25,7 +25,6 @@ import input_hosts  # noqa: E402
 import meshlabserver  # noqa: E402
 import models  # noqa: E402
 import python_site  # noqa: E402
-import times  # noqa: E402
 
 PYTHON_NAME = input_hosts.PYTHON_NAME
 CLOUD_POINTS = 20_000
@@ -45,13 +44,6 @@ def pytest_collection_modifyitems(config, items):
         later = [item for item in items if item.get_closest_marker("full")]
         config.hook.pytest_deselected(items=later)
         items[:] = [item for item in items if item not in later]
-
-
-@pytest.hookimpl(hookwrapper=True)
-def pytest_runtest_protocol(item):
-    start = times.processor_time()
-    yield
-    times.note(f"{item.path.stem}::{item.name}", times.processor_time() - start)
 
 
 def in_hosts(names, few):
