@@ -19,10 +19,7 @@ FOLDER = Path(__file__).resolve().parents[2] / "filter_neuralmesh" / "scripts"
 # File name -> values that differ from the defaults.
 EXAMPLES = {
     "reconstruct": {},
-    "preview": {"target_vertices": 2000},
     "features": {"target_vertices": 5000, "select_features": True, "vertex_color": 0},
-    "evenly_spaced": {"target_vertices": 5000, "utility_counter": 1},
-    "vertices_of_a_mesh": {"target_vertices": 2000, "draw_from_faces": False},
     "counters_of_a_mesh": {"select_features": True, "feature_measure": 1},
 }
 COUNTERS = "compute_scalar_by_neural_normal_counter_per_vertex"

@@ -7,6 +7,7 @@ sentence for each bad input. test_stream_parts.py has its readers and its sample
 import os
 import re
 import resource
+import socket
 import subprocess
 import sys
 
@@ -173,7 +174,7 @@ def test_memory_that_is_named_as_needed_is_enough(stream, small, tmp_path):
 
 
 @FULL
-def test_the_folder_of_a_killed_command_is_removed_by_the_next(stream, site, small, tmp_path):
+def test_what_a_killed_command_left_is_removed_by_the_next(stream, site, small, tmp_path):
     mesh, cloud = tmp_path / "mesh.ply", tmp_path / "cloud.ply"
     bench.write_cloud(cloud, 300_000)
     with subprocess.Popen([sys.executable, "-m", "neural_mesh", "stream", str(cloud), str(mesh), "target_vertices=3000"],
@@ -190,11 +191,9 @@ def test_the_folder_of_a_killed_command_is_removed_by_the_next(stream, site, sma
     assert hidden(tmp_path) == []
 
 
-def test_folders_that_are_not_provably_left_stay(stream, small, tmp_path):
-    for name, content in ((".neural-mesh-other", "another machine"), (".neural-mesh-empty", None)):
-        (tmp_path / name).mkdir()
-        if content:
-            (tmp_path / name / "lock").write_text(content)
+def test_what_is_not_provably_left_stays(stream, small, tmp_path):
+    for name in (".mesh.another-machine-1.part.ply", f".mesh.{socket.gethostname().replace('.', '-')}-1.part.ply"):
+        (tmp_path / name).touch()
     before = hidden(tmp_path)
     results(stream(small, tmp_path / "mesh.ply", "target_vertices=100"))
     assert hidden(tmp_path) == before

@@ -13,7 +13,7 @@ from typing import Dict, Iterable, Iterator, List, Tuple
 
 from neural_mesh.parameters import Settings, WrongUsage
 
-ASIDE = ".part.ply"  # ends the name of a result until it is whole; pymeshlab wants the extension
+ASIDE = ".part"  # ends the name of a result until it is whole, before its extension
 
 # The formats that pymeshlab 2025.7 loads.
 FORMATS = ("3ds", "apts", "asc", "bre", "ctm", "dae", "e57", "es", "fbx", "glb", "gltf", "obj", "off", "pdb", "ply",
@@ -38,7 +38,16 @@ def aside_of(result: Path, process: int) -> Path:
     """Where a process writes a result until it is whole: a hidden file, which no pattern finds. The machine is named
     for clusters whose machines share a disk."""
     machine = socket.gethostname().replace(".", "-")
-    return result.with_name(f".{result.stem}.{machine}-{process}{ASIDE}")
+    return result.with_name(f".{result.stem}.{machine}-{process}{ASIDE}{result.suffix}")
+
+
+def remove_left(result: Path) -> None:
+    """Removes what killed processes of this machine have left of a result."""
+    before, after = aside_of(result, 0).name.rsplit(f"-0{ASIDE}", 1)
+    for aside in result.parent.glob(f"{glob.escape(before)}-*{ASIDE}{glob.escape(after)}"):
+        process = aside.name[len(before) + 1:-len(ASIDE + after)]
+        if process.isdigit() and not Path(f"/proc/{process}").exists():
+            remove(aside)
 
 
 def remove(path: Path) -> None:
@@ -51,8 +60,8 @@ def remove_asides(out: Path, jobs: Iterable[Job]) -> None:
     """Removes what killed processes have left of the jobs' results."""
     results = {out / job.output for job in jobs}
     for folder in {result.parent for result in results}:
-        for aside in folder.glob(f".*{ASIDE}"):
-            stem = aside.name[1:-len(ASIDE)].rpartition(".")[0]
+        for aside in folder.glob(f".*{ASIDE}.ply"):
+            stem = aside.name[1:-len(f"{ASIDE}.ply")].rpartition(".")[0]
             if folder / f"{stem}.ply" in results:
                 remove(aside)
 

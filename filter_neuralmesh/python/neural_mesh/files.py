@@ -6,6 +6,7 @@ does, where it is installed."""
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any, Dict
 
@@ -60,6 +61,15 @@ def _by_pymeshlab(path: Path, verbose: bool) -> Dict[str, Any]:
     if layer.has_vertex_color():
         arrays["colors"] = np.rint(layer.vertex_color_matrix()[:, :3] * 255).astype(np.uint8)
     return arrays
+
+
+def save_aside(mesh: Mesh, aside: Path, path: Path) -> None:
+    """Writes a mesh to `aside`, and gives it the name `path` when it is whole. Raises NotWhole, OSError."""
+    try:
+        save(mesh, aside)
+    except NotWhole as error:
+        raise NotWhole(str(error).replace(aside.name, path.name)) from None
+    os.replace(aside, path)
 
 
 def save(mesh: Mesh, path: Path) -> None:

@@ -19,13 +19,13 @@ from typing import Iterator, Optional
 import numpy as np
 
 from neural_mesh import Mesh, reconstruct
-from neural_mesh.aside_folder import aside_folder
 from neural_mesh.averages import POINT_BYTES as AVERAGED_BYTES
 from neural_mesh.averages import Averages
+from neural_mesh.batch_files import aside_of, remove, remove_left
 from neural_mesh.clouds import FORMATS, Cloud, CloudError, open_cloud
 from neural_mesh.distances import measure
 from neural_mesh.even_sample import CHUNK_BYTES, HOLD_BYTES, EvenSample
-from neural_mesh.files import NotWhole, save
+from neural_mesh.files import NotWhole, save_aside
 from neural_mesh.mesh_writers import WRITERS
 from neural_mesh.parameters import Settings, WrongUsage, check, line_of, settings_of
 from neural_mesh.sizes import check_space, gigabytes, memory_size
@@ -64,10 +64,10 @@ def run(given: argparse.Namespace) -> int:
     try:
         cloud = open_cloud(given.cloud)
         plan = plan_for(given.memory, values["target_vertices"], cloud.count)
-        with _folder_beside(given.mesh) as folder:
+        with _aside(given.mesh) as aside:
             check_space(given.mesh.parent, plan.file_bytes(), "The mesh")
             print(plan.sentence(), flush=True)
-            _Stream(cloud, plan, folder, values["threads"]).run(settings, given.mesh)
+            _Stream(cloud, plan, aside, values["threads"]).run(settings, given.mesh)
     except (CloudError, NotWhole, ValueError) as error:
         sentence = str(error)
     except OSError as error:
@@ -132,23 +132,27 @@ def plan_for(memory: float, target: int, count: Optional[int]) -> Plan:
 
 
 @contextlib.contextmanager
-def _folder_beside(mesh: Path) -> Iterator[Path]:
-    """A folder for files that are not whole yet, on the disk of the mesh. Throws WrongUsage."""
+def _aside(mesh: Path) -> Iterator[Path]:
+    """The file for the mesh until it is whole, removed at the end. Throws WrongUsage."""
     if mesh.is_dir():
         raise WrongUsage(f"{mesh} is a folder: give the name of a file.")
-    with contextlib.ExitStack() as stack:
-        try:
-            folder = stack.enter_context(aside_folder(mesh.parent))
-        except OSError as error:
-            raise WrongUsage(f"Nothing can be written into the folder {mesh.parent}: {error.strerror}.") from error
-        yield folder
+    remove_left(mesh)
+    aside = aside_of(mesh, os.getpid())
+    try:
+        aside.touch()
+    except OSError as error:
+        raise WrongUsage(f"Nothing can be written into the folder {mesh.parent}: {error.strerror}.") from error
+    try:
+        yield aside
+    finally:
+        remove(aside)
 
 
 class _Stream:
     """The passes over a cloud, and learning between them."""
 
-    def __init__(self, cloud: Cloud, plan: Plan, folder: Path, threads: int) -> None:
-        self._cloud, self._plan, self._folder, self._threads = cloud, plan, folder, threads
+    def __init__(self, cloud: Cloud, plan: Plan, aside: Path, threads: int) -> None:
+        self._cloud, self._plan, self._aside, self._threads = cloud, plan, aside, threads
         self._started = time.monotonic()
 
     def run(self, settings: Settings, out: Path) -> None:
@@ -195,9 +199,7 @@ class _Stream:
     def _learn(self, points: np.ndarray, settings: Settings, out: Path) -> Mesh:
         """Learns from the sample and writes the mesh."""
         mesh = reconstruct(points, **settings)
-        aside = self._folder / out.name
-        save(mesh, aside)
-        os.replace(aside, out)
+        save_aside(mesh, self._aside, out)
         print(f"Learned {len(mesh.vertices):,} vertices in {self._seconds():.1f} s and wrote {out}.", flush=True)
         return mesh
 

@@ -19,11 +19,9 @@ from typing import Any, Dict, List, Optional
 
 from neural_mesh import NeuralMeshWarning, reconstruct
 from neural_mesh.clouds import CloudError
-from neural_mesh.files import NotWhole, load, save
+from neural_mesh.files import NotWhole, load, save_aside
 
 PR_SET_PDEATHSIG = 1  # of linux/prctl.h
-# After each cloud it would cost 4 % of the time of small ones: their pages have to be mapped again.
-CLOUDS_PER_RETURN = 10
 
 
 def end_with(parent: int) -> None:
@@ -72,10 +70,9 @@ def learn(job: Dict[str, Any]) -> Dict[str, Any]:
     aside = Path(job["aside"])
     try:
         mesh = reconstruct(**load(Path(job["input"]), verbose=True), **job["settings"])
-        save(mesh, aside)
-        size = aside.stat().st_size
-        os.replace(aside, job["result"])
-        return {"output_size": size, "result": dict(mesh.report), "warnings": mesh.report.warnings}
+        result = Path(job["result"])
+        save_aside(mesh, aside, result)
+        return {"output_size": result.stat().st_size, "result": dict(mesh.report), "warnings": mesh.report.warnings}
     except CloudError as error:
         return {"error": f"The file cannot be loaded: {error}"}
     except MemoryError as error:
@@ -84,20 +81,13 @@ def learn(job: Dict[str, Any]) -> Dict[str, Any]:
         return {"error": " ".join(str(error).split())}
 
 
-def return_free_memory() -> None:
-    """Gives the system what earlier clouds have left free: else the process grows."""
-    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # of glibc
-    if trim is not None:
-        trim(0)
-
-
 def answer_jobs(answers: Any, memory_limit: Optional[int]) -> None:
     log = Log()
     if memory_limit:
         # Memory that can be written to: not that of libraries, nor what is only reserved, unlike RLIMIT_AS.
         resource.setrlimit(resource.RLIMIT_DATA, (memory_limit, memory_limit))
     print("{}", file=answers, flush=True)  # ready
-    for number, line in enumerate(sys.stdin, 1):
+    for line in sys.stdin:
         job = json.loads(line)
         log.clear()
         reset_peak_memory()
@@ -107,8 +97,6 @@ def answer_jobs(answers: Any, memory_limit: Optional[int]) -> None:
         answer["peak_memory"] = peak_memory()
         answer["warnings"] = log.warnings() + answer.get("warnings", [])
         print(json.dumps(answer), file=answers, flush=True)
-        if number % CLOUDS_PER_RETURN == 0:
-            return_free_memory()
 
 
 def main() -> None:
