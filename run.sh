@@ -180,7 +180,7 @@ platform() {
 
 demo() {
     need $compile_packages $demo_packages
-    compile filter_neuralmesh_meshlab-2020.09 write_mlx check_mesh
+    compile filter_neuralmesh_meshlab-2020.09 write_mlx
     local arguments=()
     [ $# -ge 1 ] && arguments+=(--cloud "$(path_of "$1")")
     [ $# -ge 2 ] && arguments+=(--vertices "$2")
@@ -213,7 +213,7 @@ run_tests() {
     need $compile_packages $demo_packages $test_packages $venv_packages
     if [ ! -e "$venv/complete" ]; then
         need_venv &
-        compile neuralmesh_core check_mesh  # what needs nothing of it, meanwhile
+        compile neuralmesh_core  # what needs nothing of it, meanwhile
         wait "$!"
     fi
     need_venv  # before the configuration, which looks for pymeshlab there

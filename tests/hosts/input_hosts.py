@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import inputs
 import meshlabserver
+from check_mesh import check_mesh
 import models
 import numpy as np
 
@@ -208,7 +209,7 @@ def check(build, layer, outcome):
     points = layer.followed_points() - origin
     file = outcome.mesh.with_name("points.ply")
     models.save_ply(file, points)
-    found = meshlabserver.check_mesh(build, outcome.mesh, file)
+    found = check_mesh(outcome.mesh, file)
     assert found["vertices"] == report["vertices"] == layer.target
     assert report["stop_reason"] == 0 and report["boundary_loops"] == layer.loops
     assert found["boundary_loops"] == layer.loops and found["oriented"], "no oriented surface with these boundaries"

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import library_hosts
 import meshlabserver
+from check_mesh import check_mesh
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -91,7 +92,7 @@ def system(tmp_path, model, dist):
 
 
 def check(build, mesh, vertices):
-    found = meshlabserver.check_mesh(build, mesh)
+    found = check_mesh(mesh)
     assert found["vertices"] == vertices and found["watertight"] and found["oriented"] and found["genus"] == 0
 
 

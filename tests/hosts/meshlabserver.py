@@ -8,7 +8,6 @@ ours. Uses the standard library only, because `./run.sh demo` installs no other.
 
 import atexit
 import functools
-import json
 import os
 import shutil
 import subprocess
@@ -23,10 +22,6 @@ HOST = "meshlab-2020.09"
 
 class ServerError(RuntimeError):
     """meshlabserver failed; the message is its output."""
-
-
-class CheckError(RuntimeError):
-    """vcglib could not read a mesh to check; the message says why."""
 
 
 def plugin_path(build, host=HOST):
@@ -110,13 +105,3 @@ def write_script(build, path, filter_name="", **values):
     done = subprocess.run([str(Path(build) / "tests" / "write_mlx"), *words], check=True, stdout=subprocess.PIPE)
     Path(path).write_bytes(done.stdout)
     return Path(path)
-
-
-def check_mesh(build, mesh, reference=None):
-    """The measures of check_mesh.cpp for a mesh file, as a dictionary. CheckError: vcglib cannot read a file."""
-    files = [str(mesh)] + ([str(reference)] if reference else [])
-    done = subprocess.run([str(Path(build) / "tests" / "check_mesh"), *files], stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True, errors="replace", check=False)
-    if done.returncode != 0:
-        raise CheckError(done.stderr.strip() or f"check_mesh ended with code {done.returncode}")
-    return json.loads(done.stdout)

@@ -6,7 +6,7 @@
 import subprocess
 from pathlib import Path
 
-import meshlabserver
+from check_mesh import check_mesh
 
 DEMO = Path(__file__).with_name("demo.py")
 
@@ -20,9 +20,9 @@ def demo(build, *words):
 def test_a_cloud_becomes_a_mesh_and_a_picture(build, model, tmp_path):
     done = demo(build, "--cloud", model("sphere")[0], "--vertices", 500, "--out", tmp_path / "out" / "ball.ply")
     assert done.returncode == 0, done.stdout + done.stderr
-    assert meshlabserver.check_mesh(build, tmp_path / "out" / "ball.ply")["vertices"] == 500
+    assert check_mesh(tmp_path / "out" / "ball.ply")["vertices"] == 500
     assert (tmp_path / "out" / "ball.png").exists()
-    assert "996, closed, genus 0" in done.stdout and "% back" in done.stdout
+    assert "996, closed, genus 0" in done.stdout
 
 
 def test_a_format_that_meshlab_cannot_read_is_reported(build, tmp_path):

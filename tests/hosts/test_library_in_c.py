@@ -8,7 +8,7 @@ import re
 import subprocess
 
 import library_clouds
-import meshlabserver
+from check_mesh import check_mesh
 from python_site import LIBRARY
 
 BALL = library_clouds.directions(2000, 1)
@@ -24,7 +24,7 @@ def test_the_example_in_c_makes_a_mesh(build, tmp_path):
     done = example_in_c(build, "150", points=BALL)
     assert done.returncode == 0 and "vertices=150 faces=296 " in done.stderr, done.stderr
     (tmp_path / "mesh.obj").write_text(done.stdout)
-    found = meshlabserver.check_mesh(build, tmp_path / "mesh.obj")
+    found = check_mesh(tmp_path / "mesh.obj")
     assert found["vertices"] == 150 and found["watertight"] and found["oriented"]
 
 

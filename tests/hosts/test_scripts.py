@@ -14,6 +14,7 @@ from pathlib import Path
 import example_scripts
 import library_clouds
 import meshlabserver
+from check_mesh import check_mesh
 import numpy as np
 import parameters_page
 import pytest
@@ -44,7 +45,7 @@ def test_the_python_of_the_first_page_runs(build, site, model, tmp_path, number)
     done = subprocess.run([sys.executable, "-c", PYTHON[number]], cwd=tmp_path, env=dict(os.environ, PYTHONPATH=str(site)),
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     assert done.returncode == 0, done.stdout
-    found = meshlabserver.check_mesh(build, tmp_path / "mesh.ply")
+    found = check_mesh(tmp_path / "mesh.ply")
     assert found["vertices"] == 5000 and found["watertight"]
     assert found["quality"] and (number == 0 or done.stdout.startswith("5000 0 "))
 
@@ -58,7 +59,7 @@ def test_the_script_with_the_defaults_makes_a_sound_mesh(build, server, model, t
     cloud, surface = model("bunny")
     script = example_scripts.FOLDER / "reconstruct.mlx"
     report = meshlabserver.reconstruct(server, cloud, script, tmp_path / "out.ply")
-    found = meshlabserver.check_mesh(build, tmp_path / "out.ply", surface)
+    found = check_mesh(tmp_path / "out.ply", surface)
     wanted = int(re.search(r'name="target_vertices" value="(\d+)"', script.read_text()).group(1))
 
     assert found["vertices"] == report["vertices"] == wanted
@@ -80,6 +81,6 @@ def test_the_script_of_counters_selects_the_creases(build, server, model, tmp_pa
     surface = model("crossed-cylinders")[1]
     script = example_scripts.FOLDER / "counters_of_a_mesh.mlx"
     report = meshlabserver.reconstruct(server, surface, script, tmp_path / "out.ply")
-    found = meshlabserver.check_mesh(build, tmp_path / "out.ply")
+    found = check_mesh(tmp_path / "out.ply")
     assert report["stop_reason"] == 0 and found["quality"]
     assert 0 < found["selected"] == report["feature_vertices"] < report["vertices"] == found["vertices"]
