@@ -27,6 +27,9 @@ class Outcome:
     origin: tuple = (0, 0, 0)  # the translation in the result's matrix, which the file does not contain
     report: dict = None
     unchanged: bool = True  # the input layer; True also if the host ended before it could be compared
+    # Of the counters of a given mesh, which change nothing else; an entry for each vertex that is not deleted.
+    quality: np.ndarray = None
+    selected: np.ndarray = None
 
     def mesh_in_single_precision(self, layer):
         """(coordinates, faces), to be equal in all hosts; None if there is no mesh."""
@@ -88,22 +91,33 @@ def sentence_of_server(text):
     return " ".join(re.sub("^Start mesh: [a-z ]+", "", sentence) for sentence in sentences)
 
 
-def in_server(build, server, layer, folder):
+def in_server(build, server, pymeshlab, layer, folder):
+    counted = layer.filter == inputs.COUNTERS
+    attributes = [name for name in ALL_ATTRIBUTES if not (counted and name in ("vq", "vf"))]
     script = write_script(build, layer, folder)
     out, kept, copy = (folder / name for name in ("out.ply", "kept.ply", "kept_copy.ply"))
     project = folder / "learned.mlp"
     moved = not (layer.matrix == np.eye(4)).all()
     code, text = meshlabserver.run(server, *server_input(layer, folder), *(("-w", project) if moved else ()),
-                                   "-o", out, "-m", "vq", "vc",
-                                   "-o", copy, "-l", 0, "-m", *ALL_ATTRIBUTES, "-o", kept, "-l", 1, "-m", *ALL_ATTRIBUTES,
+                                   "-o", out, *(("-l", 1, "-m", "vq", "vf") if counted else ("-m", "vq", "vc")),
+                                   "-o", copy, "-l", 0, "-m", *attributes, "-o", kept, "-l", 1, "-m", *attributes,
                                    "-s", script)
     assert code in (0, 255), f"ended with code {code}: {text[-2000:]}"
     if code != 0:
         return Outcome(sentence=sentence_of_server(text))
     assert out.exists() and kept.exists(), text
     same = kept.read_bytes() == copy.read_bytes() if not layer.deleted.any() else True
+    if counted:
+        meshes = new_mesh_set(pymeshlab)
+        meshes.load_new_mesh(str(out))
+        return of_counters(SERVER, meshes.current_mesh(), meshlabserver.figures(text), same)
     origin = _translation_of_last(project) if moved else (0, 0, 0)
     return Outcome(host=SERVER, mesh=out, origin=origin, report=meshlabserver.figures(text), unchanged=same)
+
+
+def of_counters(host, mesh, report, unchanged):
+    return Outcome(host=host, quality=mesh.vertex_scalar_array().astype("f4"), report=report, unchanged=unchanged,
+                   selected=mesh.vertex_selection_array().copy())
 
 
 def _translation_of_last(project):
@@ -145,6 +159,12 @@ def state(meshes):
     return layers, meshes.current_mesh_id() if len(layers) else None
 
 
+def without_values(state):
+    """state() without scalars and selection of the vertices."""
+    layers, current = state
+    return [(*layer[:6], layer[6][1 if layer[5][0] else 0:], *layer[8:]) for layer in layers], current
+
+
 def load(pymeshlab, layer, folder):
     meshes = new_mesh_set(pymeshlab)
     cleaned_by_reader = not np.isfinite(layer.points).all() or any(len(set(face)) < 3 for face in layer.faces)
@@ -175,10 +195,12 @@ def in_pymeshlab(pymeshlab, layer, folder):
         return kept and state(meshes)[0][0] == before[0][0]
 
     try:
-        report = meshes.apply_filter(PYTHON_NAME, **layer.all_parameters())
+        report = meshes.apply_filter(layer.filter, **layer.all_parameters())
     except pymeshlab.PyMeshLabException as error:
         sentence = str(error).split("Details: ", 1)[1].strip()
         return Outcome(sentence=sentence, unchanged=unchanged() and state(meshes) == before)
+    if layer.filter == inputs.COUNTERS:
+        return of_counters(PYMESHLAB, meshes.current_mesh(), report, without_values(state(meshes)) == without_values(before))
     assert len(list(meshes)) == 2 and meshes.current_mesh().label() == "Neural Mesh"
     out = folder / "out.ply"
     meshes.save_current_mesh(str(out))
@@ -192,7 +214,7 @@ def in_pymeshlab(pymeshlab, layer, folder):
 def try_out(build, server, pymeshlab, host, layer, folder):
     """Runs the filter on the layer in the host. AssertionError: a promise is broken."""
     if host == SERVER:
-        return in_server(build, server, layer, folder)
+        return in_server(build, server, pymeshlab, layer, folder)
     return in_pymeshlab(pymeshlab, layer, folder)
 
 

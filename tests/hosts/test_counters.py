@@ -3,7 +3,6 @@
 
 """The counters of a given mesh in all hosts: the same values or the same error message, and nothing else changes."""
 
-import counter_hosts
 import features
 import input_hosts
 import inputs
@@ -31,8 +30,8 @@ def first_of():
 @pytest.mark.parametrize("name, host", in_hosts(COUNTED, ELSEWHERE))
 def test_the_same_values_or_error_message(build, server, pymeshlab, first_of, tmp_path, name, host):
     layer = COUNTED[name]
-    found = counter_hosts.count(build, server, pymeshlab, host, layer, tmp_path)
-    assert found.rest_unchanged, "more than quality and selection has changed"
+    found = input_hosts.try_out(build, server, pymeshlab, host, layer, tmp_path)
+    assert found.unchanged, "more than quality and selection has changed"
     if layer.refused:
         assert layer.refused in found.sentence and found.sentence.endswith("."), found.sentence or "there are counters"
         assert found.sentence == first_of.setdefault(name, found.sentence)
@@ -79,7 +78,7 @@ def test_signals_come_from_the_layer_that_is_named(pymeshlab, meshes):
     for layer in (0, 1, None):
         meshes.apply_filter(inputs.COUNTERS, **({} if layer is None else {"signal_layer": layer}))
         values.append(meshes.current_mesh().vertex_scalar_array().copy())
-        assert counter_hosts.without_values(state(meshes)) == counter_hosts.without_values(before)
+        assert input_hosts.without_values(state(meshes)) == input_hosts.without_values(before)
     assert state(meshes)[0][0] == before[0][0], "the signal layer has changed"
     assert not np.array_equal(values[0], values[1])
     assert np.array_equal(values[1], values[2]), "by default the signals come from the mesh itself"

@@ -66,9 +66,9 @@ REMEDY = """<!DOCTYPE FilterScript>
  <filter name="Delete Selected Vertices"/>"""
 
 
-def test_the_remedy_for_vertices_that_are_not_finite_in_meshlabserver(build, server, tmp_path):
+def test_the_remedy_for_vertices_that_are_not_finite_in_meshlabserver(build, server, pymeshlab, tmp_path):
     layer = INPUTS["not finite"]
-    sentence = input_hosts.in_server(build, server, layer, tmp_path).sentence
+    sentence = input_hosts.in_server(build, server, pymeshlab, layer, tmp_path).sentence
     script = meshlabserver.write_script(build, tmp_path / "remedy.mlx", target_vertices=100)
     _, filters = script.read_text().split("<FilterScript>")
     script.write_text(REMEDY.format(condition=escape(condition_in(sentence))) + filters)
