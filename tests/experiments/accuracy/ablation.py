@@ -4,7 +4,7 @@
 
 """What each optional stage of the reconstruction brings: every stage is skipped, one at a time, over groups of clouds.
 
-    ablation.py --plugin LIBRARY.so [--quick | --small] [--data FOLDER] [--real FOLDER] [--out FOLDER] [--minutes N]
+    ablation.py --plugin LIBRARY.so [--quick] [--data FOLDER] [--real FOLDER] [--out FOLDER] [--minutes N]
     ablation.py --plugin LIBRARY.so --runs [--groups walls,topology] ...    each run with everything on, by any plugin
 
 LIBRARY is pymeshlab's plugin of a build with -DNEURALMESH_ABLATION=ON. Prints one table (markdown) and writes it to
@@ -68,7 +68,6 @@ class Scale:
 
 FULL = Scale(100_000, (500, 2000, 10_000), 1_000_000, 40_000)
 QUICK = Scale(20_000, (500, 1000), 5, 20_000)
-SMALL = Scale(3_000, (200,), 1, 5_000)
 
 
 @dataclass
@@ -426,7 +425,6 @@ def parse(arguments):
     parser.add_argument("--timeout", type=float, default=300, help="seconds of one run")
     parser.add_argument("--runs", action="store_true", help="skip no stages, print each run")
     parser.add_argument("--quick", action="store_true", help="some 40 runs of a second for each stage, one seed")
-    parser.add_argument("--small", action="store_true", help="a few runs on models made in code, for the tests")
     options = parser.parse_args(arguments)
     if not Path(options.plugin).exists():
         parser.error(f"There is no plugin at {options.plugin}.")
@@ -434,10 +432,10 @@ def parse(arguments):
         parser.error(f"There is no stage called {unknown[0]}. There are: {', '.join(stages())}.")
     if unknown := [name for name in options.groups if name not in GROUPS]:
         parser.error(f"There is no group called {unknown[0]}. There are: {', '.join(GROUPS)}.")
-    options.scale = SMALL if options.small else QUICK if options.quick else FULL
-    if options.small or options.quick:
+    options.scale = QUICK if options.quick else FULL
+    if options.quick:
         options.seeds = options.seeds[:1]
-    with_data = options.data and not options.small
+    with_data = options.data
     public = models.PUBLIC_MODELS if options.scale is FULL else CODE_MODELS
     options.closed = TABLE_MODELS if with_data else public
     options.creased = ("fandisk", "block") if with_data else ("crossed-cylinders",)
