@@ -9,19 +9,20 @@ import errno
 import os
 import signal
 import sys
+import time
 from pathlib import Path
 from typing import Any, Generator, List
 
 from neural_mesh.batch_files import Job, jobs_of, remove, remove_asides
 from neural_mesh.manifest import Busy, Manifest, Record
-from neural_mesh.parameters import WrongUsage, check, files_and_settings
-from neural_mesh.sizes import check_space, memory_size
+from neural_mesh.parameters import WrongUsage, check, check_space, files_and_settings, memory_size
 
 # In a result: three coordinates and the quality of 8 bytes, a colour of 4, and two faces of 13.
 BYTES_PER_VERTEX = 62
 # Formats other than PLY may leak memory.
 FILES_PER_PROCESS = 500
 INTERRUPTED = 130  # as shells report Ctrl-C
+SECONDS_BETWEEN_LINES = 10  # where lines stay, such as in the log of a cluster's job
 
 
 def positive(kind: Any) -> Any:
@@ -88,7 +89,6 @@ def opened(out: Path) -> Manifest:
 
 def learn_missing(jobs: List[Job], manifest: Manifest, given: argparse.Namespace) -> int:
     from neural_mesh.children import CannotStart
-    from neural_mesh.progress import Progress
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C
     failures: List[Record] = []
     progress = Progress(len(jobs))
@@ -131,3 +131,44 @@ def started(jobs: List[Job], given: argparse.Namespace) -> Generator[Record, Non
     from neural_mesh import dask_engine
     threads = 1 if given.address else max(1, cores // workers)
     return dask_engine.learn_all(jobs, out, limits, workers, threads, given.address)
+
+
+def duration(seconds: float) -> str:
+    if seconds < 60:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
+
+
+class Progress:
+    """How far a batch is and the time left, on standard error: one line that is renewed, or lines in a file."""
+
+    def __init__(self, total: int) -> None:
+        self._total = total
+        self._done = 0
+        self._failed = 0
+        self._start = self._shown = time.monotonic()
+        self._renews = sys.stderr.isatty()
+        if self._renews:
+            self._show(self._start)
+
+    def add(self, failed: bool) -> None:
+        """Counts a cloud that is finished."""
+        self._done += 1
+        self._failed += failed
+        now = time.monotonic()
+        if self._renews or now - self._shown >= SECONDS_BETWEEN_LINES or self._done == self._total:
+            self._show(now)
+
+    def close(self) -> None:
+        if self._renews:
+            print(file=sys.stderr)
+
+    def _show(self, now: float) -> None:
+        self._shown = now
+        text = f"{self._done} of {self._total}"
+        if self._failed:
+            text += f", {self._failed} failed"
+        if 0 < self._done < self._total:
+            text += f", {duration((now - self._start) / self._done * (self._total - self._done))} left"
+        print(f"\r{text}\033[K" if self._renews else text, end="" if self._renews else "\n", file=sys.stderr, flush=True)

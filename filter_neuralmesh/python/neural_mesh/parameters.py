@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Parameters of the filter as words `name=value` of a command: read, and checked before any work."""
+"""Parameters of the filter as words `name=value` of a command, and sizes of memory and files: read, and checked before any
+work."""
 
 import re
+import shutil
+from pathlib import Path
 from typing import Any, Dict, Iterable, List, Tuple, Union
 
 import numpy as np
@@ -15,6 +18,7 @@ Value = Union[bool, int, float, str]
 Settings = Dict[str, Value]  # as in JSON; a percentage is a text such as "5%"
 
 SETTING = re.compile(r"[A-Za-z_]\w*=")
+UNITS = {"K": 1, "M": 2, "G": 3, "T": 4}
 
 
 class WrongUsage(Exception):
@@ -71,3 +75,23 @@ def check(settings: Settings) -> Dict[str, Any]:
         raise WrongUsage("With crease_lines the filter makes a second layer, and this command writes the mesh only: "
                          "leave crease_lines out.")
     return {**{name: parameter.default for name, parameter in table.items()}, **settings}
+
+
+def memory_size(text: str) -> int:
+    """Bytes of a size as GNU's programs take it: 4G and 4GiB are 4 * 1024**3, 4GB is 4 * 1000**3. Throws ValueError."""
+    found = re.fullmatch(r"(\d+(?:\.\d+)?)(?:([KMGT])(I?B)?)?", text.strip().upper())
+    number = float(found[1]) * (1000 if found[3] == "B" else 1024) ** UNITS.get(found[2], 0) if found else 0
+    if number < 1:
+        raise ValueError(text)
+    return int(number)
+
+
+def gigabytes(size: float) -> str:
+    return f"{size / 1e9:.3g} GB"
+
+
+def check_space(folder: Path, needed: float, what: str) -> None:
+    """Throws WrongUsage if the disk of the folder has not so many bytes left. `what` needs them, as in "The meshes"."""
+    free = shutil.disk_usage(folder).free
+    if free < needed:
+        raise WrongUsage(f"{what} need {gigabytes(needed)}, and {gigabytes(free)} are free in {folder}.")

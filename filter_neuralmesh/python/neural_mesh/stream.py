@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import math
 import os
 import signal
 import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Iterator, Optional
+from typing import Callable, Iterable, Iterator, Optional
 
 import numpy as np
 
@@ -22,13 +23,13 @@ from neural_mesh import Mesh, reconstruct
 from neural_mesh.averages import POINT_BYTES as AVERAGED_BYTES
 from neural_mesh.averages import Averages
 from neural_mesh.batch_files import aside_of, remove, remove_left
-from neural_mesh.clouds import FORMATS, Cloud, CloudError, open_cloud
-from neural_mesh.distances import measure
+from neural_mesh.clouds import FORMATS, Cloud, CloudError, finite, open_cloud
 from neural_mesh.even_sample import CHUNK_BYTES, HOLD_BYTES, EvenSample
 from neural_mesh.files import NotWhole, save_aside
+from neural_mesh.library import COUNTERS, Task
 from neural_mesh.mesh_writers import WRITERS
-from neural_mesh.parameters import Settings, WrongUsage, check, line_of, settings_of
-from neural_mesh.sizes import check_space, gigabytes, memory_size
+from neural_mesh.parameters import (Settings, WrongUsage, check, check_space, gigabytes, line_of, memory_size,
+                                    settings_of)
 
 PER_VERTEX = 100  # points of the sample for each vertex wanted
 FEWEST_PER_VERTEX = 10  # with fewer the mesh suffers
@@ -146,6 +147,44 @@ def _aside(mesh: Path) -> Iterator[Path]:
         yield aside
     finally:
         remove(aside)
+
+
+@dataclass
+class Distances:
+    """Of `points` points, in the units of their coordinates."""
+
+    points: int = 0
+    squares: float = 0  # the sum of the squared distances
+    total: float = 0
+    maximum: float = 0
+
+    @property
+    def rms(self) -> float:
+        return math.sqrt(self.squares / self.points) if self.points else 0.0
+
+    @property
+    def mean(self) -> float:
+        return self.total / self.points if self.points else 0.0
+
+    def add(self, distances: np.ndarray) -> None:
+        if len(distances):
+            self.points += len(distances)
+            self.squares += float(np.square(distances).sum())
+            self.total += float(distances.sum())
+            self.maximum = max(self.maximum, float(distances.max()))
+
+
+def measure(mesh: Mesh, chunks: Iterable[np.ndarray], threads: int, report: Callable[[], None]) -> Distances:
+    """The distances of all finite points to the nearest face of the mesh. The same for any number of threads; 0: one per
+    core. `report` is called after each chunk."""
+    found = Distances()
+    with Task(COUNTERS) as task:
+        task.set("threads", threads)
+        task.set_arrays("mesh", mesh.vertices, mesh.faces)
+        for points in chunks:
+            found.add(task.distances(points[finite(points)]))
+            report()
+    return found
 
 
 class _Stream:
