@@ -12,24 +12,18 @@ BUILT_FOR = "2025.7"  # the release of pymeshlab; its post-releases have the sam
 FILTER = "generate_surface_reconstruction_neural_mesh"
 COUNTERS = "compute_scalar_by_neural_normal_counter_per_vertex"
 PLUGIN = Path(__file__).with_name("libfilter_neuralmesh.so")  # only wheels for Linux on x86-64 have it
+_RESULTS = """ All parameters and results are in the pages of Neural Mesh; pymeshlab.print_filter_parameter_list('%s')
+lists the parameters. Returns a dict of figures; neural_mesh.log() gives the warnings and notes as sentences. Raises
+PyMeshLabException with a sentence that says what to do."""
 _DOCUMENTATION = {
     FILTER: """Reconstructs the surface of the current layer's points as a triangle mesh, a new layer.
 
 The mesh has exactly `target_vertices` vertices (default 10000), dense where the surface bends and sparse where it is
-flat. The vertex quality measures how much it bends. All parameters and results are in the pages of Neural Mesh;
-pymeshlab.print_filter_parameter_list('%s') lists the parameters.
-
-Returns a dict: vertices, faces, genus, components, rms_error, warnings and others. neural_mesh.log() gives the warnings
-and notes as sentences. Raises PyMeshLabException with a sentence that says what to do.""",
+flat. The vertex quality measures how much it bends.""" + _RESULTS,
     COUNTERS: """Computes how much of a feature each vertex of the current mesh is, as its scalar.
 
 A copy of the mesh learns random points of the layer `signal_layer` (default: the mesh itself). The scalar holds the
-normal counter or, with `feature_measure` 1, the crease measure; `select_features` selects the features. Nothing else
-changes. All parameters and results are in the pages of Neural Mesh; pymeshlab.print_filter_parameter_list('%s') lists
-the parameters.
-
-Returns a dict: vertices, signals, feature_vertices, mean_counter, seconds and others. neural_mesh.log() gives the
-warnings and notes as sentences. Raises PyMeshLabException with a sentence that says what to do.""",
+normal counter or, with `feature_measure` 1, the crease measure; `select_features` selects the features.""" + _RESULTS,
 }
 
 
