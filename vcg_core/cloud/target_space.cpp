@@ -6,9 +6,12 @@
 #include <vcg/space/line3.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <tuple>
 #include <utility>
+
+#include "vcg_core/base/platform.h"
 
 namespace neuralmesh {
 
@@ -200,6 +203,21 @@ TargetSpace TargetSpace::moved_in_batches(const std::function<void(Span<vcg::Poi
 vcg::Point3f TargetSpace::sample(Random& random) const {
     if (!is_exact()) return positions_[draw_point(random)];
     return move_ ? move_(draw_exact(random)) : draw_exact(random);
+}
+
+void TargetSpace::sample(Random& random, int count, std::vector<vcg::Point3f>& samples) const {
+    samples.clear();
+    if (is_exact()) {
+        for (int i = 0; i < count; ++i) samples.push_back(sample(random));
+        return;
+    }
+    constexpr int kAtATime = 32;  // reads that the processor has under way
+    std::array<std::size_t, kAtATime> drawn;
+    for (int i = 0; i < count; i += kAtATime) {
+        const auto end = drawn.begin() + std::min(kAtATime, count - i);
+        for (auto at = drawn.begin(); at != end; ++at) prefetch(&positions_[*at = draw_point(random)]);
+        for (auto at = drawn.begin(); at != end; ++at) samples.push_back(positions_[*at]);
+    }
 }
 
 std::size_t TargetSpace::draw_point(Random& random) const {

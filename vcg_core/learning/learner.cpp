@@ -114,8 +114,7 @@ void Learner::keep_boundary_signals(const std::vector<StepResult>& steps, const 
 /// Draws and learns \p count signals. Calls \p after_signal() after the counters of each.
 template <class AfterSignal>
 void Learner::learn_batch(int count, const AfterSignal& after_signal) {
-    drawn_.clear();
-    for (int i = 0; i < count; ++i) drawn_.push_back(target_.sample(random_));
+    target_.sample(random_, count, drawn_);
     const vcg::Point3f* signals = drawn_.data();
     const std::vector<StepResult>& steps = basic_steps(signals, count);
     if (mends_notches_) keep_boundary_signals(steps, signals);

@@ -383,5 +383,14 @@ TEST(TargetSpace, HasNoNormalsIfAllAreZero) {
     EXPECT_TRUE(target.has_normals());
 }
 
+TEST(TargetSpace, DrawsManyPointsAsOneByOne) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(1000));
+    Random one(3), many(3);
+    std::vector<vcg::Point3f> samples;
+    target.sample(many, 77, samples);
+    ASSERT_EQ(samples.size(), 77U);
+    for (const vcg::Point3f& p : samples) EXPECT_EQ(p, target.sample(one));
+}
+
 }  // namespace
 }  // namespace neuralmesh
