@@ -50,13 +50,14 @@ std::vector<FacingVote> facing_votes(const Network& network, const TargetSpace& 
         if (network.ring(v).open != 0) votes[static_cast<std::size_t>(component[v])].open = true;
     if (!target.has_normals()) return votes;
     const Surface surface(network);
-    const FaceTree tree(surface);
-    const std::vector<Point3f>& points = target.positions();
-    const std::size_t step = points.size() / kMostVoters + 1;
-    for (std::size_t i = step / 2; i < points.size(); i += step) {
-        const Point3f n = unpacked(target.normals()[i]);
-        const Point3f& p = points[i];
-        const int face = tree.nearest(Vector3(p[0], p[1], p[2])).face;
+    const std::size_t count = target.positions().size(), step = count / kMostVoters + 1;
+    std::vector<Vector3> voters;
+    for (std::size_t i = step / 2; i < count; i += step) voters.push_back(to_eigen(target.positions()[i]));
+    ThreadTeam alone(1);
+    const std::vector<Hit> hits = FaceTree(surface, alone).nearest(voters, alone);
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+        const Point3f n = unpacked(target.normals()[step / 2 + k * step]);
+        const int face = hits[k].face;
         const float above = unit_normal(surface, face).dot(Vector3(n[0], n[1], n[2]));
         if (!(std::abs(above) > kAlongFace)) continue;
         FacingVote& vote = votes[static_cast<std::size_t>(component[surface.faces[face][0]])];
