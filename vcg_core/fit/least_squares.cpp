@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Normal equations in 3x3 blocks along the one-rings, and conjugate gradients on them, on all threads. The
-// bits do not depend on their number: a thread computes whole rows, and the sum of each row keeps its order.
+// Normal equations in 3x3 blocks along the one-rings. least_squares_solution.cpp solves them.
 #include "vcg_core/fit/least_squares.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
-#include <utility>
 
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
@@ -35,18 +33,9 @@ constexpr float kBoundaryBending = 0.05F;
 constexpr float kCrease = 4.0F;
 
 constexpr int kSystemChunk = 256;
-/// Rows that one thread computes: with fewer, waiting for each other costs more than it saves.
-constexpr int kSolverChunk = 512;
 
 float mean_of(const PerVertex<float>& values, const std::array<VertexId, 4>& corners) {
     return (values[corners[0]] + values[corners[1]] + values[corners[2]] + values[corners[3]]) / 4;
-}
-
-/// In double precision.
-double dot(const PerVertex<Vector3>& a, const PerVertex<Vector3>& b) {
-    double sum = 0;
-    for (VertexId v = 0; v < a.size(); ++v) sum += static_cast<double>(a[v].dot(b[v]));
-    return sum;
 }
 
 }  // namespace
@@ -276,74 +265,6 @@ void PointToPlaneSystem::centre_along(const Vector3& direction, const Vector3& a
     const float centring = kCentring * points_per_vertex_;
     diagonal_[v].add(Symmetric3::outer(direction), centring);
     force_[v] += centring * away.dot(direction) * direction;
-}
-
-void PointToPlaneSystem::multiply(float lambda, const PerVertex<Vector3>& u, ThreadTeam& team,
-                                  PerVertex<Vector3>& result) const {
-    std::vector<Vector3> forces(bending_terms_.size());
-    parallel_for(static_cast<int>(forces.size()), kSolverChunk, team, [&](int t) {
-        const BendingTerm& term = bending_terms_[static_cast<std::size_t>(t)];
-        const auto& c = term.coefficient;
-        const Vector3 gap = c[0] * u[term.corner[0]] + c[1] * u[term.corner[1]] + c[2] * u[term.corner[2]] +
-                            c[3] * u[term.corner[3]];
-        forces[static_cast<std::size_t>(t)] = ((lambda + term.stiffness) * term.weight) * gap;
-    });
-    parallel_for(result.size(), kSolverChunk, team, [&](VertexId v) {
-        const Ring& ring = network_.ring(v);
-        Vector3 sum = diagonal_[v] * u[v];
-        const Symmetric3* block = row(v);
-        for (int i = 0; i < ring.valence; ++i) sum += block[i] * u[ring[i]];
-        for (std::size_t i = first_of_terms_[v]; i < first_of_terms_[v + 1]; ++i)
-            sum += terms_by_vertex_[i].coefficient * forces[terms_by_vertex_[i].term];
-        result[v] = sum;
-    });
-    for (const BendingTerm& term : boundary_terms_) {  // their squares are in the diagonal
-        const auto& c = term.coefficient;
-        const Vector3 gap = c[0] * u[term.corner[0]] + c[1] * u[term.corner[1]] + c[2] * u[term.corner[2]];
-        for (std::size_t k = 0; k < 3; ++k)
-            result[term.corner[k]] += (term.weight * c[k]) * (gap - c[k] * u[term.corner[k]]);
-    }
-}
-
-PerVertex<Vector3> PointToPlaneSystem::solution(float lambda, const Accuracy& accuracy,
-                                                ThreadTeam& team) const {
-    const int n = diagonal_.size();
-    const Vector3 zero = Vector3::Zero();
-    const auto for_rows = [&](const auto& body) { parallel_for(n, kSolverChunk, team, body); };
-    PerVertex<Symmetric3> inverse(n);
-    PerVertex<Vector3> u(n, zero), residual(n, zero), scaled(n, zero), step(n, zero), image(n, zero);
-    for_rows([&](VertexId v) {
-        if (!network_.alive(v)) return;
-        Symmetric3 block = diagonal_[v];
-        block.add_identity(lambda * bending_diagonal_[v] + stiff_diagonal_[v]);
-        inverse[v] = block.inverse();
-        residual[v] = force_[v] + lambda * bending_force_[v];
-        step[v] = scaled[v] = inverse[v] * residual[v];
-    });
-    double energy = dot(residual, scaled);
-    const double enough = accuracy.tolerance * accuracy.tolerance * energy;
-    for (int i = 0; i < accuracy.iterations && energy > enough && energy > 0; ++i) {
-        multiply(lambda, step, team, image);
-        const double curvature = dot(step, image);
-        if (!(curvature > 0)) break;
-        const auto alpha = static_cast<float>(energy / curvature);
-        for_rows([&](VertexId v) {
-            u[v] += alpha * step[v];
-            residual[v] -= alpha * image[v];
-            scaled[v] = inverse[v] * residual[v];
-        });
-        const double before = std::exchange(energy, dot(residual, scaled));
-        const auto beta = static_cast<float>(energy / before);
-        for_rows([&](VertexId v) { step[v] = scaled[v] + beta * step[v]; });
-    }
-    return u;
-}
-
-std::vector<PerVertex<Vector3>> PointToPlaneSystem::solve(const std::vector<float>& lambdas, ThreadTeam& team,
-                                                          const Accuracy& accuracy) const {
-    std::vector<PerVertex<Vector3>> solutions;
-    for (const float lambda : lambdas) solutions.push_back(solution(lambda, accuracy, team));
-    return solutions;
 }
 
 PerVertex<Vector3> PointToPlaneSystem::right_side(float lambda) const {

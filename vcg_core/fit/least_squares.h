@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "vcg_core/base/simd.h"
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/fit/boundary.h"
 #include "vcg_core/fit/points_by_face.h"
@@ -18,16 +19,34 @@
 
 namespace neuralmesh {
 
-/// A symmetric 3x3 matrix: the entries on and above the diagonal, in six floats where Eigen's takes nine.
-struct Symmetric3 {
-    float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+/// A vector for each of four bending weights, one per lane.
+struct FourVectors {
+    Four x{}, y{}, z{};
+
+    FourVectors& operator+=(const FourVectors& b) {
+        x += b.x;
+        y += b.y;
+        z += b.z;
+        return *this;
+    }
+    /// \p s: a number, or one for each lane
+    template <class Scalar>
+    friend FourVectors operator*(const Scalar& s, const FourVectors& v) {
+        return {s * v.x, s * v.y, s * v.z};
+    }
+};
+
+/// A symmetric 3x3 matrix: the entries on and above the diagonal, in six numbers where Eigen's takes nine.
+template <class Number>
+struct Symmetric {
+    Number xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
 
     /// n n^T
-    static Symmetric3 outer(const Vector3& n) {
+    static Symmetric outer(const Vector3& n) {
         return {n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2], n[2] * n[2]};
     }
     /// Adds \p s b.
-    void add(const Symmetric3& b, float s) {
+    void add(const Symmetric& b, float s) {
         xx += s * b.xx;
         xy += s * b.xy;
         xz += s * b.xz;
@@ -41,18 +60,19 @@ struct Symmetric3 {
         yy += s;
         zz += s;
     }
-    Vector3 operator*(const Vector3& v) const {
-        return {xx * v[0] + xy * v[1] + xz * v[2], xy * v[0] + yy * v[1] + yz * v[2],
-                xz * v[0] + yz * v[1] + zz * v[2]};
+    FourVectors operator*(const FourVectors& v) const {
+        return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z,
+                xz * v.x + yz * v.y + zz * v.z};
     }
     /// \pre regular
-    Symmetric3 inverse() const {
+    Symmetric inverse() const {
         Eigen::Matrix3f m;
         m << xx, xy, xz, xy, yy, yz, xz, yz, zz;
         m = m.inverse().eval();
         return {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)};
     }
 };
+using Symmetric3 = Symmetric<float>;
 
 /// The noise of the points around each vertex, and how stiff it makes the surface there. Either may be empty:
 /// 0.
@@ -98,8 +118,8 @@ public:
     };
     /// For each of the bending weights \p lambdas (1: a gap weighs as much as the points of one vertex at
     /// that distance) the displacement of every slot, by conjugate gradients preconditioned with the 3x3
-    /// diagonal blocks. O(vertices) per iteration. The result does not depend on the number of
-    /// threads.
+    /// diagonal blocks, four weights at a time, as an iteration takes most of its time to read the matrix.
+    /// O(vertices) per iteration. The result does not depend on the number of threads.
     std::vector<PerVertex<Vector3>> solve(const std::vector<float>& lambdas, ThreadTeam& team,
                                           const Accuracy& accuracy) const;
     std::vector<PerVertex<Vector3>> solve(const std::vector<float>& lambdas, ThreadTeam& team) const {
@@ -127,7 +147,12 @@ private:
         std::array<Vector3, 3> force;
     };
 
-    PerVertex<Vector3> solution(float lambda, const Accuracy& accuracy, ThreadTeam& team) const;
+    /// What an iteration of conjugate gradients changes.
+    struct Iteration;
+    Iteration first_iteration(const Four& lambdas) const;
+    PerVertex<FourVectors> solutions(const Four& lambdas, const Accuracy& accuracy, ThreadTeam& team) const;
+    void multiply(const Four& lambdas, const PerVertex<FourVectors>& u, ThreadTeam& team,
+                  std::vector<FourVectors>& forces, PerVertex<FourVectors>& result) const;
     static FaceSums sum_over(const Surface& surface, const PointsByFace& points, float hold, int face);
     void gather(const PerFace<FaceSums>& sums, const Surface& surface, VertexId v);
     void regularise(const Surface& surface, float missing_points, VertexId v);
