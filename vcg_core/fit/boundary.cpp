@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "vcg_core/base/ablation.h"
+#include "vcg_core/base/median.h"
 #include "vcg_core/fit/face_rules.h"
 
 namespace neuralmesh {
@@ -192,25 +193,42 @@ bool is_notch(const Network& network, const Surface& surface, const PointsByFace
 }
 
 // Tried with tests/experiments/accuracy/open_table.py, one value each.
-constexpr int kRingsOfWeb = 3;        ///< of the density, over the rings
+constexpr int kRingsOfWeb = 3;        ///< of the density
 constexpr float kFewestExpected = 8;  ///< fewer say nothing
 constexpr float kMostShare = 0.1F;    ///< of the points expected
 
-/// Points per area around every vertex. Faces without points do not count, since those of a web have none.
-PerVertex<float> supported_density(const Network& network, const Surface& surface,
-                                   const PointsByFace& points) {
-    PerFace<float> counts = points.counts();
-    for (float& count : counts)
-        if (count == 0) count = -1;
-    return point_density(network, surface, counts, kRingsOfWeb);
+/// The faces within kRingsOfWeb rings of \p f, rising.
+std::vector<int> faces_near(const Surface& surface, int f) {
+    std::vector<int> near{f};
+    for (int ring = 0; ring < kRingsOfWeb; ++ring) {
+        std::vector<int> wider;
+        for (const int g : near)
+            for (const VertexId v : surface.faces[g])
+                wider.insert(wider.end(), surface.faces_around(v).begin(), surface.faces_around(v).end());
+        std::sort(wider.begin(), wider.end());
+        wider.erase(std::unique(wider.begin(), wider.end()), wider.end());
+        near = std::move(wider);
+    }
+    return near;
 }
 
-/// Whether the face lacks the points that the least dense of its corners lets expect. Points whose foot is on
-/// an edge lie beyond it, on other surface.
-bool is_web(const Surface& surface, const PointsByFace& points, const PerVertex<float>& density, int f) {
-    const Triangle& corners = surface.faces[f];
-    const float least = std::min({density[corners[0]], density[corners[1]], density[corners[2]]});
-    const float expected = least * area_vector(surface, f).norm() / 2;
+/// Points per area as most points near face \p f see them: the median, over these points, of the others on
+/// the point's face. However large a web is, its faces hardly count, since few points are on them.
+float density_near(const Surface& surface, const PointsByFace& points, int f) {
+    std::vector<float> seen;
+    for (const int g : faces_near(surface, f)) {
+        const int count = points.of(g).size();
+        const float area = area_vector(surface, g).norm() / 2;
+        if (area > 0)
+            seen.insert(seen.end(), static_cast<std::size_t>(count), static_cast<float>(count - 1) / area);
+    }
+    return seen.empty() ? 0 : median(std::move(seen));
+}
+
+/// Whether the face lacks the points that the surface around it lets expect. Points whose foot is on an edge
+/// lie beyond it, on other surface.
+bool is_web(const Surface& surface, const PointsByFace& points, int f) {
+    const float expected = density_near(surface, points, f) * area_vector(surface, f).norm() / 2;
     if (!(expected >= kFewestExpected)) return false;
     int count = 0;
     for (const PointsByFace::Assignment& assigned : points.of(f)) {
@@ -260,7 +278,6 @@ int fill_notches(Network& network, const std::vector<VertexId>& notches, const P
 int open_webs(Network& network, const Surface& surface, const PointsByFace& points,
               const PerVertex<char>& barred) {
     if (!surface.has_boundary() || skips("webs")) return 0;
-    const PerVertex<float> density = supported_density(network, surface, points);
     std::vector<VertexId> starts;  // of the boundary edges to look at
     for (const VertexId v : network.vertices())
         if (network.ring(v).open != 0) starts.push_back(v);
@@ -271,7 +288,7 @@ int open_webs(Network& network, const Surface& surface, const PointsByFace& poin
         const VertexId after = network.ring(v)[0], corner = network.ring(v)[1];
         if (barred[v] + barred[after] + barred[corner] > 0) continue;
         const int f = corner_of_edge(surface, v, after).face;
-        if (f < 0 || !is_web(surface, points, density, f)) continue;
+        if (f < 0 || !is_web(surface, points, f)) continue;
         network.open_face(v);
         ++opened;
         starts.push_back(v);
