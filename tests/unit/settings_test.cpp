@@ -12,6 +12,7 @@
 #include <limits>
 #include <set>
 
+#include "tests/unit/support/sentences.h"
 #include "vcg_core/base/error.h"
 
 namespace neuralmesh {
@@ -21,12 +22,7 @@ using Kind = SettingInfo::Kind;
 
 /// The message that check() throws, or nothing.
 std::string complaint(const Settings& settings, const std::vector<SettingInfo>& table = setting_table()) {
-    try {
-        settings.check(table);
-    } catch (const SettingError& error) {
-        return error.what();
-    }
-    return {};
+    return sentences::complaint_of([&] { settings.check(table); });
 }
 
 using TableOf = const std::vector<SettingInfo>& (*)();
