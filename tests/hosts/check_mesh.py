@@ -24,7 +24,8 @@ def check_mesh(mesh, reference=None):
         found.update(evaluate.topology(vertices, faces), volume=np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
         found["watertight"] = found["manifold"] and found["boundary_edges"] == 0
     if reference:
-        true = _loaded(reference).current_mesh()
+        others = _loaded(reference)  # which owns its layer
+        true = others.current_mesh()
         here, there = (vertices, faces), (true.vertex_matrix(), true.face_matrix())
         for name, one, other in (("to_mesh", there, here), ("to_reference", here, there)):
             points = models.sample_surface(*one, SAMPLES, np.random.default_rng(1))[0] if len(one[1]) else one[0]
