@@ -130,26 +130,6 @@ TEST(NodeLink, EulerCharacteristicsAreThoseOfTheSimplices) {
     EXPECT_EQ(differ, 0);
 }
 
-TEST(NodeLink, EulerCharacteristicOfKnownSolids) {
-    const Lattice lattice = small_lattice();
-    const auto euler = [&](const auto& inside) {
-        NodeSet solid(lattice.size(), 0);
-        for_each_node(lattice,
-                      [&](int x, int y, int z) { solid[lattice.index(x, y, z)] = inside(x, y, z) ? 1 : 0; });
-        return euler_characteristic(lattice, solid);
-    };
-    const auto in_cube = [](int x, int y, int z) {
-        return x >= 2 && x <= 8 && y >= 2 && y <= 8 && z >= 2 && z <= 8;
-    };
-    EXPECT_EQ(euler([](int, int, int) { return false; }), 0);
-    EXPECT_EQ(euler([](int x, int y, int z) { return x == 5 && y == 5 && z == 5; }), 1);
-    EXPECT_EQ(euler(in_cube), 1);
-    EXPECT_EQ(euler([&](int x, int y, int z) { return in_cube(x, y, z) && z != 5; }), 2);
-    EXPECT_EQ(euler([&](int x, int y, int z) { return in_cube(x, y, z) && (x != 5 || y != 5); }), 0);
-    EXPECT_EQ(euler([&](int x, int y, int z) { return in_cube(x, y, z) && (x != 5 || y != 5 || z != 5); }),
-              2);  // a cavity
-}
-
 /// Random values, one in \p one_in of them negative; positive on the walls.
 PerNode<float> random_values(const Lattice& lattice, std::uint64_t seed, std::uint32_t one_in) {
     Random random(seed);
