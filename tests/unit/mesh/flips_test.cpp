@@ -62,19 +62,13 @@ int best_of_all_flips(const Network& network, int max_valence) {
     return best;
 }
 
-std::vector<vcg::Point3f> all_positions(const Network& network) {
-    std::vector<vcg::Point3f> positions;
-    for (const VertexId v : network.vertices()) positions.push_back(network.position(v));
-    return positions;
-}
-
 TEST(ValenceFlips, LowerTheIrregularityUntilNoFlipDoes) {
     int flips = 0;
     for (const Start& start : starts()) {
         SCOPED_TRACE(start.name);
         Network network = with_random_flips(referee::network_of(start.shape), 200);
         const referee::Census topology = referee::census(network.faces());
-        const auto positions = all_positions(network);
+        const auto positions = referee::positions_of(network);
         for (int done = 1; done > 0; flips += done) {
             const int before = irregularity(network);
             done = flip_edges_for_valence(network, {always});
@@ -83,7 +77,7 @@ TEST(ValenceFlips, LowerTheIrregularityUntilNoFlipDoes) {
             if (HasFatalFailure()) return;
         }
         EXPECT_EQ(best_of_all_flips(network, Ring::kMaxValence), irregularity(network));
-        EXPECT_EQ(all_positions(network), positions);
+        EXPECT_EQ(referee::positions_of(network), positions);
     }
     EXPECT_GT(flips, 50);
 }

@@ -111,13 +111,9 @@ TEST(Simplify, MakesEdgesInProportionToTheLengthsAskedFor) {
     EXPECT_LT(coarse, 200);
 }
 
-std::vector<vcg::Point3f> positions_of(const Network& network) {
-    std::vector<vcg::Point3f> positions;
-    for (const VertexId v : network.vertices()) positions.push_back(network.position(v));
-    return positions;
+IndexedMesh<float> mesh_of(const Network& network) {
+    return {referee::positions_of(network), network.faces()};
 }
-
-IndexedMesh<float> mesh_of(const Network& network) { return {positions_of(network), network.faces()}; }
 
 TEST(BoundaryLoops, AreFound) {
     const Network tube = network_of(shapes::tube(7, 3));

@@ -29,6 +29,12 @@ inline Network network_of(const shapes::Shape& shape, double noise = 0, std::uin
     return {positions, shape.faces};
 }
 
+inline std::vector<vcg::Point3f> positions_of(const Network& network) {
+    std::vector<vcg::Point3f> positions;
+    for (const VertexId v : network.vertices()) positions.push_back(network.position(v));
+    return positions;
+}
+
 /// The sorted faces, each rotated to start with its smallest vertex: equal for equal meshes.
 inline std::vector<Triangle> canonical(std::vector<Triangle> faces) {
     for (Triangle& f : faces) std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());

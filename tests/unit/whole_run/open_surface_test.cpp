@@ -76,17 +76,6 @@ TEST(OpenSurface, IsTheStartOfWallsWithGapsAsWideAsTheyAreThick) {
     EXPECT_FALSE(has_warning(mesh, "enclose no space"));
 }
 
-TEST(OpenSurface, LeavesClosedPartsClosed) {
-    // A sphere, and half of one apart from it.
-    Cloud cloud = shapes::sphere_cloud(20000);
-    for (const vcg::Point3d& p : shapes::sphere_cloud(20000))
-        if (p[0] < 0) cloud.push_back(p + vcg::Point3d(3, 0, 0));
-    const NeuralMesh mesh = learn(cloud, settings_with(600, kAutomatic));
-    EXPECT_EQ(mesh.report.components, 2);
-    EXPECT_EQ(mesh.report.genus, 0);
-    EXPECT_EQ(mesh.report.boundary_loops, 1);
-}
-
 TEST(OpenSurface, IsClosedWhereBothWallsArePoints) {
     // Both walls of a cup, too close to each other for a space between them that the shell finds.
     Random random(1);
