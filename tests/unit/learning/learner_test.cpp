@@ -120,6 +120,25 @@ TEST(Learner, IsTheReferenceInBatchesOnOneThreadAndOnThree) {
     }
 }
 
+/// For the thread sanitizer, too, which takes no whole runs.
+TEST(Learner, SettlesAlikeOnOneThreadAndOnTwo) {
+    const TargetSpace target = target_of(shapes::torus_cloud(5000));
+    NoProgress progress;
+    LearnerOptions options;
+    options.threads = 1;
+    Learner alone(target, options, start_of(shapes::torus_grid(70, 50), 0.3));
+    ASSERT_TRUE(alone.settle(1, progress));
+    options.threads = 2;
+    Learner together(target, options, start_of(shapes::torus_grid(70, 50), 0.3));
+    ASSERT_TRUE(together.settle(1, progress));
+    EXPECT_EQ(together.signals(), alone.signals());
+    for (VertexId v = 0; v < alone.network().slot_count(); ++v) {
+        ASSERT_EQ(together.network().position(v), alone.network().position(v)) << v;
+        ASSERT_EQ(together.feature_counters().value(v), alone.feature_counters().value(v)) << v;
+        ASSERT_EQ(together.utility_counters().value(v), alone.utility_counters().value(v)) << v;
+    }
+}
+
 TEST(Learner, TakesSignalsOneByOneToTheLetter) {
     const TargetSpace target = target_of(shapes::sphere_cloud(100));
     LearnerOptions options;

@@ -10,7 +10,6 @@
 
 #include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/runs.h"
-#include "tests/unit/support/shell_shapes.h"
 #include "vcg_core/reconstruct.h"
 
 namespace neuralmesh {
@@ -45,10 +44,6 @@ TEST(Determinism, SameSeedSameBytesWhateverTheThreads) {
     for (const Settings& settings : variants())
         expect_same_with_threads(shapes::sphere_cloud(1500, 0.01), settings);
     expect_same_with_threads(shapes::uneven_sphere_cloud(5000, 20, 0.01), runs::with_target(500));
-    // Only where parts nearly touch, as the points of a sparse cloud do, does the shell use threads.
-    Random random(16);
-    const auto sparse = shell_shapes::sample(shell_shapes::torus(1, 0.35), 800, random);
-    expect_same_with_threads(sparse, runs::with_target(200));
     const shapes::Cloud two = shapes::two_sphere_cloud(10000, 3);
     Settings apart = runs::with_target(1500, kTetrahedron);
     apart.learn_topology = true;

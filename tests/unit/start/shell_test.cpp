@@ -180,6 +180,18 @@ TEST(Shell, VerticesFollowTheBudget) {
     }
 }
 
+/// Only where parts nearly touch, as the points of a sparse cloud do, does the shell use threads.
+TEST(Shell, SparseCloudSameBytesForAnyNumberOfThreads) {
+    Random random(16);
+    const auto cloud = shell_shapes::sample(shell_shapes::torus(1, 0.35), 800, random);
+    ShellOptions alone, together;
+    alone.threads = 1;
+    together.threads = 3;
+    const StartMesh one = shell(cloud, alone), three = shell(cloud, together);
+    EXPECT_TRUE(one.positions == three.positions);
+    EXPECT_EQ(one.faces, three.faces);
+}
+
 /// Spheres of the given radii about one centre, with \p count points on all.
 std::vector<vcg::Point3d> spheres(const std::vector<double>& radii, std::size_t count, double noise = 0) {
     Random random(7);
