@@ -50,14 +50,15 @@ UNITS = [  # an expression that the name or the comment has to match; the first 
 
 MEASURED = re.compile(r"_table|of the error|times the error|error of|shell_topology|measured|logistic|\bmodels?\b|bunny|fandisk"
                       r"|kitten|feline|koala|block|armadillo|homer|turbine|genus3|eight\b")
-SUBJECTS = {
-    "noise": r"[nN]oise|variance|\bcalm\b|[dD]eviation",
-    "points per vertex": r"points_per_vertex|\bper_vertex\(|(?<!Signals)(?<!Wins)PerVertex\b|PerCarried|PerLearned|PrecisePoints"
-                         r"|FewestToFill|PointsPer(Part|Node)",
-    "vertices asked for": r"(target|final|wanted|fewest)_vertices|most_wanted|\bcarried\b|grow_to|reduce_to|VerticesToHold"
-                          r"|DenseFrom|ByVolumeFrom",
-}
-NO_RESULT = ("learning/memory_order.cpp",)  # thresholds there decide about speed alone
+# Places where the result depends on a threshold: statements about one of the subjects that compare with a number or a
+# constant, are bounded by one, or choose between two. In NO_RESULT they decide about speed alone.
+SUBJECT = re.compile(
+    r"[nN]oise|variance|\bcalm\b|[dD]eviation"
+    r"|points_per_vertex|\bper_vertex\(|(?<!Signals)(?<!Wins)PerVertex\b|PerCarried|PerLearned|PrecisePoints|FewestToFill"
+    r"|PointsPer(Part|Node)"
+    r"|(target|final|wanted|fewest)_vertices|most_wanted|\bcarried\b|grow_to|reduce_to|VerticesToHold|DenseFrom|ByVolumeFrom")
+BOUND = re.compile(r"^(?=.*([<>]|\b(clamp|min|max)\())(?=.*(\bk[A-Z]\w*|(?<![\w.])([2-9]|1\d)\d*\b))|\?.*\bk[A-Z]\w*|\? \d+ : \d+")
+NO_RESULT = ("learning/memory_order.cpp",)
 CONSTANT = re.compile(r"^\s*(?:inline |static )*constexpr (?!const char)([\w:<>]+) (k[A-Z].*)$")
 DECLARED = re.compile(r"(k[A-Z]\w*)(?:\[\w*\])? ?(?:= ?|(?=\{))((?:\{.*?\}|[^,{]|,(?! k[A-Z]))+)")
 FUNCTION = re.compile(r"\bconstexpr [\w:<>]+ \w+\(")
@@ -146,34 +147,18 @@ def unit_of(constant):
     return ""
 
 
-def statements(text):
-    """The statements of a file without comments and strings, each on one line."""
-    code = re.sub(r"//[^\n]*|/\*.*?\*/", "", text, flags=re.DOTALL)
-    code = re.sub(r'\s*(?:&&|\|\|)\s*!?skips\("\w+"\)', "", code)  # of development builds
-    code = re.sub(r'"(?:[^"\\\n]|\\.)*"', '""', code)
-    return [re.sub(r"\s+", " ", part).strip() for part in re.split(r"[;{}]", code)]
-
-
-def has_threshold(statement):
-    """Whether it compares with a number or a constant, is bounded by one, or chooses between two."""
-    code = re.sub(r"\b\w+(?:::\w+)*<[\w:,&* ]*>", "", re.sub(r"->|<<|>>", "", statement))
-    number, constant = r"(?<![\w.])(?:[2-9]|1\d)\d*\b", r"\bk[A-Z]\w*"
-    return bool(re.search(r"[<>]=?|\b(clamp|min|max)\(", code) and re.search(f"{constant}|{number}", code)
-                or re.search(rf"\?.*{constant}|\? {number} : {number}", code))
-
-
 def thresholds(root):
-    """(path, statement, subjects) of every place that depends on a threshold, or on two."""
-    found = []
+    """(path, statement) of every place that depends on a threshold."""
     for path in files(root):
         name = str(path.relative_to(root / "vcg_core"))
-        for statement in statements(path.read_text()) if name not in NO_RESULT else ():
-            if re.match(r"#|(static |inline )*constexpr|for \(|.*\bthrow\b", statement) or not has_threshold(statement):
-                continue
-            subjects = [subject for subject, expression in SUBJECTS.items() if re.search(expression, statement)]
-            if subjects:
-                found.append((name, statement, subjects))
-    return found
+        code = re.sub(r"//[^\n]*|/\*.*?\*/", "", path.read_text(), flags=re.DOTALL)
+        code = re.sub(r'\s*(?:&&|\|\|)\s*!?skips\("\w+"\)', "", code)  # of development builds
+        code = re.sub(r'"(?:[^"\\\n]|\\.)*"', '""', code)
+        for statement in (" ".join(part.split()) for part in re.split(r"[;{}]", code)) if name not in NO_RESULT else ():
+            bare = re.sub(r"\b\w+(?:::\w+)*<[\w:,&* ]*>", "", re.sub(r"->|<<|>>", "", statement))
+            if SUBJECT.search(statement) and BOUND.search(bare) and not re.match(
+                    r"#|(static |inline )*constexpr|for \(|.*\bthrow\b", statement):
+                yield name, statement
 
 
 def cell(text):
@@ -189,7 +174,7 @@ def page(root):
     constants = all_constants(root)
     tuned = [c for c in constants if why_inert(c) is None]
     inert = [c for c in constants if why_inert(c) is not None]
-    places = thresholds(root)
+    places = list(thresholds(root))
     folders = sorted({folder_of(c.path) for c in constants})
 
     def count(of, folder):
@@ -207,9 +192,7 @@ def page(root):
                    f"{count(inert, folder)} |")
     out += ["| all | " + " | ".join(str(sum(count(of, folder) for folder in folders))
                                     for of in (tuned, measured, bare, inert)) + " |", "",
-            "| threshold of | places |", "|---|---|"]
-    out += [f"| {subject} | {sum(subject in subjects for _, _, subjects in places)} |" for subject in SUBJECTS]
-    out += [f"| any | {len(places)} |", ""]
+            f"{len(places)} places have thresholds of noise, of points per vertex or of the vertices asked for.", ""]
     for folder in folders:
         rows = [c for c in tuned if folder_of(c.path) == folder]
         if not rows:
@@ -220,11 +203,7 @@ def page(root):
             out.append(f"| `{name}` | {', '.join(f'`{n}`' for n in c.names)} | {cell(', '.join(c.values))} | {unit_of(c)} | "
                        f"{'as above' if c.above and c.reason else cell(c.reason)} |")
         out.append("")
-    out += ["## Places with thresholds", "",
-            "Statements that compare with a number or a constant, are bounded by one, or choose between two."]
-    for subject in SUBJECTS:
-        out += ["", f"### Of {subject}", ""]
-        out += [f"- `{path}`: `{statement}`" for path, statement, subjects in places if subject in subjects]
+    out += ["## Places with thresholds", "", *(f"- `{path}`: `{statement}`" for path, statement in places)]
     out += ["", "## No result depends on", "", "| constants | why |", "|---|---|"]
     for reason in dict.fromkeys(why_inert(c) for c in inert):
         names = [f"`{where}`" for c in inert if why_inert(c) == reason for where in c.where()]

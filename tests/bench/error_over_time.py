@@ -6,7 +6,6 @@
 
     error_over_time.py --plugin LIBRARY.so --cgal build/tests/cgal_peers [--data DATA --models bunny,kitten]
                        [--plot FILE.png] [--out FILE.json]
-    error_over_time.py --again FILE.json [--plot FILE.png]
 
 A table at equal size says little to those who need a certain accuracy: a quick method may need many more vertices.
 This one compares at equal error: for each mesh of a peer, the seconds that ours takes to be as accurate. They are
@@ -17,7 +16,7 @@ The error is the sum of both RMS directions against the true surface, in % of it
 --repeats runs, without files, one run at a time. What a user could not know is given to the peers for nothing: the
 tuned chain has normals that the truth has turned, and of nine pairs of depth and samples per node that with the least
 error, or ("for time to error", by the first run of each) that which does best against ours; Alpha Wrap has the alpha
-that leads to the number of vertices. --again shows the rows of an earlier run.
+that leads to the number of vertices.
 """
 
 import argparse
@@ -35,8 +34,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "experiments" / "ac
 import compare_accuracy  # noqa: E402
 import models  # noqa: E402
 import peers  # noqa: E402
-import scan_table  # noqa: E402
-from compare_accuracy import geometric_mean, numbers, table, topology_right  # noqa: E402
+from scipy.spatial import cKDTree  # noqa: E402
+from compare_accuracy import geometric_mean, note, numbers, table, topology_right  # noqa: E402
 
 import pymeshlab  # noqa: E402
 
@@ -53,12 +52,13 @@ METHODS = {
 CGAL = ("advancing-front", "alpha-wrap")
 # The choice among the tuned chain's runs that compared() adds; nothing runs for it.
 CHOSEN = "poisson-quick"
+DEPTHS, SAMPLES_PER_NODE = (7, 8, 9), (1.5, 5, 15)  # of Screened Poisson, tuned
 CLOCKS = {"wall": "seconds", "processor": "cpu_seconds"}
 
 
 def parse(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--plugin", help="pymeshlab's libfilter_neuralmesh.so")
+    parser.add_argument("--plugin", required=True, help="pymeshlab's libfilter_neuralmesh.so")
     parser.add_argument("--cgal", help="the program cgal_peers; with it CGAL is measured as well")
     parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
     parser.add_argument("--models", type=numbers(str), default=["crossed-cylinders", "linked-tori"],
@@ -74,12 +74,20 @@ def parse(arguments):
                         help="that of the tables and the picture; processor time depends less on other load")
     parser.add_argument("--plot", type=Path, help="picture to write")
     parser.add_argument("--out", type=Path, help="rows to write, as JSON")
-    parser.add_argument("--again", type=Path, help="show the rows of this file instead of measuring")
     options = parser.parse_args(arguments)
-    if not (options.plugin or options.again):
-        parser.error("Give --plugin, or --again with the rows of an earlier run.")
     options.cloud_seed = 1
     return options
+
+
+def turned_normals(points, truth):
+    """Normals of the points from 30 neighbours, pointing to the side that those of the truth point to."""
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.add_mesh(pymeshlab.Mesh(points))
+    meshes.compute_normal_for_point_clouds(k=30)
+    normals = meshes.current_mesh().vertex_normal_matrix()
+    _, nearest = cKDTree(truth.points).query(points)
+    wrong = np.einsum("ij,ij->i", normals, truth.normals[nearest]) < 0
+    return np.where(wrong[:, None], -normals, normals)
 
 
 class TurnedCase(compare_accuracy.Case):
@@ -92,7 +100,7 @@ class TurnedCase(compare_accuracy.Case):
             meshes = pymeshlab.MeshSet(verbose=False)
             meshes.load_new_mesh(str(plain))
             points = meshes.current_mesh().vertex_matrix()
-            meshes.add_mesh(pymeshlab.Mesh(points, v_normals_matrix=scan_table.turned_normals(points, self.truth())))
+            meshes.add_mesh(pymeshlab.Mesh(points, v_normals_matrix=turned_normals(points, self.truth())))
             meshes.save_current_mesh(str(path), save_vertex_normal=True, save_vertex_color=False)
         return path
 
@@ -100,7 +108,7 @@ class TurnedCase(compare_accuracy.Case):
 def how(method, settings, options):
     """The arguments of peers.run() that start a method on one thread. CGAL and Ball Pivoting have no other."""
     if method in CGAL:
-        return {"command": f"{options.cgal} {method}", "timeout": options.timeout}
+        return {"command": [options.cgal, method], "timeout": options.timeout}
     ours = {"plugin": options.plugin} if method == "neural" else {}
     one_thread = {} if method == "ball-pivoting" else {"threads": 1}
     return {**ours, "settings": {**settings, **one_thread}, "timeout": options.timeout}
@@ -114,7 +122,7 @@ def measured(case, method, counts, options, settings=None):
 
 def best_of_nine(case, counts, options):
     """For each size the row of the pair of parameters with the least error, with all nine as its "choices"."""
-    rows = [row for depth in scan_table.DEPTHS for samples in scan_table.SAMPLES_PER_NODE
+    rows = [row for depth in DEPTHS for samples in SAMPLES_PER_NODE
             for row in measured(case, "poisson-tuned", counts, options, {"depth": depth, "samplespernode": samples})]
     best = []
     for n in counts:
@@ -140,7 +148,7 @@ def repeated(case, rows, options):
     return rows
 
 
-def all_rows(options, note):
+def all_rows(options):
     rows = []
     methods = [method for method in METHODS if method != CHOSEN and (options.cgal or method not in CGAL)]
     with tempfile.TemporaryDirectory() as folder:
@@ -292,8 +300,7 @@ def main(arguments=None):
     options = parse(arguments)
     clock = CLOCKS[options.clock]
     try:
-        rows = (json.loads(options.again.read_text())["rows"] if options.again
-                else all_rows(options, lambda text: print(text, file=sys.stderr, flush=True)))
+        rows = all_rows(options)
     except (models.ModelError, peers.PeerError) as error:
         sys.exit(str(error))
     rows = compared(rows, clock)

@@ -143,17 +143,15 @@ CORNERS = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]]
 
 
 def parameters(build, filter_name=PYTHON_NAME):
-    """A filter's table of parameters: a list of (id, type, low, high, default, advanced)."""
-    text = subprocess.run([str(build / "tests" / "write_mlx"), f"--filter={filter_name}", "--table"], check=True,
-                          stdout=subprocess.PIPE, text=True).stdout
-    rows = [line.split() for line in text.splitlines()]
-    return [(r[0], r[1], float(r[2]), float(r[3]), r[4], r[5] == "1") for r in rows]
+    """A filter's table of parameters: a list of (id, type, low, high, default)."""
+    return [(row["id"], row["type"], float(row["low"]), float(row["high"]), row["default"])
+            for row in meshlabserver.parameters(build, filter_name)]
 
 
 def out_of_range(build, filter_name=PYTHON_NAME):
     """(id, value) with a value below and one above the range of each number, and NaN for real ones."""
     cases = []
-    for name, kind, low, high, _, _ in parameters(build, filter_name):
+    for name, kind, low, high, _ in parameters(build, filter_name):
         if kind == "RichInt":
             cases.append((name, int(low) - 1))
             if high < 2**31 - 1:

@@ -234,8 +234,7 @@ def check(build, layer, outcome):
     found = check_mesh(outcome.mesh, file)
     assert found["vertices"] == report["vertices"] == layer.target
     assert report["stop_reason"] == 0 and report["boundary_loops"] == layer.loops
-    assert found["boundary_loops"] == layer.loops and found["oriented"], "no oriented surface with these boundaries"
-    assert found["non_manifold_edges"] == found["non_manifold_vertices"] == found["unreferenced_vertices"] == 0
+    assert found["boundary_loops"] == layer.loops and found["manifold"] and found["oriented"], "no oriented surface with these boundaries"
     assert (found["genus"], found["components"]) == (report["genus"], report["components"])
     assert (found["components"], found["genus"]) == (layer.components, layer.genus), (
         f"{found['components']} components of genus {found['genus']}")

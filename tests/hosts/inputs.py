@@ -135,51 +135,27 @@ def quads(count=16):
 
 def _clouds(random):
     line = np.linspace(0, 1, 100)[:, None] * [1, 2, -1]
-    noisy = ball(3000) + .02 * 2 * np.sqrt(3) * random.standard_normal((3000, 3))
     whole = ball(6000)
     dense = whole[:, 0] > 0
     stray = whole[~dense & (random.random(6000) < .001)]
-    far_off = np.array([20, 30, -10]) * (random.random((20, 3)) - .5)
     broken = ball(500)
     broken[[3, 50, 499], [0, 1, 2]] = NAN, INF, -INF
-    filled = random.random((3000, 3))
-    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     turned = np.array([[0, -3, 0, 100], [0, 0, 6, -50], [-3, 0, 0, 7], [0, 0, 0, 1]], dtype=float)
     return {
         "empty layer": Input([], refused="no points"),
-        "three distinct, repeated": Input(corners[:3] * 50, refused="3 distinct"),
         # Rounding to single precision moves these points off the line.
         "a line, rounded": Input(line + [5000, -3000, 1000], refused="on curves"),
         "not finite": Input(broken, refused="3 of the 500"),
-        # So few points do not determine the surface between them. Four enclose a volume of 1/6, five of 1/2, or of 1/3
-        # without the corner at the origin.
-        "4 points": Input(corners, target=50, volume=1 / 6, within=.2, far=45, margin=.15),
-        "five points, 200 times": Input((corners + [[1, 1, 1]]) * 200, target=100, volume=5 / 12, within=.25, far=52),
-        # The rim of an open sheet lies up to half an edge inside of the outermost points.
-        "in a plane": Input(square(), volume=None, loops=1, rms=.7),
-        # Smaller than the resolution of any shell of the whole: each cluster is a component, of any shape.
-        "two far clusters": Input(np.vstack([ball(1000, .01), ball(1000, .01, (100, 0, 0))]), target=300, components=2,
-                                  volume=None),
-        # The convex hull of 60 points has a volume of 3.79; the ball is up to 10.1 % away from them.
-        "duplicates": Input(np.repeat(ball(60), 100, axis=0), volume=3.79, rms=1, far=11),
         "size 1e+30": Input(ball() * 1e30, volume=BALL * 1e90),
         "offset 1e+7": Input(ball(2000, 1000) + [1e7, -1e7, 1e7], volume=BALL * 1e9),
         # In single precision these coordinates are whole numbers: rounding moves points off a plane by 2.8 %, and the
         # diagonal of a cell of that lattice is 16.7 %. The mesh is 1.3 to 1.7 % from the ball; one that follows the rounding,
         # 1.5 to 1.7 % from the points, is 2.3 to 2.6 % from the ball.
         "offset 1e+7, small": Input(ball(2000, 3) + [1e7, -1e7, 1e7], volume=27 * BALL, within=.1, rms=4, far=16.7),
-        # Beside the distances of its points a needle is a line.
-        "aspect 1 : 1e-3": Input(ball() * [1, 1e-3, 1e-3], volume=None, parameters={**EACH_POINT_ALIKE, "surface": 1}),
-        "1 % gross outliers": Input(np.vstack([ball(), far_off]), outliers=20),
-        "noise of 2 %": Input(noisy, rms=1.9, far=4),
         # The result is a bowl: the few points of the other half are too far apart for a surface. How far its rim
         # reaches towards them depends on the seed: by 2.9 to 8.4 % with seeds 1 to 6.
         "density 1000 : 1": Input(np.vstack([whole[dense], stray]), outliers=len(stray), volume=None, loops=1, rms=.6,
                                   far=10, margin=.1),
-        # Scanners put points that they did not measure into one place.
-        "most in one point": Input(np.vstack([ball(), np.repeat(ball()[:1], 20000, axis=0)])),
-        # Points throughout a cube do not determine its surface.
-        "filled": Input(filled, refused="scattered in space"),
         "deleted vertices": Input(np.vstack([ball(), ball(200, 9)]), deleted=np.arange(2200) >= 2000),
         "selected points": Input(np.vstack([ball(), ball(2000, 1, (5, 0, 0))]),
                                  selected_points=np.arange(4000) >= 2000, parameters={"selected_only": True}),
@@ -202,7 +178,6 @@ def _meshes():
     both = np.vstack([vertices, vertices + [5, 0, 0]])
     shifted = [tuple(v + len(vertices) for v in face) for face in faces]
     ring, ring_faces = quads()
-    flat = [(face[0], face[1], face[1]) for face in faces]
     half = [face for face in faces if vertices[list(face), 2].mean() > 0]
     broken = vertices.copy()
     broken[5, 1] = NAN

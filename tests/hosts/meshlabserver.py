@@ -98,6 +98,14 @@ def figures(text):
             for key, value in pairs}
 
 
+def parameters(build, filter_name):
+    """The table of a filter's parameters, by its Python name: dictionaries of texts."""
+    keys = ("stage", "advanced", "id", "type", "default", "low", "high", "choices", "label", "help")
+    text = subprocess.run([str(Path(build) / "tests" / "write_mlx"), f"--filter={filter_name}", "--table"], check=True,
+                          stdout=subprocess.PIPE, text=True, encoding="utf-8").stdout
+    return [dict(zip(keys, line.split("\t"))) for line in text.splitlines()]
+
+
 def write_script(build, path, filter_name="", **values):
     """A complete script with the defaults of a filter, by its Python name or the reconstruction, and the given values."""
     words = [f"--filter={filter_name}"] if filter_name else []

@@ -8,9 +8,10 @@
 
 Run this after a change of a parameter; test_scripts.py compares."""
 
-import subprocess
 import sys
 from pathlib import Path
+
+import meshlabserver
 
 PAGE = Path(__file__).resolve().parents[2] / "filter_neuralmesh" / "docs" / "parameters.md"
 
@@ -41,7 +42,6 @@ STAGES = {
     "run": "The run",
 }
 LARGEST_INT = 2**31 - 1
-ANY_LENGTH = 1e30
 
 
 def number(text):
@@ -49,33 +49,30 @@ def number(text):
     value = float(text)
     if value == LARGEST_INT:
         return "2³¹ - 1"
-    return f"{int(value):,}" if value == int(value) else text
+    return f"{int(value):,}" if value == int(value) else f"{value:g}"
 
 
-def row(line):
-    stage, advanced, name, default, low, high, choices, label, explanation = line.split("\t")
-    values = f"{number(low)} to {number(high)}"
-    if choices:
-        values = "<br>".join(f"{i} {choice}" for i, choice in enumerate(choices.split("|")))
+def cells(row):
+    default, values = row["default"], f"{number(row['low'])} to {number(row['high'])}"
+    if row["choices"]:
+        values = "<br>".join(f"{i} {choice}" for i, choice in enumerate(row["choices"].split("|")))
     elif default in ("true", "false"):
         values = "true, false"
-    elif name.endswith("_layer"):
+    elif row["type"] == "RichMesh":
         default, values = "current", "a layer"
-    elif float(high) == ANY_LENGTH:
+    elif row["type"] == "RichAbsPerc":
         default, values = f"{default} %", "a length"
-    mark = "" if advanced == "1" else "**"
-    return stage, f"| {mark}`{name}`{mark}<br>{label} | {default} | {values} | {explanation} |"
+    mark = "" if row["advanced"] == "1" else "**"
+    return f"| {mark}`{row['id']}`{mark}<br>{row['label']} | {default} | {values} | {row['help']} |"
 
 
 def text(build):
     lines = [HEAD]
     for title, filter_name in FILTERS:
-        done = subprocess.run([str(Path(build) / "tests" / "write_mlx"), f"--filter={filter_name}", "--explain"],
-                              check=True, stdout=subprocess.PIPE, text=True, encoding="utf-8")
-        rows = [row(line) for line in done.stdout.splitlines()]
+        rows = meshlabserver.parameters(build, filter_name)
         lines.append(f"## {title}\n\n`{filter_name}`\n")
         for stage, heading in STAGES.items():
-            of_stage = [cells for found, cells in rows if found == stage]
+            of_stage = [cells(row) for row in rows if row["stage"] == stage]
             if of_stage:
                 lines.append(f"### {heading}\n\n| id, label | default | values | meaning |\n|---|---|---|---|\n"
                              + "\n".join(of_stage) + "\n")

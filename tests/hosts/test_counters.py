@@ -103,12 +103,11 @@ def test_signals_come_from_the_layer_that_a_script_names(build, server, tmp_path
 @pytest.mark.parametrize("name", ["l-block", "crossed-cylinders"])
 def test_creases_of_a_noisy_mesh_are_found_better_than_by_any_curvature(pymeshlab, name):
     """At the default threshold, against the best threshold of each measure of the mesh, found with the truth."""
-    surface = features.load(name, None)
-    creases = features.Creases(*surface)
+    surface = models.load_model(name)
 
     def curves(noise, signals):
         mesh = features.counted(*features.noisy_mesh(surface, 2000, noise), signals)
-        truth = features.truth_of(mesh, creases)
+        truth = features.truth_of(mesh, surface)
         return {measure: features.f1_curve(values, truth) for measure, values in features.measures_of(mesh)}
 
     assert curves(0, None)["crease measure"][features.DEFAULT] > .9

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""MeshLab 2020.09: error messages for invalid parameters and without a layer; test_inputs.py has the layers."""
+"""MeshLab 2020.09: error messages for invalid parameters, and a start layer; test_inputs.py has the layers."""
 
 import meshlabserver
 from conftest import out_of_range, parameters
@@ -17,13 +17,6 @@ def assert_refused(code, text, words):
     assert len(lines) == 1, text
     assert lines[0].rstrip().endswith(".")
     assert "aborted" not in text.lower() and "assertion" not in text.lower()
-
-
-def test_no_layer_at_all_is_refused(build, server, tmp_path):
-    script = meshlabserver.write_script(build, tmp_path / "s.mlx", target_vertices=100)
-    # The host itself counts the layers that the script names.
-    code, text = meshlabserver.run(server, "-s", script)
-    assert code == FAILED and "needs more meshes than you have loaded" in text
 
 
 def test_learning_goes_on_from_another_layer(build, server, model, tmp_path):

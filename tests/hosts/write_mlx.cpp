@@ -3,10 +3,8 @@
 
 // write_mlx [--filter=NAME] [ID=VALUE ...]: prints a script for meshlabserver with all parameters of a
 // filter, at their defaults or the values given. (meshlabserver aborts on scripts that omit one.) NAME is a
-// Python name; default: the reconstruction. write_mlx [--filter=NAME] --table: prints the parameters for
-// tests, one per line: id, type, low, high, default, advanced. write_mlx [--filter=NAME] --explain: prints
-// them for documentation, one per line, separated by tabs: stage, advanced, id, default, low, high, choices
-// joined by |, label, help.
+// Python name; default: the reconstruction. write_mlx [--filter=NAME] --table: prints the parameters, one per
+// line, separated by tabs: stage, advanced, id, type, default, low, high, choices joined by |, label, help.
 #include <cstdlib>
 #include <iostream>
 #include <map>
@@ -62,13 +60,6 @@ void write_script(const Action& action, std::map<std::string, std::string> value
     std::cout << " </filter>\n</FilterScript>\n";
 }
 
-void write_table(const Action& action) {
-    std::cout.precision(17);
-    for (const SettingInfo& info : action.settings)
-        std::cout << info.id << ' ' << type_of(info) << ' ' << info.low << ' ' << info.high << ' '
-                  << default_of(info) << ' ' << info.advanced << '\n';
-}
-
 const char* name_of(Stage stage) {
     switch (stage) {
         case Stage::mesh: return "mesh";
@@ -83,11 +74,11 @@ const char* name_of(Stage stage) {
     return "";
 }
 
-void explain(const Action& action) {
-    std::cout.precision(10);
+void write_table(const Action& action) {
+    std::cout.precision(17);
     for (const SettingInfo& info : action.settings) {
-        std::cout << name_of(info.stage) << '\t' << info.advanced << '\t' << info.id << '\t'
-                  << default_of(info) << '\t' << info.low << '\t' << info.high << '\t';
+        std::cout << name_of(info.stage) << '\t' << info.advanced << '\t' << info.id << '\t' << type_of(info)
+                  << '\t' << default_of(info) << '\t' << info.low << '\t' << info.high << '\t';
         for (std::size_t i = 0; i < info.choices.size(); ++i)
             std::cout << (i == 0 ? "" : "|") << info.choices[i];
         std::cout << '\t' << info.label << '\t' << info.help << '\n';
@@ -121,10 +112,6 @@ int main(int argc, char** argv) {
         const std::string word = argv[i];
         if (word == "--table") {
             write_table(action);
-            return EXIT_SUCCESS;
-        }
-        if (word == "--explain") {
-            explain(action);
             return EXIT_SUCCESS;
         }
         const std::size_t equals = word.find('=');

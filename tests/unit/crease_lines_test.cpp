@@ -32,38 +32,7 @@ double distance_from_edge(const vcg::Point3f& p) {
 constexpr int kPieces = 8;  ///< edges of the mesh along an edge of the cube
 
 /// The cube [-1, 1]^3, each side a grid of kPieces x kPieces squares.
-shapes::Shape fine_cube() {
-    shapes::Shape shape;
-    std::map<std::array<int, 3>, int> ids;
-    const auto id_of = [&](int axis, int side, int i, int j) {
-        std::array<int, 3> at{};
-        at[static_cast<std::size_t>(axis)] = side * kPieces;
-        at[static_cast<std::size_t>((axis + 1) % 3)] = i;
-        at[static_cast<std::size_t>((axis + 2) % 3)] = j;
-        const auto [entry, is_new] = ids.emplace(at, static_cast<int>(shape.positions.size()));
-        if (is_new)
-            shape.positions.emplace_back(2.0 * at[0] / kPieces - 1, 2.0 * at[1] / kPieces - 1,
-                                         2.0 * at[2] / kPieces - 1);
-        return entry->second;
-    };
-    for (int axis = 0; axis < 3; ++axis)
-        for (int side = 0; side < 2; ++side)
-            for (int i = 0; i < kPieces; ++i)
-                for (int j = 0; j < kPieces; ++j) {
-                    const int a = id_of(axis, side, i, j);
-                    const int b = id_of(axis, side, i + 1, j);
-                    const int c = id_of(axis, side, i + 1, j + 1);
-                    const int d = id_of(axis, side, i, j + 1);
-                    if (side == 1) {
-                        shape.faces.push_back({a, b, c});
-                        shape.faces.push_back({a, c, d});
-                    } else {
-                        shape.faces.push_back({a, c, b});
-                        shape.faces.push_back({a, d, c});
-                    }
-                }
-    return shape;
-}
+shapes::Shape cube_of_pieces() { return shapes::scaled(shapes::fine_cube(3), 2); }
 
 PerVertex<float> everywhere(const Network& network, float measure) {
     return PerVertex<float>(network.slot_count(), measure);
@@ -89,7 +58,7 @@ void expect_consistent(const CreaseGraph& graph) {
 }
 
 TEST(CreaseLines, ACubeHasTwelve) {
-    const Network cube = referee::network_of(fine_cube());
+    const Network cube = referee::network_of(cube_of_pieces());
     const CreaseGraph graph = crease_lines(cube, everywhere(cube, 2));
     expect_consistent(graph);
     EXPECT_EQ(graph.lines, 12);
@@ -100,7 +69,7 @@ TEST(CreaseLines, ACubeHasTwelve) {
 
 TEST(CreaseLines, StayNearTheMesh) {
     // Rough sides: two planes near a vertex may meet far from both.
-    const Network cube = referee::network_of(fine_cube(), 0.08);
+    const Network cube = referee::network_of(cube_of_pieces(), 0.08);
     const Surface surface(cube);
     const FaceTree tree(surface);
     const CreaseGraph graph = crease_lines(cube, everywhere(cube, 2));
@@ -112,7 +81,7 @@ TEST(CreaseLines, StayNearTheMesh) {
 }
 
 TEST(CreaseLines, NoiseMovesThemLessThanTheVertices) {
-    const Network cube = referee::network_of(fine_cube(), 0.02);
+    const Network cube = referee::network_of(cube_of_pieces(), 0.02);
     const CreaseGraph graph = crease_lines(cube, everywhere(cube, 2));
     expect_consistent(graph);
     EXPECT_EQ(graph.lines, 12);
@@ -126,14 +95,14 @@ TEST(CreaseLines, NoiseMovesThemLessThanTheVertices) {
 }
 
 TEST(CreaseLines, VerticesOfALowMeasureAreOnNone) {
-    const Network cube = referee::network_of(fine_cube());
+    const Network cube = referee::network_of(cube_of_pieces());
     const CreaseGraph graph = crease_lines(cube, everywhere(cube, 0.3F));
     EXPECT_TRUE(graph.vertices.empty());
     EXPECT_EQ(graph.lines, 0);
 }
 
 TEST(CreaseLines, AGapOfTwoEdgesIsBridged) {
-    const Network cube = referee::network_of(fine_cube());
+    const Network cube = referee::network_of(cube_of_pieces());
     PerVertex<float> measure = everywhere(cube, 2);
     for (const VertexId v : cube.vertices()) {
         const vcg::Point3f p = cube.position(v);

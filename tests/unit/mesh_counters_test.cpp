@@ -13,6 +13,8 @@
 #include <string>
 
 #include "tests/unit/support/open_shapes.h"
+#include "tests/unit/support/runs.h"
+#include "tests/unit/support/sentences.h"
 #include "tests/unit/support/targets.h"
 #include "vcg_core/base/error.h"
 
@@ -20,36 +22,6 @@ namespace neuralmesh {
 namespace {
 
 using shapes::Shape;
-
-/// The unit cube's surface around the origin as a lattice of \p n edges per side, each cell two faces.
-Shape fine_cube(int n) {
-    Shape shape;
-    std::map<std::array<int, 3>, int> ids;
-    const auto id = [&](std::array<int, 3> at) {
-        const auto found = ids.emplace(at, static_cast<int>(shape.positions.size()));
-        if (found.second)
-            shape.positions.emplace_back(at[0] / double(n) - 0.5, at[1] / double(n) - 0.5,
-                                         at[2] / double(n) - 0.5);
-        return found.first->second;
-    };
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        for (const int side : {0, n})
-            for (int i = 0; i < n; ++i)
-                for (int j = 0; j < n; ++j) {
-                    const auto at = [&](int di, int dj) {
-                        std::array<int, 3> place{};
-                        place[axis] = side;
-                        place[(axis + 1) % 3] = i + di;
-                        place[(axis + 2) % 3] = j + dj;
-                        return id(place);
-                    };
-                    int corners[] = {at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
-                    if (side == 0) std::swap(corners[1], corners[3]);
-                    shape.faces.push_back({corners[0], corners[1], corners[2]});
-                    shape.faces.push_back({corners[0], corners[2], corners[3]});
-                }
-    return shape;
-}
 
 /// Lattice steps of \p p from the planes of the cube's sides, ascending: the second is the distance from the
 /// nearest edge, the third that along it from the corner.
@@ -85,9 +57,10 @@ void expect_edges(const MeshCounters& found, const Shape& cube, int n) {
 
 /// Also with more vertices than learning leaves in their order.
 TEST(MeshCounters, FindTheEdgesOfACube) {
-    for (const int n : {10, 25}) {
+    for (const int halvings : {3, 5}) {
+        const int n = 1 << halvings;
         SCOPED_TRACE(n);
-        const Shape cube = fine_cube(n);
+        const Shape cube = shapes::fine_cube(halvings);
         for (const TargetSpace& target :
              {targets::target_of(cube), targets::target_of(shapes::box_cloud(20000, {1, 1, 1}, 0.003))}) {
             Settings settings;
@@ -139,7 +112,7 @@ TEST(MeshCounters, AreTheSameWithAnyNumberOfThreads) {
 }
 
 TEST(MeshCounters, AreZeroWhereNoFaceIs) {
-    const Shape cube = fine_cube(10);
+    const Shape cube = shapes::fine_cube(3);
     const TargetSpace target = targets::target_of(shapes::box_cloud(20000));
     const MeshCounters expected = count(cube, target);
     // Unused vertices before, between and behind the others.
@@ -199,16 +172,11 @@ TEST(MeshCounters, LeaveOutliersOut) {
 }
 
 std::string complaint(const Shape& mesh, const Settings& settings = {}) {
-    try {
-        count(mesh, targets::target_of(shapes::sphere_cloud(4000)), settings);
-    } catch (const Error& error) {
-        EXPECT_EQ(std::string(error.what()).back(), '.');
-        return error.what();
-    }
-    return {};
+    return sentences::complaint_of(
+        [&] { count(mesh, targets::target_of(shapes::sphere_cloud(4000)), settings); });
 }
 
-/// given_start_test.cpp has all breaches; here it matters that the sentences speak of this filter.
+/// open_start_test.cpp has all breaches; here it matters that the sentences speak of this filter.
 TEST(MeshCounters, RefuseWhatIsNoManifold) {
     const Shape sphere = shapes::icosphere(1);
     const std::string empty = complaint({sphere.positions, {}});
@@ -230,34 +198,17 @@ TEST(MeshCounters, RefuseWhatIsNoManifold) {
     EXPECT_EQ(complaint(sphere, settings).find("The parameter signals_per_vertex "), 0U);
 }
 
-/// Stops at the call of the given number.
-class Stopping : public Progress {
-public:
-    explicit Stopping(int at) : at_(at) {}
-    bool operator()(double fraction, const char* text) override {
-        EXPECT_GE(fraction, last_);
-        EXPECT_LE(fraction, 1);
-        EXPECT_NE(text, nullptr);
-        last_ = fraction;
-        return ++calls < at_;
-    }
-    int calls = 0;
-
-private:
-    int at_;
-    double last_ = 0;
-};
-
 TEST(MeshCounters, GiveTheValuesSoFarWhenCancelled) {
     const Shape mesh = shapes::icosphere(3);
     const TargetSpace target = targets::target_of(shapes::sphere_cloud(4000));
     for (const int at : {1, 20, 1000}) {
-        Stopping progress(at);
+        runs::Watch progress(at - 1);
         const MeshCounters found = mesh_counters(mesh, target, {}, progress);
         const bool stopped = at < 1000;
         EXPECT_EQ(found.report.stop_reason == StopReason::cancelled, stopped);
         EXPECT_EQ(found.report.signals < 60000, stopped);
-        EXPECT_EQ(progress.calls, stopped ? at : progress.calls);
+        EXPECT_EQ(progress.steps_back, 0);
+        EXPECT_TRUE(!stopped || progress.calls == at);
         for (const float value : found.counters) EXPECT_TRUE(value >= 0 && value < 1e6F);
     }
 }

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "tests/unit/support/layer_mesh.h"
+#include "tests/unit/support/sentences.h"
 #include "tests/unit/support/shapes.h"
 
 namespace neuralmesh {
@@ -54,12 +55,7 @@ vcg::Matrix44f moved(float x, float y, float z) {
 }
 
 std::string complaint(const Mesh& mesh, const vcg::Matrix44f& matrix, const Settings& settings = {}) {
-    try {
-        target_space_of(mesh, matrix, settings);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return {};
+    return sentences::complaint_of([&] { target_space_of(mesh, matrix, settings); });
 }
 
 class OfFaces : public testing::TestWithParam<bool> {};

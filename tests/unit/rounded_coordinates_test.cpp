@@ -11,6 +11,8 @@
 #include <tuple>
 
 #include "tests/unit/support/layer_mesh.h"
+#include "tests/unit/support/runs.h"
+#include "tests/unit/support/sentences.h"
 #include "tests/unit/support/shapes.h"
 #include "vcg_core/base/error.h"
 #include "vcg_core/learning_task.h"
@@ -131,10 +133,7 @@ TEST(RoundedCoordinates, AreThoseOfTheLayerNotOfTheWorld) {
 
 TEST(RoundedCoordinates, AreToldOnceWithTheStepAndWhatToDo) {
     const TargetSpace target = target_at(box(5000, 0.4, 0.4), {1e7, 1e7, 1e7});
-    Settings settings;
-    settings.target_vertices = 300;
-    NoProgress progress;
-    const NeuralMesh mesh = reconstruct(target, settings, progress);
+    const NeuralMesh mesh = runs::learn(target, runs::with_target(300));
     int told = 0;
     for (const std::string& warning : mesh.report.warnings) {
         told += warning.find("Single precision has rounded the coordinates to steps of 1,") == 0 ? 1 : 0;
@@ -147,17 +146,11 @@ TEST(RoundedCoordinates, AreRefusedIfTheMeshWouldShowTheStepsOnly) {
     const TargetSpace target = target_at(box(5000, 0.1, 0.4), {1e7, 1e7, 1e7});
     Settings settings;
     settings.target_vertices = 2000;
-    NoProgress progress;
-    try {
-        reconstruct(target, settings, progress);
-        FAIL();
-    } catch (const InputError& error) {
-        const std::string sentence = error.what();
-        for (const char* words : {"steps of 1,", "Subtract an offset", "double precision", "no more than"})
-            EXPECT_NE(sentence.find(words), std::string::npos) << sentence;
-    }
+    const std::string sentence = sentences::complaint_of([&] { runs::learn(target, settings); });
+    for (const char* words : {"steps of 1,", "Subtract an offset", "double precision", "no more than"})
+        EXPECT_NE(sentence.find(words), std::string::npos) << sentence;
     settings.target_vertices = 40;
-    EXPECT_EQ(reconstruct(target, settings, progress).report.vertices, 40);
+    EXPECT_EQ(runs::learn(target, settings).report.vertices, 40);
 }
 
 }  // namespace

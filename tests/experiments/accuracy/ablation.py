@@ -22,58 +22,51 @@ the time. Where chance changes the error of the group by as much, the verdict sa
 measured first.
 """
 
-import argparse
 import hashlib
 import itertools
 import os
 import re
 import sys
-import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[3]
-import cad_parts  # noqa: E402
-import evaluate  # noqa: E402
-import models  # noqa: E402
-import open_surfaces  # noqa: E402
-import peers  # noqa: E402
-import scan_table  # noqa: E402
-import scans  # noqa: E402
-import scenes  # noqa: E402
-import wall_shapes  # noqa: E402
-from accuracy_table import TABLE_MODELS  # noqa: E402
-from compare_accuracy import Kept, geometric_mean, numbers, table  # noqa: E402
+import evaluate
+import models
+import open_surfaces
+import peers
+import scan_table
+import scenes
+import shapes
+from compare_accuracy import Kept, geometric_mean, note, numbers, parsed, parser, table
 
+ROOT = Path(__file__).resolve().parents[3]
 LEAST_ERROR, LEAST_TIME = 1.03, 1.10  # that a stage has to bring
 OTHER_SEED = 1000  # added to a seed for the row that says what chance does
-OTHER = ("another seed",)
+OTHER = "another seed"
 CODE_MODELS = ("torus", "filleted-cube", "cup", "linked-tori", "two-spheres")
-GENUS_OF_PARTS = {"plate-with-bores": 4}  # of the others 0
 POINTS_PER_VERTEX_OF_WALLS = 40
 
 
 @dataclass(frozen=True)
 class Scale:
-    """How much is run: points of a cloud, vertices of a mesh, runs of a group, points at which an error is measured."""
-
+    """How much is run: points of a cloud, vertices of a mesh, runs of a group, points at which an error is measured, views."""
     samples: int
     vertices: tuple
     most: int
     measured: int
+    views: dict
 
 
-FULL = Scale(100_000, (500, 2000, 10_000), 1_000_000, 40_000)
-QUICK = Scale(20_000, (500, 1000), 5, 20_000)
+FULL = Scale(100_000, (500, 2000, 10_000), 1_000_000, 40_000, {})
+QUICK = Scale(20_000, (500, 1000), 5, 20_000, {"pixels": 90, "dense": 200_000})
 
 
 @dataclass
 class Task:
     """A cloud to learn. make() gives its points, and a function from the mesh to its measures."""
-
     group: str
     name: str
     vertices: int
@@ -98,138 +91,98 @@ def closed_measure(truth, genus, components):
         row = evaluate.evaluate(vertices, faces, truth)
         right = row["manifold"] and not row["boundary_loops"] and (row["genus"], row["components"]) == (genus, components)
         return {"error": row["sum_rms"], "right": bool(right), "cut": row["self_intersecting_faces"]}
-
     return measure
 
 
-def open_measure(case):
+def of_case(case):
+    """The cloud of an open surface, and its measures."""
     def measure(vertices, faces):
         row = open_surfaces.measure(vertices, faces, case)
         right = row["manifold"] and row["oriented"]
         if "true_loops" in row:
             right = right and (row["loops"], row["chi"]) == (row["true_loops"], row["true_chi"])
-        return {"error": row["forward"] + row["backward"], "right": bool(right), "cut": row["cut"]}
-
-    return measure
-
-
-def of_surface(surface, genus, components, cloud, scale):
-    return cloud, closed_measure(evaluate.Truth(*surface, scale.measured), genus, components)
+        return {"error": row["forward"] + row["backward"], "right": bool(right), "cut": row["self_intersecting_faces"]}
+    return case.cloud, measure
 
 
-def of_model(name, options, cloud_of):
-    """cloud_of(vertices, faces) of a closed model."""
-    surface, model = models.load_model(name, options.data), models.MODELS[name]
-    return of_surface(surface, model.genus, model.components, cloud_of(*surface), options.scale)
+def of_model(name, make, options):
+    """The cloud that make(truth) draws from a closed model, see scan_table.cases(), and its measures."""
+    truth, model = evaluate.Truth(*models.load_model(name, options.data), options.scale.measured), models.MODELS[name]
+    points, _, truth = make(truth)
+    return points, closed_measure(truth, model.genus, model.components)
 
 
-def plain_cloud(options, noise, samples=None):
-    return lambda v, f: models.make_cloud(v, f, samples or options.scale.samples, noise)
+def of_models(options, names, counts, cases, settings=({},)):
+    """(name, vertices, make, settings) of each model with each of cases(vertices)."""
+    for name, n, own in itertools.product(names, counts, settings):
+        for case, make in cases(n):
+            yield ", ".join([name, case, *(f"{key} {value}" for key, value in own.items())]), n, lambda name=name, make=make: of_model(name, make, options), own
 
 
-def closed(options):
-    for name, noise, n in itertools.product(options.closed, (0, .1, .3), options.scale.vertices):
-        yield Task("closed", f"{name}, noise {noise:g} %", n,
-                   lambda name=name, noise=noise: of_model(name, options, plain_cloud(options, noise)))
+def noisy(options, *levels):
+    return lambda _: [(f"noise {noise:g} %", scan_table.drawn(options.scale.samples, noise)) for noise in levels]
 
 
-def cad(options):
-    def part(name, noise):
-        surface = cad_parts.PARTS[name]()
-        return of_surface(surface, GENUS_OF_PARTS.get(name, 0), 1, plain_cloud(options, noise)(*surface), options.scale)
-
-    for name, noise, n in itertools.product(cad_parts.PARTS, (0, .1), options.scale.vertices):
-        yield Task("CAD", f"{name}, noise {noise:g} %", n, lambda name=name, noise=noise: part(name, noise))
-    for name, noise, n in itertools.product(options.creased, (0, .1), options.scale.vertices):
-        yield Task("CAD", f"{name}, noise {noise:g} %", n,
-                   lambda name=name, noise=noise: of_model(name, options, plain_cloud(options, noise)))
+def scanned(options, group):
+    return lambda n: scan_table.cases(group, options.scale.samples, n, (1.3, 2, 4), **options.scale.views)
 
 
 def walls(options):
     def shape(name, edges, n):
-        make, genus, components = wall_shapes.WALLS[name]
-        surface, _ = wall_shapes.walled(make, edges, n)
+        make, genus, components = shapes.WALLS[name]
+        surface, _ = shapes.walled(make, edges, n)
         cloud = models.make_cloud(*surface, POINTS_PER_VERTEX_OF_WALLS * n)
-        return of_surface(surface, genus, components, cloud, options.scale)
+        return cloud, closed_measure(evaluate.Truth(*surface, options.scale.measured), genus, components)
 
-    for name, edges, n in itertools.product(wall_shapes.WALLS, (.6, 1, 2), options.scale.vertices[:2]):
-        yield Task("walls", f"{name}, {edges:g} edges", n, lambda name=name, e=edges, n=n: shape(name, e, n))
+    for name, edges, n in itertools.product(shapes.WALLS, (.6, 1, 2), options.scale.vertices[:2]):
+        yield f"{name}, {edges:g} edges", n, lambda name=name, e=edges, n=n: shape(name, e, n), {}
 
 
-def topology(options):
-    for n, start, name in itertools.product(options.scale.vertices[1:] or options.scale.vertices, (1, 0), options.wild):
-        yield Task("topology", f"{name} from {('the shell', 'the tetrahedron')[start]}", n,
-                   lambda name=name: of_model(name, options, plain_cloud(options, 0)), {"start_mesh": start})
+def of_cases(cases, counts):
+    """The same of [(name, make)], with make() -> an open_surfaces.Case."""
+    for n, (name, make) in itertools.product(counts, cases):
+        yield name, n, lambda make=make: of_case(make()), {}
 
 
 def cuts(options):
-    def cut(name, kind, noise):
-        case = open_surfaces.case_of(name, kind, noise, options.data, options.scale.samples)
-        return case.cloud, open_measure(case)
-
-    for name, kind, noise, n in itertools.product(options.closed, open_surfaces.CUTS, (0, .1), options.scale.vertices):
-        yield Task("open cuts", f"{name}, {kind}, noise {noise:g} %", n,
-                   lambda name=name, kind=kind, noise=noise: cut(name, kind, noise))
+    return [(f"{name}, {kind}, noise {noise:g} %", lambda args=(name, kind, noise): open_surfaces.case_of(
+        *args, options.data, options.scale.samples))
+            for name, kind, noise in itertools.product(options.closed, open_surfaces.CUTS, (0, .1))]
 
 
-def outliers(options):
-    def with_them(kind, share):
-        return lambda v, f: scans.with_outliers(plain_cloud(options, 0)(v, f), kind, share)[0]
-
-    for name, (kind, share), n in itertools.product(options.closed, scan_table.OUTLIERS, options.scale.vertices[1:2] or
-                                                    options.scale.vertices):
-        yield Task("outliers", f"{name}, {kind} {100 * share:g} %", n,
-                   lambda name=name, kind=kind, share=share: of_model(name, options, with_them(kind, share)))
+def virtual_scans():
+    return [(f"{name} {seed}", lambda make=make, seed=seed: make(seed))
+            for seed in (1, 2) for name, make in scenes.SCENES.items()]
 
 
-def levels(options):
-    pixels, dense = (300, scans.DENSE) if options.scale is FULL else (90, 200_000)
-
-    def seen(name, level):
-        surface, model = models.load_model(name, options.data), models.MODELS[name]
-        result = scans.scan(*surface, scans.LEVELS[level], pixels=pixels, dense=dense)
-        truth = scan_table.seen_part(evaluate.Truth(*surface, options.scale.measured), result)
-        return result.points, closed_measure(truth, model.genus, model.components)
-
-    for level, name, n in itertools.product(scans.LEVELS, options.closed, options.scale.vertices[1:2] or
-                                            options.scale.vertices):
-        yield Task("levels", f"{name}, level {level}", n, lambda name=name, level=level: seen(name, level))
-
-
-def virtual_scans(options):
-    def scene(make, seed):
-        case = make(seed)
-        return case.cloud, open_measure(case)
-
-    for seed, name, n in itertools.product((1, 2), scenes.SCENES, options.scale.vertices[1:] or options.scale.vertices):
-        yield Task("virtual scans", f"{name} {seed}", n,
-                   lambda make=scenes.SCENES[name], seed=seed: scene(make, seed))
-
-
-def few_points(options):
-    for name, each, noise, n in itertools.product(options.closed, (1.3, 2, 4), (0, .1), options.scale.vertices):
-        yield Task("few points", f"{name}, {each:g} per vertex, noise {noise:g} %", n,
-                   lambda name=name, each=each, noise=noise, n=n:
-                   of_model(name, options, plain_cloud(options, noise, int(each * n))))
-
-
-def real_clouds(options):
-    def half(path):
-        case = open_surfaces.case_of(path, "half", 0, None)
-        return case.cloud, open_measure(case)
-
+def halves(options):
     files = sorted(options.real.glob("*.ply"), key=lambda path: path.stat().st_size) if options.real else []
-    for n, path in itertools.product(options.scale.vertices[1:] or options.scale.vertices, files):
-        yield Task("real clouds", path.stem, n, lambda path=path: half(path))
+    return [(path.stem, lambda path=path: open_surfaces.case_of(path, "half", 0, None)) for path in files]
 
 
-GROUPS = {"closed": closed, "CAD": cad, "walls": walls, "topology": topology, "open cuts": cuts, "outliers": outliers,
-          "levels": levels, "virtual scans": virtual_scans, "few points": few_points, "real clouds": real_clouds}
+def groups(options):
+    """{group: its (name, vertices, make, settings)}"""
+    counts, closed = options.scale.vertices, options.closed
+    return {"closed": of_models(options, closed, counts, noisy(options, 0, .1, .3)),
+            "CAD": of_models(options, models.CAD_PARTS + options.creased, counts, noisy(options, 0, .1)),
+            "walls": walls(options),
+            "topology": of_models(options, options.wild, counts[1:], noisy(options, 0), ({"start_mesh": 1}, {"start_mesh": 0})),
+            "open cuts": of_cases(cuts(options), counts),
+            "outliers": of_models(options, closed, counts[1:2], lambda n: scanned(options, "outliers")(n)[1:]),
+            "levels": of_models(options, closed, counts[1:2], scanned(options, "levels")),
+            "virtual scans": of_cases(virtual_scans(), counts[1:]),
+            "few points": of_models(options, closed, counts, scanned(options, "points")),
+            "real clouds": of_cases(halves(options), counts[1:])}
 
 
 def spread(items, most):
     """At most that many of the items, from all over the list."""
     return [items[i * len(items) // most] for i in range(most)] if len(items) > most else items
+
+
+def tasks_of(options):
+    return [Task(group, *task) for group, tasks in groups(options).items() if not options.groups or group in options.groups
+            for task in spread(list(tasks), options.scale.most)]
 
 
 # --- runs ---------------------------------------------------------------------------------------------------------
@@ -240,11 +193,10 @@ class Runs:
 
     def __init__(self, options):
         self.options = options
-        self.kept = Kept(options.out / "ablation.jsonl", options.plugin)
+        self.kept = Kept("ablation", options)
         self.work = options.out / "work" / "ablation"
         self.work.mkdir(parents=True, exist_ok=True)
         self.made = {}
-        self.end = time.monotonic() + 60 * options.minutes
 
     def prepare(self, task):
         """The file of the cloud and the measures of the task."""
@@ -262,7 +214,7 @@ class Runs:
         folder.mkdir(exist_ok=True)
         asked = folder / "asked.txt"
         environment = {"NEURALMESH_SKIP": ",".join(skipped), "NEURALMESH_ASKED": str(asked)}
-        settings = {**task.settings, "random_seed": seed, "threads": 1}
+        settings = {**self.options.settings, **task.settings, "random_seed": seed, "threads": 1}
         mesh = folder / f"{task.vertices}.ply"
         try:
             figures = peers.run("neural", cloud, folder, [task.vertices], plugin=self.options.plugin, settings=settings,
@@ -284,11 +236,9 @@ class Runs:
         """The same from disk if it is there, nothing if no time is left."""
         if before and not any(stage in before.get("asked", skipped) for stage in skipped):
             return before
-        key = {"task": task.label(), "settings": task.settings, "samples": self.options.scale.samples,
-               "measured": self.options.scale.measured, "seed": seed, "skipped": list(skipped)}
-        if time.monotonic() > self.end and not self.kept.has(**key):
-            return None
-        return self.kept.row(lambda: self.learned(task, seed, skipped, before), **key)
+        return self.kept.row(lambda: self.learned(task, seed, skipped, before), task=task.label(), seed=seed,
+                             settings=self.options.settings, samples=self.options.scale.samples,
+                             measured=self.options.scale.measured, skipped=list(skipped))
 
     def rows(self, jobs):
         """The rows of (task, seed, skipped, before), several at a time."""
@@ -349,40 +299,35 @@ def line(name, result, groups, says):
             f"{result['time']:.2f}", says]
 
 
-def tasks_of(options):
-    return [task for group in options.groups for task in spread(list(GROUPS[group](options)), options.scale.most)]
-
-
-def measured_table(options, note):
+def measured_table(options):
     runs, tasks, seeds = Runs(options), tasks_of(options), options.seeds
-    groups = list(dict.fromkeys(task.group for task in tasks))
+    groups_run = list(dict.fromkeys(task.group for task in tasks))
     cases = [(task, seed) for task in tasks for seed in seeds]
     base = runs.rows([(task, seed, (), None) for task, seed in cases])
     known = [(case, row) for case, row in zip(cases, base) if row is not None]
-    note(f"everything on: {len(known)} of {len(cases)} runs, {sum(is_failure(row) for _, row in known)} failures")
-    lines, results = {}, {}
+    failures = sum(is_failure(row) for _, row in known)
+    note(f"everything on: {len(known)} of {len(cases)} runs, {failures} failures")
+    lines, chance = {}, {}
 
-    def compare(names, rows):
+    def compare(name, rows):
         pairs = [(case[0].group, before, after) for (case, before), after in zip(known, rows) if after is not None]
         if not pairs:
             return
-        results[names] = result = compared(pairs)
-        says = verdict(result, results[OTHER]["error"]) if names != OTHER and OTHER in results else "chance"
-        lines[names] = line(", ".join(names) + ("" if len(pairs) == len(cases) else " (unfinished)"), result, groups, says)
-        note(" | ".join(map(str, lines[names])))
+        result = compared(pairs)
+        chance.setdefault("error", result["error"])  # the first row is that of another seed
+        says = "chance" if name == OTHER else verdict(result, chance["error"])
+        lines[name] = line(name + ("" if len(pairs) == len(cases) else " (unfinished)"), result, groups_run, says)
+        note(" | ".join(map(str, lines[name])))
 
-    def runs_of(names):
-        return sum(any(stage in row.get("asked", names) for stage in names) for _, row in known)
+    def runs_of(stage):
+        return sum(stage in row.get("asked", (stage,)) for _, row in known)
 
     compare(OTHER, runs.rows([(task, seed + OTHER_SEED, (), None) for (task, seed), _ in known]))
-    wanted = [(stage,) for stage in options.stages] + ([tuple(options.all_losers)] if options.all_losers else [])
-    for names in sorted(wanted, key=runs_of):
-        compare(names, runs.rows([(task, seed, names, before) for (task, seed), before in known]))
-    header = ["stage", *groups, "runs changed", "failures", "cut faces", "time", "verdict"]
-    failures = sum(is_failure(row) for _, row in known)
-    text = (f"{len(known)} runs for each stage, seeds {', '.join(map(str, seeds))}; with everything on {failures} of them "
-            f"fail.\n\n" + table(header, [lines[names] for names in [OTHER, *wanted] if names in lines]))
-    return text, {", ".join(names): result for names, result in results.items()}
+    for stage in sorted(options.stages, key=runs_of):
+        compare(stage, runs.rows([(task, seed, (stage,), before) for (task, seed), before in known]))
+    header = ["stage", *groups_run, "runs changed", "failures", "cut faces", "time", "verdict"]
+    return (f"{len(known)} runs for each stage, seeds {', '.join(map(str, seeds))}; with everything on {failures} of them "
+            f"fail.\n\n" + table(header, [lines[name] for name in [OTHER, *options.stages] if name in lines]))
 
 
 def table_of_runs(options):
@@ -411,52 +356,41 @@ def check_plugin(options):
 
 
 def parse(arguments):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--plugin", required=True, help="pymeshlab's libfilter_neuralmesh.so, built to skip stages")
-    parser.add_argument("--stages", type=numbers(str), default=stages(), help="names (default: all)")
-    parser.add_argument("--all-losers", type=numbers(str), default=[], help="stages to skip together, in one more row")
-    parser.add_argument("--groups", type=numbers(str), default=list(GROUPS), help=f"of {', '.join(GROUPS)}")
-    parser.add_argument("--seeds", nargs="+", type=int, default=[1, 2])
-    parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
-    parser.add_argument("--real", type=Path, help="folder with real clouds, *.ply")
-    parser.add_argument("--out", type=Path, default=Path("build/experiments"))
-    parser.add_argument("--minutes", type=float, default=float("inf"), help="start no run later than this")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="runs at a time")
-    parser.add_argument("--timeout", type=float, default=300, help="seconds of one run")
-    parser.add_argument("--runs", action="store_true", help="skip no stages, print each run")
-    parser.add_argument("--quick", action="store_true", help="some 40 runs of a second for each stage, one seed")
-    options = parser.parse_args(arguments)
-    if not Path(options.plugin).exists():
-        parser.error(f"There is no plugin at {options.plugin}.")
-    if unknown := [name for name in (*options.stages, *options.all_losers) if name not in stages()]:
-        parser.error(f"There is no stage called {unknown[0]}. There are: {', '.join(stages())}.")
-    if unknown := [name for name in options.groups if name not in GROUPS]:
-        parser.error(f"There is no group called {unknown[0]}. There are: {', '.join(GROUPS)}.")
-    options.scale = QUICK if options.quick else FULL
-    if options.quick:
-        options.seeds = options.seeds[:1]
-    with_data = options.data
-    public = models.PUBLIC_MODELS if options.scale is FULL else CODE_MODELS
-    options.closed = TABLE_MODELS if with_data else public
-    options.creased = ("fandisk", "block") if with_data else ("crossed-cylinders",)
-    options.wild = (("kitten", "eight", "linked-tori", "bunny", "two-spheres", "genus3", "block") if with_data
-                    else ("torus", "linked-tori", "two-spheres", "cup"))
-    return options
+    options = parser(__doc__)
+    options.add_argument("--stages", type=numbers(str), default=stages(), help="names (default: all)")
+    options.add_argument("--groups", type=numbers(str), help="(default: all)")
+    options.add_argument("--seeds", nargs="+", type=int, default=[1, 2])
+    options.add_argument("--real", type=Path, help="folder with real clouds, *.ply")
+    options.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="runs at a time")
+    options.add_argument("--runs", action="store_true", help="skip no stages, print each run")
+    options.add_argument("--quick", action="store_true", help="some 40 runs of a second for each stage, one seed")
+    values = parsed(options, arguments)
+    if unknown := [name for name in values.stages if name not in stages()]:
+        options.error(f"There is no stage called {unknown[0]}. There are: {', '.join(stages())}.")
+    values.scale = QUICK if values.quick else FULL
+    if values.quick:
+        values.seeds = values.seeds[:1]
+    values.closed = CODE_MODELS if values.quick and not values.data else values.models
+    values.creased = ("fandisk", "block") if values.data else ("crossed-cylinders",)
+    values.wild = (("kitten", "eight", "linked-tori", "bunny", "two-spheres", "genus3", "block") if values.data
+                   else ("torus", "linked-tori", "two-spheres", "cup"))
+    if unknown := [name for name in values.groups or () if name not in groups(values)]:
+        options.error(f"There is no group called {unknown[0]}. There are: {', '.join(groups(values))}.")
+    return values
 
 
 def main(arguments=None):
     options = parse(arguments)
     if options.runs:
         print(table_of_runs(options))
-        return {}
+        return
     check_plugin(options)
     try:
-        text, results = measured_table(options, lambda words: print(words, file=sys.stderr, flush=True))
+        text = measured_table(options)
     except models.ModelError as error:
         sys.exit(str(error))
     (options.out / "ablation.md").write_text(text + "\n")
     print(text)
-    return results
 
 
 if __name__ == "__main__":

@@ -7,103 +7,67 @@
     accuracy_table.py --plugin LIBRARY.so [--data FOLDER] [--out FOLDER] [--minutes N]
     accuracy_table.py --plugin LIBRARY.so --small
 
-Results are kept in OUT/kept, ours under the checksum of the program, so an interrupted run, or one that --minutes
-ended, continues where it stopped; the tables say how many runs they contain. --small does a few runs on models made
-in code. It ends with code 1 if a genus or a number of components is wrong, a seed is stuck, an error is more than
+Results are kept in OUT/accuracy_table.jsonl, ours under the checksum of the plugin, so an interrupted run, or one that
+--minutes ended, continues where it stopped; the tables say how many runs they contain. --small does a few runs on models
+made in code. It ends with code 1 if a genus or a number of components is wrong, a seed is stuck, an error is more than
 1.2 times the peer's, or a run fails. Without a data folder the public models are used.
 """
 
-import argparse
-import hashlib
-import json
-import os
 import sys
-import time
-from pathlib import Path
 
 import numpy as np
 
-import compare_accuracy
 import evaluate
 import models
-from compare_accuracy import by_case, geometric_mean, table, topology_right
+from compare_accuracy import Case, Kept, by_case, geometric_mean, note, numbers, parsed, parser, table, topology_right
 
-TABLE_MODELS = ("bunny", "koala", "fandisk", "kitten", "rocker-arm", "eight", "block", "genus3")
 SMALL_MODELS = ("torus", "two-spheres", "linked-tori", "filleted-cube")
 # With 20,000 points and noise of .3 %, neighbouring parts of the other models cannot be separated.
 SMALL_NOISY_MODELS = ("torus", "filleted-cube")
 PEERS = ("poisson", "poisson-smooth")
-
 # Goals: ratios over a peer, largest backward over largest forward distance, % of the faces.
 CLEAN_RATIO, NOISE_RATIO, WORST_RATIO, TIME_RATIO, BACK_OVER_FORWARD, SELF_INTERSECTING = .80, .60, 1.2, .5, 3, .1
 STUCK = 2.0  # times the median over the seeds
 
 
 def parse(arguments):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--plugin", required=True, help="pymeshlab's libfilter_neuralmesh.so")
-    parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
-    parser.add_argument("--out", type=Path, default=Path("build/experiments"))
-    parser.add_argument("--minutes", type=float, default=float("inf"), help="start no run later than this")
-    parser.add_argument("--seeds", type=compare_accuracy.numbers(int), default=[1, 2, 3, 4, 5])
-    parser.add_argument("--noise", type=compare_accuracy.numbers(float), default=[0, .3, .1, .6])
-    parser.add_argument("--vertices", type=compare_accuracy.numbers(int), default=[500, 2000, 10000])
-    parser.add_argument("--models", type=compare_accuracy.numbers(str), help="names of models.py")
-    parser.add_argument("--peers", type=compare_accuracy.numbers(str), default=list(PEERS), help="the goals are over the first")
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a parameter of ours")
-    parser.add_argument("--small", action="store_true", help="a few quick runs, for the tests")
-    options = parser.parse_args(arguments)
-    program = Path(options.plugin)
-    if not program.exists():
-        parser.error(f"There is no {program}: build it first.")
-    options.program = hashlib.sha256(program.read_bytes()).hexdigest()[:12]
+    options = parser(__doc__)
+    options.add_argument("--seeds", type=numbers(int), default=[1, 2, 3, 4, 5])
+    options.add_argument("--noise", type=numbers(float), default=[0, .3, .1, .6])
+    options.add_argument("--vertices", type=numbers(int), default=[500, 2000, 10000])
+    options.add_argument("--peers", type=numbers(str), default=list(PEERS), help="the goals are over the first")
+    options.add_argument("--small", action="store_true", help="a few quick runs, for the tests")
+    options = parsed(options, arguments)
     options.cloud_seed, options.measure_samples, options.samples = 1, evaluate.SAMPLES, 200_000
-    options.settings = dict(word.split("=", 1) for word in options.set)
-    options.end = time.monotonic() + 60 * options.minutes
-    if not options.models:
-        options.models = [m for m in TABLE_MODELS if options.data or m in models.PUBLIC_MODELS]
-        options.models += [] if options.data else [m for m in models.PUBLIC_MODELS if m not in options.models]
     if options.small:
         options.samples, options.measure_samples, options.seeds, options.noise = 20_000, 20_000, [1, 2, 3], [0, .3]
         options.models, options.vertices, options.peers = list(SMALL_MODELS), [500], ["poisson"]
     return options
 
 
-def kept(options, key, make):
-    """The rows kept under the key; else those of make(), or none when the time is over."""
-    name = hashlib.sha256(json.dumps(key, sort_keys=True).encode()).hexdigest()[:16]
-    path = options.out / "kept" / f"{name}.json"
-    if not path.exists():
-        if time.monotonic() > options.end:
-            return []
-        path.parent.mkdir(parents=True, exist_ok=True)
-        unfinished = path.with_suffix(".part")
-        unfinished.write_text(json.dumps(make()))
-        unfinished.rename(path)
-    return json.loads(path.read_text())
+def rows_of(options, kept, case, seed):
+    """Ours, and with the first seed the peers'; none when the time is over."""
+    def kept_rows(method, key, **how):
+        return kept.row(lambda: case.rows(method, options.vertices, **how), method, vertices=options.vertices,
+                        measure=options.measure_samples, **key, **case.key()) or []
+
+    settings = {**options.settings, "random_seed": str(seed)}
+    rows = kept_rows("neural", settings, seed=seed, plugin=options.plugin, settings=settings)
+    # With normals from noisy neighbours Poisson takes a minute even for a small cloud.
+    if seed == options.seeds[0] and not (options.small and case.noise):
+        for peer in options.peers:
+            rows = rows + kept_rows(peer, {})
+    return rows
 
 
-def ours(options, case, counts, seed):
-    key = {"program": options.program, "vertices": counts, "seed": seed, "measure": options.measure_samples,
-           **options.settings, **case.key()}
-    return kept(options, key, lambda: case.rows(
-        "neural", counts, seed, plugin=options.plugin, settings={**options.settings, "random_seed": str(seed)}))
-
-
-def accuracy_rows(options, note):
+def accuracy_rows(options):
     """All rows; every model and noise with the first seed before any with the second."""
-    rows = []
+    rows, kept = [], Kept("accuracy_table", options)
     for seed in options.seeds:
         for noise in options.noise:
             for name in options.models:
-                if options.small and noise and name not in SMALL_NOISY_MODELS:
-                    continue
-                case = compare_accuracy.Case(name, noise, options)
-                rows += ours(options, case, options.vertices, seed)
-                # With normals from noisy neighbours Poisson takes a minute even for a small cloud.
-                if seed == options.seeds[0] and time.monotonic() < options.end and not (options.small and noise):
-                    for peer in options.peers:
-                        rows += compare_accuracy.peer_rows(case, peer, options.vertices, options.out / "cache")
+                if not (options.small and noise and name not in SMALL_NOISY_MODELS):
+                    rows += rows_of(options, kept, Case(name, noise, options), seed)
             note(f"seed {seed}, noise {noise:g} %: {len(rows)} rows")
     return rows
 
@@ -180,12 +144,8 @@ def faults(rows, options):
 
 def main(arguments=None):
     options = parse(arguments)
-
-    def note(text):
-        print(text, file=sys.stderr, flush=True)
-
     try:
-        rows = accuracy_rows(options, note)
+        rows = accuracy_rows(options)
     except models.ModelError as error:
         sys.exit(str(error))
     text, found = accuracy_table(rows, options), faults(rows, options) if options.small else []

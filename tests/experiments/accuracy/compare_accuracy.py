@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Runs of the neural mesh and of common methods on the same clouds, and their measures: shared by the tables."""
+"""Shared by the tables: their options, runs of the neural mesh and of common methods on the same clouds and the measures of
+these, kept on disk."""
 
+import argparse
 import hashlib
 import json
+import os
+import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -13,12 +18,39 @@ import evaluate
 import models
 import peers
 
-# Raise this after a change of the peers or the measures that makes cached results wrong.
-CACHE_VERSION = 2
+# Raise this after a change of the peers or the measures that makes kept results wrong.
+KEPT_VERSION = 3
 
 
 def numbers(kind):
     return lambda text: [kind(word) for word in text.split(",") if word]
+
+
+def parser(description):
+    """Of the options that the tables have in common."""
+    result = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    result.add_argument("--plugin", help="pymeshlab's libfilter_neuralmesh.so")
+    result.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
+    result.add_argument("--out", type=Path, default=Path("build/experiments"))
+    result.add_argument("--models", type=numbers(str), help="names of models.py")
+    result.add_argument("--minutes", type=float, default=float("inf"), help="start no run later than this")
+    result.add_argument("--timeout", type=float, default=300, help="seconds of one run")
+    result.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a parameter of ours")
+    return result
+
+
+def parsed(options, arguments):
+    """The values of such options; those without a plugin end the program."""
+    values = options.parse_args(arguments)
+    if not values.plugin or not Path(values.plugin).exists():
+        options.error(f"There is no plugin {values.plugin}: build it, and give --plugin.")
+    values.settings = dict(word.split("=", 1) for word in values.set)
+    values.models = values.models or list(models.TABLE_MODELS if values.data else models.PUBLIC_MODELS)
+    return values
+
+
+def note(text):
+    print(text, file=sys.stderr, flush=True)
 
 
 class Case:
@@ -68,20 +100,6 @@ class Case:
         return rows
 
 
-def peer_rows(case, peer, counts, cache):
-    """The rows of a peer, from the cache if possible."""
-    known = {}
-    for n in counts:
-        name = json.dumps({"peer": peer, "target": n, "version": CACHE_VERSION, **case.key()}, sort_keys=True)
-        known[n] = cache / f"{case.name}-{peer}-{n}-{hashlib.sha256(name.encode()).hexdigest()[:12]}.json"
-    missing = [n for n in counts if not known[n].exists()]
-    if missing:
-        cache.mkdir(parents=True, exist_ok=True)
-        for row in case.rows(peer, missing):
-            known[row["target"]].write_text(json.dumps(row))
-    return [json.loads(known[n].read_text()) for n in counts]
-
-
 def geometric_mean(values):
     return float(np.exp(np.mean(np.log(values)))) if len(values) else float("nan")
 
@@ -97,7 +115,7 @@ def by_case(rows, method):
 
 def topology_right(row):
     model = models.MODELS[row["model"]]
-    return row["genus"] == model.genus and row["components"] == model.components
+    return (row["genus"], row["components"]) == (model.genus, model.components)
 
 
 def table(header, lines):
@@ -111,32 +129,30 @@ def digest(data):
 class Kept:
     """The rows of an experiment on disk, so that an interrupted run continues where it stopped.
 
-    The key contains the checksum of the program, the cloud and the settings, so only rows of equal runs are reused.
-    The file has one JSON object per line; an incomplete last line is ignored.
+    The key has what a row depends on: the cloud, the settings, and of our own runs the checksum of the program, so only
+    rows of equal runs are reused. The file has one JSON object per line; an incomplete last line is ignored.
     """
 
-    def __init__(self, path, program):
-        self.path = path
-        self.program = digest(Path(program).read_bytes())
+    def __init__(self, name, options):
+        self.path = options.out / f"{name}.jsonl"
+        self.program = digest(Path(options.plugin).read_bytes())
+        self.end = time.monotonic() + 60 * options.minutes
         self.rows = {}
-        path.parent.mkdir(parents=True, exist_ok=True)
-        for line in path.read_text().splitlines() if path.exists() else ():
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        for line in self.path.read_text().splitlines() if self.path.exists() else ():
             try:
                 found = json.loads(line)
             except json.JSONDecodeError:
                 continue
             self.rows[found["key"]] = found["row"]
 
-    def _word(self, key):
-        return json.dumps({**key, "program": self.program}, sort_keys=True)
-
-    def has(self, **key):
-        return self._word(key) in self.rows
-
-    def row(self, make, **key):
-        """The row under the key; make() makes it if it is missing."""
-        word = self._word(key)
+    def row(self, make, method="neural", **key):
+        """The row under the key; make() makes it if it is missing. Nothing if that would begin after the last minute."""
+        program = self.program if method == "neural" else None
+        word = json.dumps({**key, "method": method, "program": program, "version": KEPT_VERSION}, sort_keys=True)
         if word not in self.rows:
+            if time.monotonic() > self.end:
+                return None
             self.rows[word] = make()
             with self.path.open("a") as file:
                 file.write("\n" + json.dumps({"key": word, "row": self.rows[word]}))

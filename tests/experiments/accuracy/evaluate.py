@@ -7,9 +7,9 @@
     evaluate.py MESH TRUE [--samples 100000] [--json]
 
 Lengths are percentages of the bounding-box diagonal of the true surface. "Forward" is true surface to mesh
-(large where the mesh misses parts), "backward" mesh to true surface (large at webs and spikes). MeshLab's Hausdorff
-filter gives the exact distance from each sample to the nearest triangle. The samples are uniform over the area with a
-fixed seed, so the results are reproducible.
+(large where the mesh misses parts), "backward" mesh to true surface (large at webs and spikes). Distances are exact ones
+from samples to the nearest triangle. The samples are uniform over the area with a fixed seed, so the results are
+reproducible.
 """
 
 import argparse
@@ -42,28 +42,31 @@ def face_normals(vertices, faces):
     return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
 
 
-def _measured(vertices, faces, truth):
-    """A MeshSet with the truth, its samples, those of the mesh, and the mesh, the samples with their distances; those
-    samples and their faces; and the two reports."""
-    points, of_face = models.sample_surface(vertices, faces, truth.samples, np.random.default_rng(20030102))
+def rms(lengths):
+    return float(np.sqrt(np.mean(lengths**2)))
+
+
+def distances(points, vertices, faces):
+    """Of points from the nearest face, or from the nearest vertex if there are no faces."""
+    if len(faces) == 0:
+        return cKDTree(vertices).query(points)[0]
     meshes = pymeshlab.MeshSet(verbose=False)
-    for mesh in (pymeshlab.Mesh(truth.vertices, truth.faces), pymeshlab.Mesh(truth.points), pymeshlab.Mesh(points),
-                 pymeshlab.Mesh(vertices, faces)):
-        meshes.add_mesh(mesh)
-    # samplenum's default is the size of the current layer, not of the sampled one.
-    every = {"samplevert": True, "samplenum": truth.samples, "maxdist": pymeshlab.PercentageValue(100)}
-    forward = meshes.get_hausdorff_distance(sampledmesh=1, targetmesh=3, **every)
-    backward = meshes.get_hausdorff_distance(sampledmesh=2, targetmesh=0, **every)
-    return meshes, points, of_face, forward, backward
+    meshes.add_mesh(pymeshlab.Mesh(vertices, faces))
+    meshes.add_mesh(pymeshlab.Mesh(points))
+    # By default, points farther away than half a diagonal count as that far.
+    meshes.compute_scalar_by_distance_from_another_mesh_per_vertex(
+        measuremesh=1, refmesh=0, signeddist=False,
+        maxdist=pymeshlab.PureValue(1e3 * models.diagonal(np.vstack([points, vertices]))))
+    return np.abs(meshes.mesh(1).vertex_scalar_array())
 
 
-def distances(vertices, faces, truth):
+def both_ways(vertices, faces, truth):
     """The distances of the true surface's samples from the mesh, and of the mesh's samples from the true surface, in %
-    of the diagonal: ((points, distances), (points, distances))."""
-    meshes, points, *_ = _measured(vertices, faces, truth)
+    of the diagonal: ((points, distances), (points, distances)), and the faces of the latter."""
+    points, of_face = models.sample_surface(vertices, faces, truth.samples, np.random.default_rng(20030102))
     percent = 100 / truth.diagonal
-    return ((truth.points, meshes.mesh(1).vertex_scalar_array() * percent),
-            (points, meshes.mesh(2).vertex_scalar_array() * percent))
+    return ((truth.points, percent * distances(truth.points, vertices, faces)),
+            (points, percent * distances(points, truth.vertices, truth.faces))), of_face
 
 
 def evaluate(vertices, faces, truth):
@@ -72,24 +75,13 @@ def evaluate(vertices, faces, truth):
         raise ValueError("The mesh has no faces, so there is nothing to compare.")
     if not np.isfinite(vertices).all():
         raise ValueError("The mesh has vertices whose coordinates are not finite numbers.")
-    meshes, points, of_face, forward, backward = _measured(vertices, faces, truth)
-    percent = 100 / truth.diagonal
-    result = {
-        "forward_rms": forward["RMS"] * percent,
-        "forward_max": forward["max"] * percent,
-        "backward_rms": backward["RMS"] * percent,
-        "backward_max": backward["max"] * percent,
-        "sum_rms": (forward["RMS"] + backward["RMS"]) * percent,
-    }
+    ((_, forward), (points, backward)), of_face = both_ways(vertices, faces, truth)
+    result = {"forward_rms": rms(forward), "forward_max": float(forward.max()),
+              "backward_rms": rms(backward), "backward_max": float(backward.max()),
+              "sum_rms": rms(forward) + rms(backward)}
     result["normal_error"], result["inside_out"] = _normal_error(truth, points, face_normals(vertices, faces)[of_face])
-    # The filter silently drops samples beyond its search distance.
-    if forward["n_samples"] != truth.samples or backward["n_samples"] != truth.samples:
-        result["lost_samples"] = 2 * truth.samples - forward["n_samples"] - backward["n_samples"]
-    meshes.set_current_mesh(3)
-    result.update(_topology(meshes))
     valence = np.bincount(faces.ravel(), minlength=len(vertices))
-    result["valence_5_to_7"] = float(np.mean((valence >= 5) & (valence <= 7)))
-    return result
+    return {**result, **topology(vertices, faces), "valence_5_to_7": float(np.mean((valence >= 5) & (valence <= 7)))}
 
 
 def _normal_error(truth, points, normals):
@@ -103,9 +95,13 @@ def _normal_error(truth, points, normals):
     return min(angle, 180 - angle), angle > 90
 
 
-def _topology(meshes):
+def topology(vertices, faces):
+    """Counts of a mesh, whether it is a manifold whose faces agree in orientation, and how many faces cut others."""
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.add_mesh(pymeshlab.Mesh(vertices, faces))
     measures = meshes.get_topological_measures()
     meshes.compute_selection_by_self_intersections_per_face()
+    directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     return {
         "vertices": measures["vertices_number"] - measures["unreferenced_vertices"],
         "faces": measures["faces_number"],
@@ -114,6 +110,7 @@ def _topology(meshes):
         "boundary_loops": measures["number_holes"],
         "boundary_edges": measures["boundary_edges"],
         "manifold": bool(measures["is_mesh_two_manifold"]),
+        "oriented": len(np.unique(directed, axis=0)) == len(directed),
         "self_intersecting_faces": meshes.current_mesh().selected_face_number(),
     }
 
@@ -127,10 +124,9 @@ def main(arguments=None):
     parser.add_argument("--json", action="store_true", help="print JSON")
     options = parser.parse_args(arguments)
     try:
-        vertices, faces = models.load_mesh(options.mesh)
         named = options.true in models.MODELS
         surface = models.load_model(options.true, options.data) if named else models.load_mesh(options.true)
-        result = evaluate(vertices, faces, Truth(*surface, options.samples))
+        result = evaluate(*models.load_mesh(options.mesh), Truth(*surface, options.samples))
     except (models.ModelError, ValueError) as error:
         sys.exit(str(error))
     if options.json:

@@ -72,12 +72,20 @@ MODELS = {
         Model("cup", 0, 1, ("code:cup",)),
         Model("filleted-cube", 0, 1, ("code:filleted_cube",)),
         Model("crossed-cylinders", 0, 1, ("code:crossed_cylinders",)),
+        Model("half-filleted-cube", 0, 1, ("code:half_filleted_cube",)),
+        Model("l-block", 0, 1, ("code:l_block",)),
+        Model("stepped-shaft", 0, 1, ("code:stepped_shaft",)),
+        Model("plate-with-bores", 4, 1, ("code:plate_with_bores",)),
+        Model("chamfered-wedge", 0, 1, ("code:chamfered_wedge",)),
     )
 }
 
 # Publicly available: from Debian packages, or made in code.
 PUBLIC_MODELS = ("bunny", "fandisk", "dino", "armadillo", "homer", "knot", "femur", "elephant", "anchor")
-CODE_MODELS = ("sphere", "torus", "linked-tori", "two-spheres", "cup", "filleted-cube", "crossed-cylinders")
+CODE_MODELS = tuple(name for name, model in MODELS.items() if model.sources[0].startswith("code:"))
+CAD_PARTS = ("half-filleted-cube", "l-block", "stepped-shaft", "plate-with-bores", "chamfered-wedge")
+# Of the tables; most need a data folder.
+TABLE_MODELS = ("bunny", "koala", "fandisk", "kitten", "rocker-arm", "eight", "block", "genus3")
 
 
 def cache_folder():

@@ -16,8 +16,11 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+import evaluate
 import models
 import scans
+from evaluate import rms
+from shapes import area_of
 
 SAMPLES = 40_000
 BOUNDARY_SAMPLES = 4_000
@@ -78,11 +81,6 @@ def cut(vertices, faces, kind):
         level = heights.min() + share * np.ptp(heights)
         vertices, faces = clipped(vertices, faces, vertices @ normal - level)
     return vertices, faces
-
-
-def area_of(vertices, faces):
-    corners = vertices[faces]
-    return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
 
 
 def case_of(name, kind, noise, data, samples=200_000):
@@ -149,44 +147,19 @@ def points_on(vertices, edges, rng):
     return vertices[chosen[:, 0]] * (1 - share) + vertices[chosen[:, 1]] * share, lengths.sum()
 
 
-def distances(points, vertices, faces):
-    """To the faces, or to the vertices if there are none."""
-    if len(faces) == 0:
-        return cKDTree(vertices).query(points)[0]
-    meshes = pymeshlab.MeshSet(verbose=False)
-    meshes.add_mesh(pymeshlab.Mesh(vertices, faces))
-    meshes.add_mesh(pymeshlab.Mesh(points))
-    meshes.compute_scalar_by_distance_from_another_mesh_per_vertex(measuremesh=1, refmesh=0, signeddist=False)
-    return np.abs(meshes.mesh(1).vertex_scalar_array())
-
-
-def soundness(vertices, faces):
-    """Whether the mesh is a manifold whose faces agree in orientation, and how many faces cut others."""
-    directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    meshes = pymeshlab.MeshSet(verbose=False)
-    meshes.add_mesh(pymeshlab.Mesh(vertices, faces))
-    manifold = bool(meshes.get_topological_measures()["is_mesh_two_manifold"])
-    meshes.compute_selection_by_self_intersections_per_face()
-    return {"manifold": manifold, "oriented": len(np.unique(directed, axis=0)) == len(directed),
-            "cut": meshes.current_mesh().selected_face_number()}
-
-
-def rms(lengths):
-    return float(np.sqrt((lengths**2).mean()))
-
-
 def measure(vertices, faces, case):
     """The figures of a mesh, by name. Distances: RMS in % of the diagonal; boundary: in mean edges."""
     rng = np.random.default_rng(1)
     truth = case.surface[0] if case.boundary is None else case.boundary[0]
     percent, mean_edge = 100 / models.diagonal(truth), np.sqrt(4 / np.sqrt(3) * case.area / len(faces))
     points, _ = models.sample_surface(vertices, faces, SAMPLES, rng)
-    forward, backward = distances(case.points, vertices, faces), distances(points, *case.surface)
+    forward = evaluate.distances(case.points, vertices, faces)
+    backward = evaluate.distances(points, *case.surface)
     edges, edge_count = boundary_edges(faces)
     row = {"forward": percent * rms(forward), "backward": percent * rms(backward),
            "spurious": 100 * float((backward > mean_edge).mean()), "missing": 100 * float((forward > mean_edge).mean()),
            "loops": int(loop_count(edges)), "chi": int(len(np.unique(faces)) - edge_count + len(faces)),
-           "vertices": len(vertices), **soundness(vertices, faces)}
+           **evaluate.topology(vertices, faces)}
     if case.boundary is None:
         return row
     true_edges, true_edge_count = boundary_edges(case.boundary[1])

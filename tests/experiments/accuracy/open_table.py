@@ -12,7 +12,6 @@ points on the boundary edges, in mean edges (those of an even mesh of the same a
 area is farther than a mean edge from the other surface. Every run is kept in OUT/open_table.jsonl and taken from there again.
 """
 
-import argparse
 import itertools
 import sys
 from pathlib import Path
@@ -20,26 +19,22 @@ from pathlib import Path
 import models
 import open_surfaces
 import peers
-from accuracy_table import TABLE_MODELS
-from compare_accuracy import Kept, numbers, table
+from compare_accuracy import Kept, note, numbers, parsed, parser, table
 
 
 def parse(arguments):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--plugin", required=True, help="pymeshlab's libfilter_neuralmesh.so")
-    parser.add_argument("--data")
-    parser.add_argument("--models", type=numbers(str), default=list(TABLE_MODELS))
-    parser.add_argument("--kinds", type=numbers(str), default=list(open_surfaces.CUTS))
-    parser.add_argument("--counts", type=numbers(int), default=[500, 2000, 10000])
-    parser.add_argument("--noise", type=numbers(float), default=[0.0])
-    parser.add_argument("--seeds", type=int, default=1)
-    parser.add_argument("--out", type=Path, default=Path("build/experiments"))
-    return parser.parse_args(arguments)
+    options = parser(__doc__)
+    options.add_argument("--kinds", type=numbers(str), default=list(open_surfaces.CUTS))
+    options.add_argument("--counts", type=numbers(int), default=[500, 2000, 10000])
+    options.add_argument("--noise", type=numbers(float), default=[0.0])
+    options.add_argument("--seeds", type=int, default=1)
+    return parsed(options, arguments)
 
 
 def row_of(options, case, cloud, count, seed):
     try:
-        peers.run("neural", cloud, cloud.parent, [count], plugin=options.plugin, settings={"random_seed": seed})
+        peers.run("neural", cloud, cloud.parent, [count], plugin=options.plugin, timeout=options.timeout,
+                  settings={**options.settings, "random_seed": seed})
         return open_surfaces.measure(*models.load_mesh(cloud.with_name(f"{count}.ply")), case)
     except (peers.PeerError, models.ModelError, ValueError) as error:
         return {"error": str(error)}
@@ -47,17 +42,24 @@ def row_of(options, case, cloud, count, seed):
 
 def all_rows(options):
     """The rows asked for."""
-    kept, rows = Kept(options.out / "open_table.jsonl", options.plugin), []
+    kept, rows = Kept("open_table", options), []
     for noise, name, kind in itertools.product(options.noise, options.models, options.kinds):
-        case, cloud = None, options.out / "work" / f"open-{Path(name).stem}-{kind.replace(' ', '')}-{noise}" / "cloud.ply"
+        made = []
+        cloud = options.out / "work" / f"open-{Path(name).stem}-{kind.replace(' ', '')}-{noise}" / "cloud.ply"
+
+        def run(count, seed):
+            if not made:
+                made.append(open_surfaces.case_of(name, kind, noise, options.data))
+                cloud.parent.mkdir(parents=True, exist_ok=True)
+                models.save_ply(cloud, made[0].cloud)
+            return row_of(options, made[0], cloud, count, seed)
+
         for count, seed in itertools.product(options.counts, range(1, options.seeds + 1)):
             key = {"model": name, "kind": kind, "noise": noise, "count": count, "seed": seed}
-            if not kept.has(**key) and case is None:
-                case = open_surfaces.case_of(name, kind, noise, options.data)
-                cloud.parent.mkdir(parents=True, exist_ok=True)
-                models.save_ply(cloud, case.cloud)
-            rows.append({**key, **kept.row(lambda: row_of(options, case, cloud, count, seed), **key)})
-            print(rows[-1], file=sys.stderr, flush=True)
+            row = kept.row(lambda: run(count, seed), **key, **options.settings)
+            if row is not None:
+                rows.append({**key, **row})
+                note(rows[-1])
         cloud.unlink(missing_ok=True)
     return rows
 
@@ -78,7 +80,7 @@ def summary(rows):
         lines.append([
             kind, f"{noise:g} %", count,
             share("error" not in row and row["vertices"] == count and row["manifold"] and row["oriented"]
-                  and row["cut"] == 0 for row in own),
+                  and row["self_intersecting_faces"] == 0 for row in own),
             share((row["loops"], row["chi"]) == (row["true_loops"], row["true_chi"]) for row in known),
             share(max(row["to"], row["from"]) <= 1 for row in bounded),
             share(.9 <= row["length"] <= 1.2 for row in bounded),

@@ -19,7 +19,6 @@ import re
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 
@@ -79,29 +78,13 @@ def reconstruct_ball_pivoting(meshes, count):
     meshes.add_mesh(pymeshlab.Mesh(mesh.vertex_matrix(), mesh.face_matrix()))
 
 
-def reconstruct_rotation_system(meshes, _count):
-    """Hierarchical rotation-system reconstruction of PyGEL (HRsR), which needs pygel3d and libglu1-mesa."""
-    try:
-        from pygel3d import hmesh
-    except ImportError as error:
-        raise PeerError(f"pygel3d cannot be imported: {error}") from None
-    result = hmesh.hrsr_recon(meshes.current_mesh().vertex_matrix())
-    hmesh.triangulate(result)
-    result.cleanup()
-    faces = [list(result.circulate_face(face, mode="v")) for face in result.faces()]
-    meshes.add_mesh(pymeshlab.Mesh(result.positions(), faces))
-
-
-# name: (reconstruction, whether it depends on the number of vertices)
+# name: (reconstruction, whether it depends on the number of vertices). The last needs a cloud with normals.
 PEERS = {
     "poisson": (reconstruct_poisson, False),
     "poisson-smooth": (reconstruct_poisson_smooth, False),
     "ball-pivoting": (reconstruct_ball_pivoting, True),
+    "poisson-tuned": (reconstruct_poisson_tuned, False),
 }
-# The same, of those that take minutes.
-SLOW_PEERS = {"rotation-system": (reconstruct_rotation_system, False)}
-# The same, of those that need a cloud with normals.
-PEERS_OF_NORMALS = {"poisson-tuned": (reconstruct_poisson_tuned, False)}
 
 
 class Clock:
@@ -157,8 +140,8 @@ def _peak_mb():
 
 
 def run_peer(name, cloud, folder, counts, settings):
-    """A method of PEERS, SLOW_PEERS or PEERS_OF_NORMALS. settings: parameters of Screened Poisson and values as text."""
-    reconstruct, by_count = {**PEERS, **SLOW_PEERS, **PEERS_OF_NORMALS}[name]
+    """A method of PEERS. settings: parameters of Screened Poisson and values as text."""
+    reconstruct, by_count = PEERS[name]
     settings = {key: _typed(value) for key, value in settings.items()}
     meshes = pymeshlab.MeshSet(verbose=False)
     before = _peak_mb()
@@ -209,14 +192,18 @@ def _typed(text):
     return text
 
 
-def run(method, cloud, folder, counts, plugin=None, settings=None, timeout=300, environment=None):
+def run(method, cloud, folder, counts, plugin=None, command=None, settings=None, timeout=300, environment=None):
     """Runs one method on the file cloud for all counts, in other processes. Returns {count: times and memory}.
 
-    method: a name of PEERS, SLOW_PEERS or PEERS_OF_NORMALS, or "neural" with a plugin. settings: parameters of ours or of
-    Screened Poisson. environment: more variables of the processes of a method. Raises PeerError if a process fails or takes longer than timeout seconds.
+    method: a name of PEERS, or "neural" with a plugin, or any with a command, which is called with CLOUD OUT
+    target_vertices=N and prints its times as JSON. settings: parameters of ours or of Screened Poisson. environment: more
+    variables of the processes. Raises PeerError if a process fails or takes longer than timeout seconds.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
+    if command:
+        return {n: json.loads(_output_of([*command, str(cloud), str(folder / f"{n}.ply"), f"target_vertices={n}"], timeout))
+                for n in counts}
     extra = [f"{key}={value}" for key, value in (settings or {}).items()]
     words = [sys.executable, str(Path(__file__).resolve()), method, str(cloud), str(folder)]
     # A peer's runs share one reconstruction; ours share nothing, so each has a process.
@@ -224,51 +211,31 @@ def run(method, cloud, folder, counts, plugin=None, settings=None, timeout=300, 
     results = {}
     for job in jobs:
         more = [f"plugin={plugin}", *extra] if plugin else extra
-        output, _ = _started([*words, "vertices=" + ",".join(map(str, job)), *more], timeout, environment)
+        output = _output_of([*words, "vertices=" + ",".join(map(str, job)), *more], timeout, environment)
         results.update((int(n), figures) for n, figures in json.loads(output.strip().splitlines()[-1]).items())
     return results
 
 
-# A small process that starts the measured one: a child's peak memory includes its parent's at the start.
-_LAUNCHER = """
-import json, os, sys
-pid = os.posix_spawnp(sys.argv[2], sys.argv[2:], os.environ)
-_, status, usage = os.wait4(pid, 0)
-with open(sys.argv[1], "w") as file:
-    json.dump({"code": os.waitstatus_to_exitcode(status), "cpu": usage.ru_utime + usage.ru_stime,
-               "peak_mb": usage.ru_maxrss / 1024}, file)
-"""
-
-
-def _started(words, timeout, environment=None):
-    """Runs a process to its end. Returns its standard output and {wall, cpu, peak_mb}."""
-    with tempfile.TemporaryDirectory() as scratch:
-        used_file = Path(scratch, "used.json")
-        clock = Clock()
-        process = subprocess.Popen([sys.executable, "-I", "-S", "-c", _LAUNCHER, used_file, *words], text=True,
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
-                                   env={**os.environ, **(environment or {})})
+def _output_of(words, timeout, environment=None):
+    """What a process prints, which is ended with those that it started after the timeout."""
+    with subprocess.Popen(words, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
+                          env={**os.environ, **(environment or {})}) as process:
         try:
             output, errors = process.communicate(timeout=timeout)
         except BaseException as error:
             os.killpg(process.pid, signal.SIGKILL)
-            process.communicate()
             if isinstance(error, subprocess.TimeoutExpired):
                 raise PeerError(f"{' '.join(words[:3])} took longer than {timeout} seconds.") from None
             raise
-        used = {"wall": clock.read()[0]}
-        if not used_file.exists():
-            raise PeerError(f"{words[0]} could not be started: {errors.strip()[-200:]}")
-        used.update(json.loads(used_file.read_text()))
-        if used["code"] != 0:
-            raise PeerError(f"{' '.join(words[:3])} ended with code {used['code']}: "
-                            f"{(errors.strip() or output.strip())[-500:]}")
-        return output, used
+    if process.returncode != 0:
+        raise PeerError(f"{' '.join(words[:3])} ended with code {process.returncode}: "
+                        f"{(errors.strip() or output.strip())[-500:]}")
+    return output
 
 
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("method", choices=[*PEERS, *SLOW_PEERS, *PEERS_OF_NORMALS, "neural"])
+    parser.add_argument("method", choices=[*PEERS, "neural"])
     parser.add_argument("cloud")
     parser.add_argument("folder", type=Path)
     parser.add_argument("settings", nargs="+", metavar="key=value",

@@ -6,28 +6,22 @@
 
     scan_table.py --plugin LIBRARY.so [--data FOLDER] [--out FOLDER] [--groups ...] [--peers plain]
 
-prints tables (markdown) and writes OUT/scan_table.json, to which a later call adds. Outliers are compared with the same
-cloud without them, everything else with the plain chain (normals, Screened Poisson of depth 8, Quadric Edge Collapse). Lengths are % of the diagonal of the true surface. Of scans
-by views, forward distances are those of the parts that a view sees.
+prints tables (markdown) of runs that are kept in OUT/scan_table.jsonl. Outliers are compared with the same cloud without
+them, everything else with the plain chain (normals, Screened Poisson of depth 8, Quadric Edge Collapse). Lengths are % of
+the diagonal of the true surface. Of scans by views, forward distances are those of the parts that a view sees.
 """
 
-import argparse
 import copy
-import json
-import os
+import itertools
 import sys
-from pathlib import Path
 
 import numpy as np
-import pymeshlab
-from scipy.spatial import cKDTree
 
 import evaluate
 import models
 import peers
 import scans
-from accuracy_table import TABLE_MODELS
-from compare_accuracy import geometric_mean, numbers, table
+from compare_accuracy import Kept, geometric_mean, note, numbers, parsed, parser, table, topology_right
 
 OUTLIERS = [("moved", .006), ("moved", .01), ("moved", .05), ("moved", .1), ("box", .01), ("box", .05), ("box", .1),
             ("clumps", .01), ("rays", .01)]
@@ -35,51 +29,52 @@ PER_VERTEX, NOISE = (1.3, 2, 4, 5, 10, 40), (0, .1)
 DENSITIES = (1, 10, 30)
 WORST_SHARE = .01  # of the surface, whose part of the squared error is told
 GROUPS = ("outliers", "levels", "density", "points")
-DEPTHS, SAMPLES_PER_NODE = (7, 8, 9), (1.5, 5, 15)  # of Screened Poisson, tuned
 PEERS = ("plain",)
 
 
 def parse(arguments):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--plugin", required=True, help="pymeshlab's libfilter_neuralmesh.so")
-    parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
-    parser.add_argument("--out", type=Path, default=Path("build/experiments"))
-    parser.add_argument("--models", type=numbers(str))
-    parser.add_argument("--groups", type=numbers(str), default=list(GROUPS))
-    parser.add_argument("--peers", type=numbers(str), default=[], help=f"of {', '.join(PEERS)}")
-    parser.add_argument("--vertices", type=int, default=5000)
-    parser.add_argument("--samples", type=int, default=100_000, help="points of the clouds with outliers")
-    parser.add_argument("--per-vertex", type=numbers(float), default=list(PER_VERTEX), help="points per vertex")
-    parser.add_argument("--noise", type=numbers(float), default=list(NOISE), help="%% of the diagonal, of these clouds")
-    parser.add_argument("--timeout", type=float, default=300, help="seconds for one mesh")
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a parameter of ours")
-    options = parser.parse_args(arguments)
-    options.models = options.models or list(TABLE_MODELS if options.data else models.PUBLIC_MODELS)
-    options.settings = dict(word.split("=", 1) for word in options.set)
-    return options
+    options = parser(__doc__)
+    options.add_argument("--groups", type=numbers(str), default=list(GROUPS))
+    options.add_argument("--peers", type=numbers(str), default=[], help=f"of {', '.join(PEERS)}")
+    options.add_argument("--vertices", type=int, default=5000)
+    options.add_argument("--samples", type=int, default=100_000, help="points of the clouds with outliers")
+    options.add_argument("--per-vertex", type=numbers(float), default=list(PER_VERTEX), help="points per vertex")
+    options.add_argument("--noise", type=numbers(float), default=list(NOISE), help="%% of the diagonal, of these clouds")
+    return parsed(options, arguments)
 
 
-def clouds(name, truth, options):
-    """Yields (case, points, true outliers or none, the truth to measure against)."""
-    vertices, faces = truth.vertices, truth.faces
-    if "outliers" in options.groups:
-        points = models.make_cloud(vertices, faces, options.samples)
-        yield "clean", points, 0, truth
-        for kind, share in OUTLIERS:
-            with_them, flags = scans.with_outliers(points, kind, share)
-            yield f"{kind} {100 * share:g} %", with_them, int(flags.sum()), truth
-    if "levels" in options.groups:
-        for level, defects in scans.LEVELS.items():
-            result = scans.scan(vertices, faces, defects)
-            yield f"level {level}", result.points, int(result.outlier.sum()), seen_part(truth, result)
-    if "density" in options.groups:
-        for ratio in DENSITIES:
-            yield f"density {ratio}:1", scans.thinned(vertices, faces, ratio), 0, truth
-    if "points" in options.groups:
-        for noise in options.noise:
-            for ratio in options.per_vertex:
-                cloud = models.make_cloud(vertices, faces, int(ratio * options.vertices), noise)
-                yield f"{ratio:g} points per vertex" + (f", noise {noise:g} %" if noise else ""), cloud, 0, truth
+def drawn(samples, noise=0):
+    """make(truth) of a plain cloud; see cases()."""
+    return lambda truth: (models.make_cloud(truth.vertices, truth.faces, samples, noise), 0, truth)
+
+
+def spoilt(samples, kind, share):
+    def make(truth):
+        points, flags = scans.with_outliers(drawn(samples)(truth)[0], kind, share)
+        return points, int(flags.sum()), truth
+    return make
+
+
+def seen(level, **views):
+    def make(truth):
+        result = scans.scan(truth.vertices, truth.faces, level, **views)
+        return result.points, int(result.outlier.sum()), seen_part(truth, result)
+    return make
+
+
+def thinned(ratio):
+    return lambda truth: (scans.thinned(truth.vertices, truth.faces, ratio), 0, truth)
+
+
+def cases(group, samples, vertices, per_vertex=PER_VERTEX, noise=NOISE, **views):
+    """[(name, make)] of a group, with make(truth) -> the points, how many outliers they have, the truth to measure against."""
+    return {"outliers": [("clean", drawn(samples)), *((f"{kind} {100 * share:g} %", spoilt(samples, kind, share))
+                                                      for kind, share in OUTLIERS)],
+            "levels": [(f"level {name}", seen(level, **views)) for name, level in scans.LEVELS.items()],
+            "density": [(f"density {ratio}:1", thinned(ratio)) for ratio in DENSITIES],
+            "points": [(f"{ratio:g} points per vertex" + (f", noise {level:g} %" if level else ""),
+                        drawn(int(ratio * vertices), level)) for level, ratio in itertools.product(noise, per_vertex)],
+            }[group]
 
 
 def seen_part(truth, scan):
@@ -90,65 +85,48 @@ def seen_part(truth, scan):
     return part
 
 
-def turned_normals(points, truth):
-    """Normals of the points from 30 neighbours, pointing to the side that those of the truth point to."""
-    meshes = pymeshlab.MeshSet(verbose=False)
-    meshes.add_mesh(pymeshlab.Mesh(points))
-    meshes.compute_normal_for_point_clouds(k=30)
-    normals = meshes.current_mesh().vertex_normal_matrix()
-    _, nearest = cKDTree(truth.points).query(points)
-    wrong = np.einsum("ij,ij->i", normals, truth.normals[nearest]) < 0
-    return np.where(wrong[:, None], -normals, normals)
-
-
 def where(mesh, truth):
     """Where the error is: forward plus backward RMS in the sparse third, the last along the longest axis, and the part
     of the squared error that WORST_SHARE of the surface carries, the larger of both ways."""
-    ways = evaluate.distances(*mesh, truth)
+    ways, _ = evaluate.both_ways(*mesh, truth)
     axis = np.argmax(np.ptp(truth.points, axis=0))
     low, length = truth.points[:, axis].min(), np.ptp(truth.points[:, axis])
     sparse, worst = 0, 0
     for points, distance in ways:
-        last = points[:, axis] > low + 2 / 3 * length
-        sparse += float(np.sqrt(np.mean(distance[last] ** 2)))
+        sparse += evaluate.rms(distance[points[:, axis] > low + 2 / 3 * length])
         squares = np.sort(distance ** 2)
         worst = max(worst, float(squares[-round(WORST_SHARE * len(squares)):].sum() / squares.sum()))
     return {"sparse_third": sparse, "worst_share": worst}
 
 
-def measured(method, points, truth, options, folder):
+def measured(method, cloud, options, folder):
+    points, outliers, truth = cloud
     folder.mkdir(parents=True, exist_ok=True)
     models.save_ply(folder / "cloud.ply", points)
     ours = {"plugin": options.plugin, "settings": options.settings} if method == "neural" else {}
-    figures = peers.run("neural" if ours else "poisson", folder / "cloud.ply", folder, [options.vertices],
-                        timeout=options.timeout, **ours)
-    mesh = models.load_mesh(folder / f"{options.vertices}.ply")
-    return {**evaluate.evaluate(*mesh, truth), **where(mesh, truth), **figures[options.vertices]}
+    try:
+        figures = peers.run("neural" if ours else "poisson", folder / "cloud.ply", folder, [options.vertices],
+                            timeout=options.timeout, **ours)
+        mesh = models.load_mesh(folder / f"{options.vertices}.ply")
+        return {**evaluate.evaluate(*mesh, truth), **where(mesh, truth), **figures[options.vertices], "outliers": outliers}
+    except (peers.PeerError, models.ModelError, ValueError) as error:
+        return {"error": str(error)}
 
 
-def all_rows(options, rows, keep):
-    known = {(row["model"], row["case"], row["method"]) for row in rows}
-    for name in options.models:
+def all_rows(options):
+    rows, kept = [], Kept("scan_table", options)
+    for name, group in itertools.product(options.models, options.groups):
         whole = evaluate.Truth(*models.load_model(name, options.data))
-        for case, points, outliers, truth in clouds(name, whole, options):
+        for case, make in cases(group, options.samples, options.vertices, options.per_vertex, options.noise):
             for method in ("neural", *options.peers):
-                if (name, case, method) in known:
-                    continue
-                row = {"model": name, "case": case, "method": method, "points": len(points), "outliers": outliers}
-                try:
-                    row.update(measured(method, points, truth, options, options.out / "work" / f"scan-{name}"))
-                except (peers.PeerError, ValueError) as error:
-                    row["error"] = str(error)
-                rows.append(row)
-                keep(rows)
-                print(f"{name}, {case}, {method}: "
-                      + (f"{row['forward_rms']:.4f} forward, {row['backward_rms']:.4f} backward"
-                         if "error" not in row else row["error"]), file=sys.stderr, flush=True)
-
-
-def right(row):
-    model = models.MODELS[row["model"]]
-    return (row["components"], row["genus"]) == (model.components, model.genus)
+                row = kept.row(lambda: measured(method, make(whole), options, options.out / "work" / f"scan-{name}"),
+                               method, model=name, case=case, vertices=options.vertices, samples=options.samples,
+                               **(options.settings if method == "neural" else {}))
+                if row is not None:
+                    rows.append({"model": name, "case": case, "method": method, **row})
+                    note(f"{name}, {case}, {method}: " + (row.get("error") or f"{row['forward_rms']:.4f} forward, "
+                                                                              f"{row['backward_rms']:.4f} backward"))
+    return rows
 
 
 def ratio(rows, others, key):
@@ -170,7 +148,7 @@ def tables(rows):
     for case in cases:
         own = of(case, "neural")
         good = [row for row in own if "error" not in row]
-        topology = f"{sum(map(right, good))}/{len(own)}"
+        topology = f"{sum(map(topology_right, good))}/{len(own)}"
         if case.split()[0] in kinds:
             clean = of("clean", "neural")
             left_out = sum(row["report"]["outliers"] for row in good) / max(1, sum(row["outliers"] for row in good))
@@ -200,21 +178,8 @@ def tables(rows):
                             others)])
 
 
-def main(arguments=None):
-    options = parse(arguments)
-    path = options.out / "scan_table.json"
-    rows = json.loads(path.read_text()) if path.exists() else []
-
-    def keep(so_far):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(so_far))
-
+if __name__ == "__main__":
     try:
-        all_rows(options, rows, keep)
+        print(tables(all_rows(parse(None))))
     except models.ModelError as error:
         sys.exit(str(error))
-    print(tables(rows))
-
-
-if __name__ == "__main__":
-    main()

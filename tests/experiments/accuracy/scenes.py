@@ -109,7 +109,7 @@ def room_case(cloud, boxes, eyes, rng, reach):
     samples, _ = sample_surface(vertices, faces, 5 * SEEN, rng)
     near = samples[open_surfaces.cKDTree(cloud).query(samples)[0] < reach]
     seen = near[in_sight(boxes, eyes, near)]
-    area = open_surfaces.area_of(vertices, faces) * len(seen) / len(samples)
+    area = shapes.area_of(vertices, faces) * len(seen) / len(samples)
     return open_surfaces.Case(cloud, seen[:SEEN], (vertices, faces), area)
 
 
@@ -152,7 +152,7 @@ def ground_under_trees(seed=1, points=40_000, trees=40):
     leaves = [crown + (0, 0, 7) + unit(rng.normal(size=(n, 3))) * rng.random((n, 1)) ** (1 / 3) * (3, 3, 4)
               for crown, n in zip(crowns, rng.integers(60, 200, trees))]
     return open_surfaces.Case(np.concatenate([cloud, *leaves]), samples[:SEEN], (vertices, faces),
-                              open_surfaces.area_of(vertices, faces))
+                              shapes.area_of(vertices, faces))
 
 
 SCENES = {"room, turning scanner": scanned_room, "room, depth camera": framed_room, "ground, from above": ground_under_trees}

@@ -13,8 +13,6 @@ the truth. Curvatures are multiplied by the mean edge of the mesh, so that the s
 counter is divided by its mean (eq 7). Prints the F1, mean over the models.
 """
 
-import argparse
-import os
 import sys
 from pathlib import Path
 
@@ -24,13 +22,12 @@ from scipy.spatial import cKDTree
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "accuracy"))
 
-import cad_parts  # noqa: E402
 import models  # noqa: E402
-from compare_accuracy import numbers, table  # noqa: E402
+from compare_accuracy import note, numbers, parsed, parser, table  # noqa: E402
+from evaluate import face_normals  # noqa: E402
 
 CREASE_DEGREES = 30
-MODELS = ("fandisk", "block", "l-block", "crossed-cylinders", "half-filleted-cube", "stepped-shaft", "plate-with-bores",
-          "chamfered-wedge")
+MODELS = ("fandisk", "block", "crossed-cylinders", *models.CAD_PARTS)
 CURVATURES = ("Mean Curvature", "RMS Curvature", "ABS Curvature")
 RECONSTRUCTION = "generate_surface_reconstruction_neural_mesh"
 COUNTERS = "compute_scalar_by_neural_normal_counter_per_vertex"
@@ -38,14 +35,6 @@ REMESHING_ROUNDS = 8
 THRESHOLDS = np.geomspace(1e-3, 1e2, 401)
 DEFAULT = int(np.argmin(np.abs(np.log(THRESHOLDS))))  # the threshold of 1
 LEARNED = ("crease measure", "normal counter")
-
-def load(name, data):
-    return cad_parts.PARTS[name]() if name in cad_parts.PARTS else models.load_model(name, data)
-
-
-def unit_normals(vertices, faces):
-    n = np.cross(vertices[faces[:, 1]] - vertices[faces[:, 0]], vertices[faces[:, 2]] - vertices[faces[:, 0]])
-    return n / np.maximum(np.linalg.norm(n, axis=1, keepdims=True), 1e-300)
 
 
 def inner_edges(faces):
@@ -58,26 +47,32 @@ def inner_edges(faces):
     return ends[i], np.column_stack([owner[i], owner[i + 1]])
 
 
-class Creases:
-    """The creases of a true mesh, and the distance from them."""
+def sharp_edges(vertices, faces):
+    """The edges with more than CREASE_DEGREES between their faces, as (n, 2, 3) places of ends."""
+    ends, sides = inner_edges(faces)
+    normals = face_normals(vertices, faces)
+    cosine = (normals[sides[:, 0]] * normals[sides[:, 1]]).sum(axis=1)
+    return vertices[ends[cosine < np.cos(np.radians(CREASE_DEGREES))]]
 
-    def __init__(self, vertices, faces):
-        v, index = np.unique(np.round(vertices, 9), axis=0, return_inverse=True)
-        f = index.ravel()[faces]
-        n = np.cross(v[f[:, 1]] - v[f[:, 0]], v[f[:, 2]] - v[f[:, 0]])
-        f = f[np.linalg.norm(n, axis=1) > 1e-14]
-        ends, sides = inner_edges(f)
-        n = unit_normals(v, f)
-        cosine = (n[sides[:, 0]] * n[sides[:, 1]]).sum(axis=1)
-        step = models.diagonal(v) / 4000
-        points = []
-        for a, b in v[ends[cosine < np.cos(np.radians(CREASE_DEGREES))]]:
-            count = int(np.ceil(np.linalg.norm(b - a) / step)) + 1
-            points.append(a + (b - a) * np.linspace(0, 1, count)[:, None])
-        self.tree = cKDTree(np.vstack(points)) if points else None
 
-    def distance(self, points):
-        return self.tree.query(points)[0] if self.tree else np.full(len(points), np.inf)
+def true_creases(vertices, faces):
+    """Those of a true mesh, whose vertices need not be merged."""
+    v, index = np.unique(np.round(vertices, 9), axis=0, return_inverse=True)
+    f = index.ravel()[faces]
+    n = np.cross(v[f[:, 1]] - v[f[:, 0]], v[f[:, 2]] - v[f[:, 0]])
+    return sharp_edges(v, f[np.linalg.norm(n, axis=1) > 1e-14])
+
+
+def along(ends, step):
+    """Points on the segments ends[:, 0] to ends[:, 1], at most step apart; each stands for the same length on its segment.
+    Returns the points and those lengths."""
+    points, lengths = [np.empty((0, 3))], [np.empty(0)]
+    for a, b in ends:
+        length = np.linalg.norm(b - a)
+        count = max(1, int(np.ceil(length / step)))
+        points.append(a + (b - a) * ((np.arange(count) + .5) / count)[:, None])
+        lengths.append(np.full(count, length / count))
+    return np.vstack(points), np.concatenate(lengths)
 
 
 class Mesh:
@@ -100,7 +95,7 @@ class Mesh:
 
     def dihedral(self):
         """The largest angle at any edge, as 1 - cosine."""
-        n = unit_normals(self.positions, self.faces)
+        n = face_normals(self.positions, self.faces)
         bend = 1 - (n[self.sides[:, 0]] * n[self.sides[:, 1]]).sum(axis=1)
         most = np.zeros(len(self.positions))
         for k in (0, 1):
@@ -108,7 +103,7 @@ class Mesh:
         return most
 
     def spread(self):
-        n = unit_normals(self.positions, self.faces)
+        n = face_normals(self.positions, self.faces)
         total, count = np.zeros_like(self.positions), np.zeros(len(self.positions))
         for k in range(3):
             np.add.at(total, self.faces[:, k], n)
@@ -123,8 +118,10 @@ class Mesh:
             yield kind, np.nan_to_num(np.abs(meshes.current_mesh().vertex_scalar_array()))
 
 
-def truth_of(mesh, creases):
-    return creases.distance(mesh.positions) <= 0.5 * mesh.edge_length()
+def truth_of(mesh, surface):
+    """Which vertices of the mesh are features of the true surface."""
+    creases = along(true_creases(*surface), models.diagonal(surface[0]) / 4000)[0]
+    return cKDTree(creases).query(mesh.positions)[0] <= 0.5 * mesh.edge_length()
 
 
 def noisy_mesh(surface, count, noise):
@@ -175,11 +172,11 @@ def rows_of(row_of, options):
     pymeshlab.load_plugin(options.plugin)
     rows = []
     for name in options.models:
-        surface = load(name, options.data)
+        surface = models.load_model(name, options.data)
         for noise in options.noise:
             cloud = models.make_cloud(*surface, options.samples, noise)
             rows.append(row_of(name, noise, surface, cloud, options.vertices))
-            print(f"{name}, {noise:g} %: done", file=sys.stderr, flush=True)
+            note(f"{name}, {noise:g} %: done")
     return rows
 
 
@@ -205,7 +202,7 @@ def measures_of(mesh):
 def row_of(name, noise, surface, cloud, vertices):
     """The curves of one model at one noise level."""
     mesh = learned_mesh(cloud, vertices)
-    truth = truth_of(mesh, Creases(*surface))
+    truth = truth_of(mesh, surface)
     return {"model": name, "noise": noise, "curves": {k: f1_curve(x, truth) for k, x in measures_of(mesh)}}
 
 
@@ -221,14 +218,12 @@ def report(rows):
 
 def parse(arguments, description=__doc__, noise=(0, 0.1, 0.3, 0.6)):
     """The options that tables of features have in common."""
-    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--plugin", required=True, help="pymeshlab's libfilter_neuralmesh.so")
-    parser.add_argument("--data", default=os.environ.get("NEURAL_MESH_DATA"), help="data folder")
-    parser.add_argument("--models", type=numbers(str), default=MODELS)
-    parser.add_argument("--noise", type=numbers(float), default=noise, help="%% of the diagonal")
-    parser.add_argument("--samples", type=int, default=200_000)
-    parser.add_argument("--vertices", type=int, default=5000)
-    return parser.parse_args(arguments)
+    options = parser(description)
+    options.add_argument("--noise", type=numbers(float), default=noise, help="%% of the diagonal")
+    options.add_argument("--samples", type=int, default=200_000)
+    options.add_argument("--vertices", type=int, default=5000)
+    options.set_defaults(models=MODELS)
+    return parsed(options, arguments)
 
 
 if __name__ == "__main__":

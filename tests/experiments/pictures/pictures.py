@@ -16,7 +16,6 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "accuracy"))
 
-import cad_parts  # noqa: E402
 import models  # noqa: E402
 import numpy as np  # noqa: E402
 import open_surfaces  # noqa: E402
@@ -106,7 +105,7 @@ def crease_lines(options):
     """CAD parts with their crease lines; corners are blue, loose ends green."""
     row = []
     for name, noise in (("plate-with-bores", .1), ("crossed-cylinders", 0), ("stepped-shaft", 0)):
-        surface = cad_parts.PARTS[name]() if name in cad_parts.PARTS else models.load_model(name)
+        surface = models.load_model(name)
         vertices, faces, _, _, meshes = learned(models.make_cloud(*surface, 100_000, noise), 3000, crease_lines=True)
         lines = list(meshes)[-1]
         places, edges = lines.vertex_matrix(), lines.edge_matrix()

@@ -11,13 +11,13 @@
 #include <string>
 #include <utility>
 
-#include "tests/unit/support/run_variants.h"
+#include "tests/unit/support/runs.h"
 
 namespace neuralmesh {
 namespace {
 
-using run_variants::learn;
-using run_variants::variants;
+using runs::learn;
+using runs::variants;
 
 /// Adds \p values to \p hash by FNV-1a.
 template <class T>

@@ -39,18 +39,12 @@ std::vector<Case> cases() {
                              {"valences 15", shapes::bipyramid(15)},
                              {"valences 9", shapes::bipyramid(9)},
                              {"cube", shapes::cube()},
-                             {"half disk", shapes::fan(14)}};
+                             {"half disk", shapes::fan(14)},
+                             {"stars of three", shapes::tetrahedron()}};
     Random random(1);
     for (Case& c : result)
         for (vcg::Point3d& p : c.shape.positions) p = p * 0.28 + shapes::in_ball(random) * 0.02;
     return result;
-}
-
-bool has_star_of_three(const Network& network, VertexId w) {
-    const Ring& ring = network.ring(w);
-    for (int i = 0; i < ring.valence; ++i)
-        if (network.ring(ring[i]).valence == 3 && network.ring(ring[i]).open == 0) return true;
-    return false;
 }
 
 /// Per lane: the normal of the winner before and after, and the displacements of the winner and its ring.
@@ -130,20 +124,6 @@ TEST(EightSteps, AreBasicSteps) {
             }
         }
     }
-}
-
-TEST(EightSteps, SmoothStarsOfThree) {
-    shapes::Shape shape = shapes::tetrahedron();
-    for (vcg::Point3d& p : shape.positions) p *= 0.1;
-    const Network network = referee::network_of(shape);
-    ASSERT_TRUE(has_star_of_three(network, 0));
-    const Positions before = reference::positions_of(network);
-    const StepRates rates{0.06F, 0.05F, 5};
-    EightSteps eight;
-    Steps steps;
-    take(network, {0}, {{0.3F, 0.1F, 0.2F}}, rates, eight, steps);
-    const auto s = vcg::Point3d::Construct(vcg::Point3f(0.3F, 0.1F, 0.2F));
-    expect_step(basic_step(network, before, 0, s, rates), steps, 0, network, before);
 }
 
 TEST(EightSteps, MoveBoundaryVerticesOnlyBesideAWinnerOnTheBoundary) {

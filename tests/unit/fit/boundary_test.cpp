@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/unit/fit/fit_scene.h"
+#include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/targets.h"
 #include "vcg_core/fit/boundary.h"
 #include "vcg_core/fit/collapse_costs.h"
@@ -192,25 +193,8 @@ TEST(FitOfABoundary, BringsASheetToTheEndOfItsPoints) {
 }
 
 TEST(FitOfABoundary, BringsHalfASphereToTheEndOfItsPoints) {
-    shapes::Shape sphere = shapes::icosphere(3);
-    shapes::Shape half = sphere;
-    half.faces.clear();
-    half.positions.clear();
-    std::vector<VertexId> number(sphere.positions.size(), -1);
-    const auto at = [&](VertexId v) { return sphere.positions[static_cast<std::size_t>(v)]; };
-    for (const Triangle& f : sphere.faces) {
-        if (std::min({at(f[0])[2], at(f[1])[2], at(f[2])[2]}) < -0.01) continue;
-        Triangle kept{};
-        for (std::size_t k = 0; k < 3; ++k) {
-            VertexId& n = number[static_cast<std::size_t>(f[k])];
-            if (n < 0) {
-                n = static_cast<VertexId>(half.positions.size());
-                half.positions.push_back(at(f[k]));
-            }
-            kept[k] = n;
-        }
-        half.faces.push_back(kept);
-    }
+    const shapes::Shape half =
+        open_shapes::cut(shapes::icosphere(3), [](const vcg::Point3d& p) { return p[2] >= -0.01; });
     shapes::Cloud cloud;
     for (const vcg::Point3d& p : shapes::sphere_cloud(40000))
         if (p[2] > -0.1) cloud.push_back(p / p.Norm());
@@ -260,9 +244,8 @@ shapes::Shape three_quarters() {
 }
 
 TEST(FindCollapses, CountsWhatReachesBeyondTheBoundary) {
-    shapes::Cloud cloud;
-    for (const vcg::Point3d& p : square(20000, 4))
-        if (p[0] < 0 || p[1] < 0) cloud.push_back(p);
+    const shapes::Cloud cloud =
+        open_shapes::cut(square(20000, 4), [](const vcg::Point3d& p) { return p[0] < 0 || p[1] < 0; });
     const FitScene scene(referee::network_of(three_quarters()), cloud);
     ThreadTeam team(1);
     const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);

@@ -210,54 +210,49 @@ TEST(Support, ForbidsToStretchSurfaceOverAHole) {
     EXPECT_LT(support.cost_of_change(patch(1, 0), patch(0.5F, 0)), 0);
 }
 
+/// The points with their places on an even sphere, and the directions of its normals.
+struct HeldOutOfASphere {
+    explicit HeldOutOfASphere(const TrackedPoints& points) : held_out(points) {
+        held_out.locate(sphere, team);
+        held_out.set_directions(network, sphere, team);
+    }
+    Network network = referee::network_of(shapes::icosphere(4));
+    Surface sphere{network};
+    ThreadTeam team{2};
+    HeldOut held_out;
+};
+
 TEST(HeldOut, MeasuresAlongTheNormals) {
-    const Network network = referee::network_of(shapes::icosphere(4));
-    const Surface sphere(network);
-    ThreadTeam team(2);
-    TrackedPoints points;
-    for (const vcg::Point3d& p : shapes::sphere_cloud(2000))
-        points.points.push_back(to_eigen(vcg::Point3f::Construct(p)));
-    HeldOut held_out(points);
-    held_out.locate(sphere, team);
-    held_out.set_directions(network, sphere, team);
-    Surface larger = sphere;
+    HeldOutOfASphere of(tracked_points(shapes::sphere_cloud(2000)));
+    Surface larger = of.sphere;
     for (Vector3& p : larger.positions) p *= 1.05F;
-    EXPECT_LT(held_out.rms_error(sphere, 1, team), 0.003);
-    EXPECT_NEAR(held_out.rms_error(larger, 1, team), 0.05, 0.003);
-    EXPECT_NEAR(held_out.rms_error(larger, 0.02F, team), 0.02, 1e-6) << "counts up to the outlier distance";
+    EXPECT_LT(of.held_out.rms_error(of.sphere, 1, of.team), 0.003);
+    EXPECT_NEAR(of.held_out.rms_error(larger, 1, of.team), 0.05, 0.003);
+    EXPECT_NEAR(of.held_out.rms_error(larger, 0.02F, of.team), 0.02, 1e-6)
+        << "counts up to the outlier distance";
 }
 
 TEST(HeldOut, WeighsTheErrorsOfItsPoints) {
-    const Network network = referee::network_of(shapes::icosphere(4));
-    const Surface sphere(network);
-    ThreadTeam team(1);
-    TrackedPoints points;
-    for (const vcg::Point3d& p : shapes::sphere_cloud(2000)) {
-        points.points.push_back(to_eigen(vcg::Point3f::Construct(p * (p[2] > 0 ? 1.1 : 1))));
-        points.weights.push_back(p[2] > 0 ? 0.2F : 1.8F);
+    shapes::Cloud cloud = shapes::sphere_cloud(2000);
+    std::vector<float> weights;
+    for (vcg::Point3d& p : cloud) {
+        weights.push_back(p[2] > 0 ? 0.2F : 1.8F);
+        if (p[2] > 0) p *= 1.1;
     }
-    HeldOut held_out(points);
-    held_out.locate(sphere, team);
-    held_out.set_directions(network, sphere, team);
-    EXPECT_NEAR(held_out.rms_error(sphere, 1, team), 0.1 * std::sqrt(0.1), 0.003);
+    TrackedPoints points = tracked_points(cloud);
+    points.weights = weights;
+    HeldOutOfASphere of(points);
+    EXPECT_NEAR(of.held_out.rms_error(of.sphere, 1, of.team), 0.1 * std::sqrt(0.1), 0.003);
 }
 
 // Points with noise of .03: a surface crumpled as much is nearer to them than the true one, but not along the
 // normals of the true one.
 TEST(HeldOut, DoesNotPreferACrumpledSurface) {
-    const Network smooth = referee::network_of(shapes::icosphere(4));
-    const Network crumpled = referee::network_of(shapes::icosphere(4), 0.06);
-    TrackedPoints points;
-    for (const vcg::Point3d& p : shapes::sphere_cloud(4000, 0.03))
-        points.points.push_back(to_eigen(vcg::Point3f::Construct(p)));
-    ThreadTeam team(2);
-    HeldOut held_out(points);
-    held_out.locate(Surface(smooth), team);
-    held_out.set_directions(smooth, Surface(smooth), team);
-    HeldOut other = held_out;
-    other.relocate(Surface(crumpled), team);
-    EXPECT_LT(held_out.rms_error(Surface(smooth), 1, team),
-              0.97 * other.rms_error(Surface(crumpled), 1, team));
+    HeldOutOfASphere of(tracked_points(shapes::sphere_cloud(4000, 0.03)));
+    const Surface crumpled(referee::network_of(shapes::icosphere(4), 0.06));
+    HeldOut other = of.held_out;
+    other.relocate(crumpled, of.team);
+    EXPECT_LT(of.held_out.rms_error(of.sphere, 1, of.team), 0.97 * other.rms_error(crumpled, 1, of.team));
 }
 
 }  // namespace

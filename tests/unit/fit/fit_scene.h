@@ -38,11 +38,17 @@ PointsByFace points_on(const Surface& surface, int per_face, const Height& heigh
     return PointsByFace(surface, points, hits);
 }
 
+inline TrackedPoints tracked_points(const shapes::Cloud& cloud) {
+    TrackedPoints points;
+    for (const vcg::Point3d& p : cloud) points.points.push_back(to_eigen(vcg::Point3f::Construct(p)));
+    return points;
+}
+
 /// A network, and the points of a cloud with their nearest faces.
 struct FitScene {
-    FitScene(Network given, const shapes::Cloud& cloud) : network(std::move(given)), surface(network) {
+    FitScene(Network given, const shapes::Cloud& cloud)
+        : network(std::move(given)), surface(network), tracked(tracked_points(cloud)) {
         ThreadTeam team(1);
-        for (const vcg::Point3d& p : cloud) tracked.points.push_back(to_eigen(vcg::Point3f::Construct(p)));
         points = group_by_face(surface, tracked, nearest_by_tree(surface, tracked, team), team);
     }
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "tests/unit/support/runs.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/targets.h"
 #include "vcg_core/fit/point_errors.h"
@@ -151,10 +152,7 @@ TEST(Fit, MakesNoSpikesWhereThereAreNoPoints) {
 
 TEST(Fit, LeavesAnExactMeshAlone) {
     const Shape sphere = shapes::icosphere(2);
-    // The points are drawn from its own faces.
-    const TargetSpace target = TargetSpace::triangles(sphere.faces.size(), [&](std::size_t i, int k) {
-        return sphere.positions[static_cast<std::size_t>(sphere.faces[i][static_cast<std::size_t>(k)])];
-    });
+    const TargetSpace target = target_of(sphere);  // points are drawn from its own faces
     Network network = network_in_frame(target, sphere);
     const double before = rms(target, network);
     const FitReport report = fit(network, target);
@@ -181,12 +179,6 @@ TEST(Fit, LeavesAMeshAloneWithHardlyAnyPoints) {
     EXPECT_TRUE(same_bytes(before, network));
 }
 
-/// Asks to stop at once.
-class Stop : public Progress {
-public:
-    bool operator()(double, const char*) override { return false; }
-};
-
 TEST(Fit, RemovesTheVerticesOfLeastCost) {
     // A cube needs its eight corners only: removing vertices inside its sides costs nothing.
     const TargetSpace target = target_of(shapes::box_cloud(20000));
@@ -207,14 +199,6 @@ TEST(Fit, RemovesTheVerticesOfLeastCost) {
 }
 
 TEST(Fit, CancelledInTheReductionItLeavesASoundMesh) {
-    class StopLater : public Progress {
-    public:
-        explicit StopLater(int calls) : left_(calls) {}
-        bool operator()(double, const char*) override { return left_-- > 0; }
-
-    private:
-        int left_;
-    };
     const TargetSpace target = target_of(shapes::sphere_cloud(5000));
     const Network start = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 1.1));
     FitOptions options;
@@ -223,7 +207,7 @@ TEST(Fit, CancelledInTheReductionItLeavesASoundMesh) {
     int reduced = 0;
     for (int calls = 0; calls < 8; ++calls) {
         Network network = start;
-        StopLater progress(calls);
+        runs::Watch progress(calls);
         fit_to_points(network, target, options, 1, 1, progress);
         EXPECT_EQ(network.validate(), "");
         EXPECT_EQ(network.genus(), 0);
@@ -242,33 +226,22 @@ TEST(Fit, CancelledAtOnceItLeavesATangledMeshUnchanged) {
     const Network before = network;
     FitOptions options;
     options.reduce_to = 300;
-    Stop stop;
+    runs::Watch stop(0);
     EXPECT_FALSE(fit_to_points(network, target, options, 1, 1, stop).improved);
     EXPECT_TRUE(same_bytes(before, network));
 }
 
 TEST(Fit, ReportsHowMuchOfItIsDone) {
-    class Watch : public Progress {
-    public:
-        bool operator()(double fraction, const char* text) override {
-            EXPECT_GE(fraction, last) << text;
-            EXPECT_LE(fraction, 1);
-            standing_still += fraction == last ? 1 : 0;
-            last = fraction;
-            return true;
-        }
-        double last = -1;
-        int standing_still = 0;
-    };
     const TargetSpace target = target_of(shapes::sphere_cloud(5000));
     for (const bool by_volume : {false, true}) {
         Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 1.1), 0.05);
         FitOptions options;
         options.reduce_to = 100;
         options.by_volume = by_volume;
-        Watch progress;
+        runs::Watch progress;
         fit_to_points(network, target, options, 1, 1, progress);
         EXPECT_EQ(network.vertex_count(), 100);
+        EXPECT_EQ(progress.steps_back, 0);
         EXPECT_LT(progress.standing_still, 2) << "the first round of the reduction removes none";
         EXPECT_GT(progress.last, 0.6);
     }

@@ -1,76 +1,93 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Moving and removing vertices: counts, topology, and operations that must not touch each other.
-#include "vcg_core/fit/redistribute.h"
-
+// Moving, removing and adding vertices: counts, topology, and operations that must not touch each other.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "tests/unit/fit/fit_scene.h"
+#include "tests/unit/support/open_shapes.h"
+#include "tests/unit/support/referee.h"
+#include "tests/unit/support/runs.h"
+#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/soundness.h"
+#include "vcg_core/fit/redistribute.h"
+#include "vcg_core/mesh/self_crossings.h"
+#include "vcg_core/reconstruct.h"
 
 namespace neuralmesh {
 namespace {
 
 /// Points of a cube, around a network whose faces cut its edges: vertices are missing there and superfluous
 /// on the sides.
-FitScene cube_scene() {
-    shapes::Shape shape = shapes::icosphere(3);
-    for (vcg::Point3d& p : shape.positions)
-        p /= 2 * std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
-    return {referee::network_of(shape, 0.001), shapes::box_cloud(30000)};
-}
+class OnACube : public testing::Test {
+protected:
+    OnACube() : scene(network_inside(), shapes::box_cloud(30000)) {
+        collapses = find_collapses(scene.network, scene.surface, scene.points, team);
+        splits = find_splits(scene.network, scene.surface, scene.points, 1e-3F, team);
+        none.resize(network.slot_count(), 0);
+        barred = none;
+        for (VertexId v = 0; v < barred.size(); v += 7) barred[v] = 1;
+    }
 
-TEST(Redistribute, KeepsTheVertexCountAndTheTopology) {
-    const FitScene scene = cube_scene();
-    ThreadTeam team(2);
-    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
-    const std::vector<EdgeSplit> splits =
-        find_splits(scene.network, scene.surface, scene.points, 1e-3F, team);
-    for (int max_pairs : {0, 1, 10, 1000}) {
-        Network network = scene.network;
-        const std::vector<DoneCollapse> done =
-            redistribute(network, collapses, splits, max_pairs, PerVertex<char>(network.slot_count(), 0));
+    static Network network_inside() {
+        shapes::Shape shape = shapes::icosphere(3);
+        for (vcg::Point3d& p : shape.positions)
+            p /= 2 * std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+        return referee::network_of(shape, 0.001);
+    }
+
+    void expect_sound(std::size_t removed) const {
         EXPECT_EQ(network.validate(), "");
-        EXPECT_EQ(network.vertex_count(), scene.network.vertex_count());
         EXPECT_EQ(network.genus(), 0);
         EXPECT_EQ(network.component_count(), 1);
-        EXPECT_LE(static_cast<int>(done.size()), max_pairs);
-        EXPECT_GE(static_cast<int>(done.size()), std::min(max_pairs, 10));
+        EXPECT_EQ(network.vertex_count(), scene.network.vertex_count() - static_cast<int>(removed));
+    }
+
+    void expect_barred_untouched() const {
+        for (VertexId v = 0; v < barred.size(); v += 7) {
+            ASSERT_TRUE(network.alive(v));
+            EXPECT_EQ(network.ring(v).valence, scene.network.ring(v).valence);
+        }
+    }
+
+    const FitScene scene;
+    Network network = scene.network;
+    ThreadTeam team{2};
+    std::vector<Collapse> collapses;
+    std::vector<EdgeSplit> splits;
+    PerVertex<char> none, barred;
+};
+
+TEST_F(OnACube, RedistributeKeepsTheVertexCountAndTheTopology) {
+    for (const int max_pairs : {0, 1, 10, 1000}) {
+        network = scene.network;
+        const auto done = static_cast<int>(redistribute(network, collapses, splits, max_pairs, none).size());
+        expect_sound(0);
+        EXPECT_LE(done, max_pairs);
+        EXPECT_GE(done, std::min(max_pairs, 10));
     }
 }
 
-TEST(Redistribute, StopsWhereASplitGainsLessThanTheCollapseCosts) {
-    const FitScene scene = cube_scene();
-    ThreadTeam team(1);
-    std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
-    const std::vector<EdgeSplit> splits =
-        find_splits(scene.network, scene.surface, scene.points, 1e-3F, team);
+TEST_F(OnACube, RedistributeStopsWhereASplitGainsLessThanTheCollapseCosts) {
     for (Collapse& collapse : collapses) collapse.cost = splits.front().gain;
-    Network network = scene.network;
-    const PerVertex<char> none(network.slot_count(), 0);
     EXPECT_TRUE(redistribute(network, collapses, splits, 10, none).empty());
     EXPECT_EQ(network.faces(), scene.network.faces());
 }
 
-TEST(Redistribute, LeavesBarredVerticesAlone) {
-    const FitScene scene = cube_scene();
-    ThreadTeam team(1);
-    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
-    const std::vector<EdgeSplit> splits =
-        find_splits(scene.network, scene.surface, scene.points, 1e-3F, team);
-    PerVertex<char> barred(scene.network.slot_count(), 0);
-    for (VertexId v = 0; v < barred.size(); v += 7) barred[v] = 1;
-    Network network = scene.network;
+TEST_F(OnACube, BarredVerticesAreLeftAlone) {
     EXPECT_FALSE(redistribute(network, collapses, splits, 1000, barred).empty());
-    for (VertexId v = 0; v < barred.size(); v += 7) {
-        ASSERT_TRUE(network.alive(v));
-        EXPECT_EQ(network.ring(v).valence, scene.network.ring(v).valence);
-    }
+    expect_barred_untouched();
+    network = scene.network;
+    EXPECT_FALSE(reduce_densely(network, collapses, 10000, barred).empty());
+    EXPECT_EQ(network.validate(), "");
+    expect_barred_untouched();
 }
 
 // Edges that end on the boundary are split in their middle; the boundary keeps its vertices.
@@ -125,27 +142,18 @@ TEST(Redistribute, SplitsBoundaryEdgesOnTheBoundary) {
     EXPECT_GT(splits, 20);
 }
 
-TEST(Reduce, RemovesTheCheapestThatDoNotTouch) {
-    const FitScene scene = cube_scene();
-    ThreadTeam team(1);
-    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
-    for (int max_count : {1, 20, 10000}) {
-        Network network = scene.network;
-        const std::vector<DoneCollapse> done =
-            reduce(network, collapses, max_count, PerVertex<char>(network.slot_count(), 0));
-        EXPECT_EQ(network.validate(), "");
-        EXPECT_EQ(network.genus(), 0);
-        EXPECT_LE(static_cast<int>(done.size()), max_count);
-        EXPECT_EQ(network.vertex_count(), scene.network.vertex_count() - static_cast<int>(done.size()));
+TEST_F(OnACube, ReduceRemovesTheCheapestThatDoNotTouch) {
+    for (const std::size_t max_count : {1, 20, 10000}) {
+        network = scene.network;
+        const auto done = reduce(network, collapses, static_cast<int>(max_count), none);
+        expect_sound(done.size());
+        EXPECT_LE(done.size(), max_count);
         EXPECT_EQ(done.front().gone, collapses.front().gone);
-        PerVertex<char> touched(scene.network.slot_count(), 0);
+        PerVertex<char> touched = none;
         for (const DoneCollapse& collapse : done) {
-            EXPECT_EQ(touched[collapse.gone], 0);
-            touched[collapse.gone] = 1;
-            for (VertexId u : scene.network.ring(collapse.gone)) {
-                EXPECT_EQ(touched[u], 0);
-                touched[u] = 1;
-            }
+            EXPECT_EQ(std::exchange(touched[collapse.gone], 1), 0);
+            for (const VertexId u : scene.network.ring(collapse.gone))
+                EXPECT_EQ(std::exchange(touched[u], 1), 0);
         }
     }
 }
@@ -167,18 +175,12 @@ std::set<std::array<VertexId, 3>> measured_faces(const Network& network, VertexI
     return faces;
 }
 
-TEST(ReduceDensely, RemovesOnlyWhatIsAsMeasured) {
-    const FitScene scene = cube_scene();
-    ThreadTeam team(1);
-    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
-    const PerVertex<char> none(scene.network.slot_count(), 0);
-    for (int max_count : {1, 20, 10000}) {
-        Network network = scene.network;
-        const auto done = reduce_densely(network, collapses, max_count, none);
-        EXPECT_EQ(network.validate(), "");
-        EXPECT_EQ(network.genus(), 0);
-        EXPECT_LE(static_cast<int>(done.size()), max_count);
-        EXPECT_EQ(network.vertex_count(), scene.network.vertex_count() - static_cast<int>(done.size()));
+TEST_F(OnACube, ReduceDenselyRemovesOnlyWhatIsAsMeasured) {
+    for (const std::size_t max_count : {1, 20, 10000}) {
+        network = scene.network;
+        const auto done = reduce_densely(network, collapses, static_cast<int>(max_count), none);
+        expect_sound(done.size());
+        EXPECT_LE(done.size(), max_count);
         EXPECT_EQ(done.front().gone, collapses.front().gone);
         Network again = scene.network;
         for (const DoneCollapse& collapse : done) {
@@ -190,19 +192,69 @@ TEST(ReduceDensely, RemovesOnlyWhatIsAsMeasured) {
     }
 }
 
-TEST(ReduceDensely, LeavesBarredVerticesAlone) {
-    const FitScene scene = cube_scene();
-    ThreadTeam team(1);
-    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
-    PerVertex<char> barred(scene.network.slot_count(), 0);
-    for (VertexId v = 0; v < barred.size(); v += 7) barred[v] = 1;
-    Network network = scene.network;
-    EXPECT_FALSE(reduce_densely(network, collapses, 10000, barred).empty());
+void expect_refined(const shapes::Shape& shape, int vertices) {
+    const Network before = referee::network_of(shape);
+    Network network = before;
+    NoProgress progress;
+    EXPECT_EQ(refine(network, vertices, NewVertices::curved, progress), vertices - before.vertex_count());
+    EXPECT_EQ(network.vertex_count(), vertices);
     EXPECT_EQ(network.validate(), "");
-    for (VertexId v = 0; v < barred.size(); v += 7) {
-        ASSERT_TRUE(network.alive(v));
-        EXPECT_EQ(network.ring(v).valence, scene.network.ring(v).valence);
+    EXPECT_EQ(network.genus(), before.genus());
+    EXPECT_EQ(network.component_count(), before.component_count());
+    EXPECT_EQ(network.boundary_loop_count(), before.boundary_loop_count());
+    const PerVertex<VertexId> sources = nearest_vertices(VertexPlaces(before), network);
+    for (const VertexId v : before.vertices()) {
+        EXPECT_EQ(network.position(v), before.position(v));
+        EXPECT_EQ(sources[v], v);
     }
+}
+
+/// (shortest, longest)
+std::pair<float, float> edge_lengths(const Network& network) {
+    std::pair<float, float> result(1, 0);
+    for (const VertexId v : network.vertices())
+        for (const VertexId u : network.ring(v)) {
+            const float length = (network.position(u) - network.position(v)).Norm();
+            result = {std::min(result.first, length), std::max(result.second, length)};
+        }
+    return result;
+}
+
+TEST(Refine, ReachesTheNumberAndKeepsTopologyAndVertices) {
+    expect_refined(shapes::icosphere(2), 163);
+    expect_refined(shapes::icosphere(2), 2000);
+    expect_refined(shapes::torus_grid(12, 8), 1000);
+    expect_refined(shapes::bipyramid(14), 1000);
+}
+
+TEST(Refine, SplitsBoundaryEdgesToo) {
+    expect_refined(shapes::grid(5, 5), 2000);
+    expect_refined(shapes::tube(8, 3), 1000);
+    Network network = referee::network_of(shapes::grid(5, 5));
+    NoProgress progress;
+    refine(network, 2000, NewVertices::curved, progress);
+    // A boundary edge was .25 or more; edges of an even mesh are about .024.
+    EXPECT_LT(edge_lengths(network).second, 0.06);
+}
+
+TEST(Refine, EndsWhenProgressAsksToStop) {
+    runs::Watch once(1);
+    Network network = referee::network_of(shapes::icosphere(2));
+    EXPECT_GT(refine(network, 5000, NewVertices::curved, once), 0);
+    EXPECT_EQ(once.calls, 2);
+    EXPECT_LT(network.vertex_count(), 5000);
+    EXPECT_EQ(network.validate(), "");
+}
+
+TEST(Refine, CurvesTheSurfaceAndEvensTheEdges) {
+    Network network = referee::network_of(shapes::icosphere(1));
+    NoProgress progress;
+    refine(network, 500, NewVertices::curved, progress);
+    for (const VertexId v : network.vertices())
+        EXPECT_NEAR(network.position(v).Norm(), 1, 0.02) << "middles of edges are up to .05 inside";
+    refine(network, 1000, NewVertices::curved, progress);
+    const auto [shortest, longest] = edge_lengths(network);
+    EXPECT_LT(longest, 4 * shortest);
 }
 
 }  // namespace

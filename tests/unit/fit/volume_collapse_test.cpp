@@ -132,7 +132,7 @@ TEST(VolumeCollapse, KeepsTopologyAndVolume) {
 }
 
 TEST(VolumeCollapse, LeavesTheCornersOfACube) {
-    Network network = referee::network_of(shapes::divided(shapes::divided(shapes::divided(shapes::cube()))));
+    Network network = referee::network_of(shapes::fine_cube(3));
     ASSERT_EQ(network.vertex_count(), 386);
     reduce(network, 8);
     EXPECT_EQ(network.vertex_count(), 8);
@@ -142,7 +142,7 @@ TEST(VolumeCollapse, LeavesTheCornersOfACube) {
 
 // Beside a sharp edge the fitted vertices are close together and a little off it.
 TEST(VolumeCollapse, TakesShortEdgesBesideACreaseBeforeFlatOnes) {
-    const shapes::Shape cube = shapes::divided(shapes::divided(shapes::divided(shapes::cube())));
+    const shapes::Shape cube = shapes::fine_cube(3);
     Network network = referee::network_of(cube);
     VertexId middle = -1;
     for (const VertexId v : network.vertices())

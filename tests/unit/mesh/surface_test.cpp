@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The copy of a network's geometry, and searches for nearest faces against a look at every face.
-#include "vcg_core/mesh/surface.h"
-
+// The copy of a network's geometry; nearest points of triangles and faces, against samples and a look at
+// every face.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -16,11 +16,118 @@
 #include "tests/unit/support/shapes.h"
 #include "vcg_core/mesh/face_tree.h"
 #include "vcg_core/mesh/face_walk.h"
+#include "vcg_core/mesh/surface.h"
+#include "vcg_core/mesh/triangle.h"
+#include "vcg_core/mesh/triangle_lanes.h"
 
 namespace neuralmesh {
 namespace {
 
 using referee::network_of;
+
+// The nearest point of a triangle against a dense sampling of the triangle.
+
+Vector3 in_cube(Random& random) { return to_eigen(vcg::Point3f::Construct(shapes::in_cube(random))); }
+
+/// The least squared distance of \p p from a lattice of points on the triangle.
+double sampled_squared_distance(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c,
+                                int steps) {
+    double least = std::numeric_limits<double>::max();
+    for (int i = 0; i <= steps; ++i)
+        for (int j = 0; i + j <= steps; ++j) {
+            const float s = static_cast<float>(i) / static_cast<float>(steps);
+            const float t = static_cast<float>(j) / static_cast<float>(steps);
+            const Vector3 q = a + s * (b - a) + t * (c - a);
+            least = std::min(least, static_cast<double>((p - q).squaredNorm()));
+        }
+    return least;
+}
+
+void expect_foot(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c, double tolerance) {
+    constexpr int kSteps = 100;
+    const Foot foot = foot_on_triangle(p, a, b, c);
+    const auto& w = foot.weights;
+    EXPECT_NEAR(w[0] + w[1] + w[2], 1, 1e-5);
+    for (float weight : w) EXPECT_GE(weight, -1e-6F);
+    const Vector3 q = w[0] * a + w[1] * b + w[2] * c;
+    EXPECT_NEAR((p - q).norm(), std::sqrt(foot.squared_distance), tolerance);
+    const double sampled = std::sqrt(sampled_squared_distance(p, a, b, c, kSteps));
+    const double spacing =
+        static_cast<double>(std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()})) / kSteps;
+    const double found = std::sqrt(static_cast<double>(foot.squared_distance));
+    EXPECT_LE(found, sampled + tolerance);
+    EXPECT_GE(found, sampled - spacing);
+}
+
+TEST(FootOnTriangle, IsTheNearestOfManySamples) {
+    Random random(1);
+    for (int i = 0; i < 500; ++i)
+        expect_foot(2 * in_cube(random), in_cube(random), in_cube(random), in_cube(random), 1e-5);
+}
+
+// The corners of a needle lie on a line only up to rounding.
+TEST(FootOnTriangle, IsRightOnDegenerateTriangles) {
+    Random random(2);
+    for (int i = 0; i < 100; ++i) {
+        const Vector3 a = in_cube(random);
+        const Vector3 b = in_cube(random);
+        expect_foot(2 * in_cube(random), a, b, 0.25F * a + 0.75F * b, 1e-3);
+        expect_foot(2 * in_cube(random), a, b, b, 1e-3);
+        expect_foot(2 * in_cube(random), a, a, a, 1e-5);
+    }
+}
+
+// Callers tell the inside from the border by weights of exactly 0.
+TEST(FootOnTriangle, GivesCornersWithoutAPartTheWeightZero) {
+    const Vector3 a(0, 0, 0);
+    const Vector3 b(1, 0, 0);
+    const Vector3 c(0, 1, 0);
+    EXPECT_EQ(foot_on_triangle(Vector3(-1, -1, 1), a, b, c).weights, (std::array<float, 3>{1, 0, 0}));
+    EXPECT_EQ(foot_on_triangle(Vector3(2, -1, 1), a, b, c).weights, (std::array<float, 3>{0, 1, 0}));
+    EXPECT_EQ(foot_on_triangle(Vector3(0.5F, -1, 0), a, b, c).weights[2], 0);
+    EXPECT_EQ(foot_on_triangle(Vector3(-1, 0.5F, 0), a, b, c).weights[1], 0);
+    EXPECT_EQ(foot_on_triangle(Vector3(1, 1, 0), a, b, c).weights[0], 0);
+}
+
+/// Of a lattice of few places, so that triangles may be degenerate, and points lie on borders of regions.
+Vector3 on_lattice(Random& random) {
+    const auto coordinate = [&] { return 0.25F * static_cast<float>(random.below(5)) - 0.5F; };
+    const float x = coordinate(), y = coordinate();
+    return {x, y, coordinate()};
+}
+
+TEST(SquaredDistanceToTriangle, HasTheBitsOfTheFoot) {
+    Random random(11);
+    for (int run = 0; run < 20000; ++run) {
+        const auto place = [&] { return run % 2 == 0 ? on_lattice(random) : in_cube(random); };
+        const Vector3 ab = place(), ac = place();
+        std::array<Vector3, 8> points;
+        EightVectors lanes;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            points[i] = place();
+            lanes.x[i] = points[i][0];
+            lanes.y[i] = points[i][1];
+            lanes.z[i] = points[i][2];
+        }
+        Eight squared;
+        squared_distance_to_triangle(ab, ac, lanes, squared);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const float expected = foot_on_triangle(ab, ac, points[i]).squared_distance;
+            ASSERT_TRUE(squared[i] == expected || (std::isnan(squared[i]) && std::isnan(expected)))
+                << squared[i] << " for " << expected << ", run " << run;
+        }
+    }
+}
+
+/// 1 + 1 is even in the last place of 2^24 and 2^53; 1 alone is rounded off.
+TEST(Triangle, AddsTheLastTwoOfThreeTermsFirstOnEveryProcessor) {
+    const Eigen::Vector3f floats(0x1p24F, 1, 1);
+    EXPECT_EQ(floats.dot(Eigen::Vector3f::Ones()), 0x1p24F + 2);
+    const Eigen::Vector3d doubles(0x1p53, 1, 1);
+    EXPECT_EQ(doubles.dot(Eigen::Vector3d::Ones()), 0x1p53 + 2);
+}
+
+// The copy of a network's geometry, and searches for nearest faces against a look at every face.
 
 Network network_with_free_slots() {
     Network network = network_of(shapes::icosphere(2), 0.02);
@@ -34,17 +141,13 @@ Network network_with_free_slots() {
     return network;
 }
 
-Vector3 in_cube(Random& random) { return to_eigen(vcg::Point3f::Construct(shapes::in_cube(random))); }
-
-/// The nearest face by looking at all.
+/// The nearest of \p faces by looking at all.
 Hit nearest_of(const Surface& surface, const std::vector<int>& faces, const Vector3& p) {
-    Hit best{-1, {std::numeric_limits<float>::max(), {1, 0, 0}}};
-    for (int f : faces) {
-        const Foot foot =
-            foot_on_triangle(p, surface.corner(f, 0), surface.corner(f, 1), surface.corner(f, 2));
-        if (foot.squared_distance < best.foot.squared_distance) best = {f, foot};
-    }
-    return best;
+    std::vector<Triangle> corners;
+    for (const int f : faces) corners.push_back(surface.faces[f]);
+    Hit hit = referee::nearest_face(p, surface.positions, corners);
+    hit.face = faces.at(static_cast<std::size_t>(hit.face));
+    return hit;
 }
 
 std::vector<int> every(int step, const Surface& surface) {

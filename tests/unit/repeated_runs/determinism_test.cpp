@@ -8,15 +8,15 @@
 #include <cstring>
 #include <string>
 
-#include "tests/unit/support/run_variants.h"
-#include "tests/unit/support/soundness.h"
+#include "tests/unit/support/open_shapes.h"
+#include "tests/unit/support/runs.h"
 #include "vcg_core/reconstruct.h"
 
 namespace neuralmesh {
 namespace {
 
-using run_variants::learn;
-using run_variants::variants;
+using runs::learn;
+using runs::variants;
 
 template <class T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
@@ -43,9 +43,12 @@ void expect_same_with_threads(const shapes::Cloud& cloud, Settings settings) {
 TEST(Determinism, SameSeedSameBytesWhateverTheThreads) {
     for (const Settings& settings : variants())
         expect_same_with_threads(shapes::sphere_cloud(1500, 0.01), settings);
-    Settings even;
-    even.target_vertices = 500;
-    expect_same_with_threads(shapes::uneven_sphere_cloud(5000, 20, 0.01), even);
+    expect_same_with_threads(shapes::uneven_sphere_cloud(5000, 20, 0.01), runs::with_target(500));
+    const shapes::Cloud two = shapes::two_sphere_cloud(10000, 3);
+    Settings apart = runs::with_target(1500, kTetrahedron);
+    apart.learn_topology = true;
+    EXPECT_EQ(learn(two, apart).report.components, 2);
+    expect_same_with_threads(two, apart);
 }
 
 /// From 3,000 vertices on, each thread has its own region of space.
@@ -57,6 +60,12 @@ TEST(Determinism, SameBytesWhereThreadsShareTheNetwork) {
     settings.settling_signals_per_vertex = 20;
     settings.fit_to_points = false;
     expect_same_with_threads(shapes::torus_cloud(20000, 0.005), settings);
+    settings = runs::with_target(3000);
+    settings.surface = kOpenSurface;
+    settings.signals_per_split = 40;
+    settings.min_wins_per_split = 10;
+    settings.settling_signals_per_vertex = 5;
+    expect_same_with_threads(open_shapes::cases()[4].cloud, settings);
 }
 
 TEST(Determinism, AnotherSeedGivesAnotherMesh) {

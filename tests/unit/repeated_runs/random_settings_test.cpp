@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Every parameter at an end of its range, and random settings on random clouds: no crash, a sound mesh,
+// Every parameter at the ends of its range, and random settings on random clouds: no crash, a sound mesh,
 // and no more signals than the settings allow. NEURALMESH_RANDOM_RUNS=500 makes 500 runs instead of 12;
 // NEURALMESH_RANDOM_FIRST=N starts with run N, to repeat a failure.
 #include <gtest/gtest.h>
@@ -13,6 +13,7 @@
 #include <string>
 
 #include "tests/unit/support/environment.h"
+#include "tests/unit/support/runs.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/learn_and_fit.h"
 #include "vcg_core/learning/learner.h"
@@ -23,18 +24,9 @@ namespace {
 using shapes::Cloud;
 using Kind = SettingInfo::Kind;
 
-/// Asks to stop after \p patience calls, because some settings take billions of signals.
-class Patience : public Progress {
-public:
-    explicit Patience(int patience) : left_(patience) {}
-    bool operator()(double /*fraction*/, const char* /*text*/) override { return left_-- > 0; }
-    bool spent() const { return left_ < 0; }
-
-private:
-    int left_;
-};
-
-constexpr int kPatience = 400;  ///< calls; learning makes one per thousand signals
+/// Calls until a run is stopped, because some settings take billions of signals. Learning makes one per
+/// thousand.
+constexpr int kPatience = 400;
 
 /// Upper bound on the signals of one growth with landing and settling.
 std::int64_t most_of_growth(const TargetSpace& target, const Settings& settings) {
@@ -80,7 +72,7 @@ IndexedMesh<double> start_for(const TargetSpace& target) {
 }
 
 void expect_valid_result(const TargetSpace& target, const Settings& settings) {
-    Patience patience(kPatience);
+    runs::Watch patience(kPatience);
     const NeuralMesh mesh = reconstruct(target, settings, patience, start_for(target));
     soundness::expect_sound(mesh);
     expect_near_the_points(mesh, target);
@@ -94,23 +86,40 @@ void expect_valid_result(const TargetSpace& target, const Settings& settings) {
         EXPECT_GT(settings.stop_below_mean_counter, 0);
     } else {
         EXPECT_EQ(mesh.report.stop_reason, StopReason::cancelled);
-        EXPECT_TRUE(patience.spent());
+        EXPECT_TRUE(patience.stopped());
     }
 }
 
-/// The lower and the upper by turns.
-TEST(RandomSettings, EveryParameterWorksAtAnEndOfItsRange) {
-    const TargetSpace target = soundness::target_of(shapes::sphere_cloud(500));
-    std::size_t i = 0;
-    for (const SettingInfo& info : setting_table()) {
-        const double end = ++i % 2 == 1 ? info.low : info.high;
-        SCOPED_TRACE(testing::Message() << info.id << " = " << end);
-        Settings settings;
-        settings.target_vertices = 60;
-        settings.settling_signals_per_vertex = 10;
-        info.store(settings, end);
+TEST(RandomSettings, EveryParameterWorksAtBothEndsOfItsRange) {
+    const TargetSpace target = targets::target_of(shapes::sphere_cloud(500));
+    for (const SettingInfo& info : setting_table())
+        for (const double end : {info.low, info.high}) {
+            SCOPED_TRACE(testing::Message() << info.id << " = " << end);
+            Settings settings = runs::with_target(60);
+            settings.settling_signals_per_vertex = 10;
+            info.store(settings, end);
+            expect_valid_result(target, settings);
+        }
+}
+
+/// Those that make each other worse, from the tetrahedron, where the network grows most.
+TEST(RandomSettings, HostilePairsWork) {
+    const TargetSpace target = targets::target_of(shapes::torus_cloud(2000));
+    const auto expect_valid = [&](const char* name, const auto& change) {
+        SCOPED_TRACE(name);
+        Settings settings = runs::with_target(150, kTetrahedron);
+        change(settings);
         expect_valid_result(target, settings);
-    }
+    };
+    expect_valid("no maturity, collapse at every chance",
+                 [](Settings& s) { s.min_wins_per_split = 0, s.signals_per_collapse = 1; });
+    expect_valid("split and collapse at every signal",
+                 [](Settings& s) { s.signals_per_split = s.signals_per_collapse = 1; });
+    expect_valid("maturity beyond reach",
+                 [](Settings& s) { s.min_wins_per_split = 1000, s.signals_per_split = 1; });
+    expect_valid("strongest smoothing", [](Settings& s) { s.smoothing_steps = 100, s.smoothing_rate = 1; });
+    expect_valid("signal counter to the letter",
+                 [](Settings& s) { s.utility_counter = kSignalCount, s.min_wins_per_split = 0; });
 }
 
 double fraction(Random& random) { return static_cast<double>(random.unit()); }
@@ -175,7 +184,7 @@ Cloud random_cloud(Random& random) {
 /// A random cloud, or triangles of three consecutive points each.
 TargetSpace random_target(Random& random) {
     const Cloud cloud = random_cloud(random);
-    if (random.below(4) != 0 || cloud.size() < 6) return soundness::target_of(cloud);
+    if (random.below(4) != 0 || cloud.size() < 6) return targets::target_of(cloud);
     return TargetSpace::triangles(
         cloud.size() / 3, [&](std::size_t i, int k) { return cloud[3 * i + static_cast<std::size_t>(k)]; });
 }

@@ -1,17 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/start/lattice.h"
-
+// Lattices: nodes, links, solids without bridges, and their surfaces.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <set>
 #include <vector>
 
+#include "tests/unit/support/referee.h"
 #include "tests/unit/support/small_lattice.h"
+#include "vcg_core/mesh/network.h"
+#include "vcg_core/start/bridgeless_growth.h"
+#include "vcg_core/start/lattice.h"
+#include "vcg_core/start/marching_tetrahedra.h"
+#include "vcg_core/start/node_link.h"
 
 namespace neuralmesh {
 namespace {
@@ -59,6 +66,217 @@ TEST(Lattice, AdjacencyIsThatOfTheFreudenthalSubdivision) {
         });
         ASSERT_EQ(found, expected) << i;
     }
+}
+
+// The table of sets of neighbours against a search for components and a count of simplices.
+
+template <class Member>
+NeighbourSet set_of(const Neighbours& neighbours, NodeId i, const Member& member) {
+    return neighbours_in(neighbours, i, neighbours.places(i), member);
+}
+
+TEST(NodeLink, ConnectedSetsAreThoseOfOneComponent) {
+    const Lattice lattice = small_lattice();
+    const NodeId middle = lattice.index(5, 6, 7);
+    const Neighbours neighbours(lattice);
+    int differ = 0;
+    for (NeighbourSet set = 0; set < NeighbourSet{1} << kNeighbourCount; ++set) {
+        NodeSet members(lattice.size(), 0);
+        neighbours.for_each(middle, [&](NodeId j, int k) { members[j] = set >> k & 1U; });
+        // Only the neighbours are searched: a search of the whole lattice would take a minute.
+        int components = 0;
+        std::vector<NodeId> nodes;
+        neighbours.for_each(middle, [&](NodeId j, int) {
+            if (members[j] == 0) return;
+            ++components;
+            members[j] = 0;
+            flood(
+                neighbours, j,
+                [&](NodeId i) {
+                    if (members[i] == 0) return false;
+                    members[i] = 0;
+                    return true;
+                },
+                nodes);
+        });
+        differ += LinkTopology::table().is_connected(set) != (components == 1) ? 1 : 0;
+    }
+    EXPECT_EQ(differ, 0);
+}
+
+TEST(NodeLink, EulerCharacteristicsAreThoseOfTheSimplices) {
+    const Lattice lattice = small_lattice();
+    const Neighbours neighbours(lattice);
+    const NodeId middle = lattice.index(5, 6, 7);
+    const auto adjacent = [&](int a, int b) {
+        const NodeId there = neighbours.at(middle, b);
+        return set_of(neighbours, neighbours.at(middle, a), [&](NodeId j) { return j == there; }) != 0;
+    };
+    int differ = 0;
+    for (NeighbourSet set = 0; set < NeighbourSet{1} << kNeighbourCount; set += 7) {
+        int euler = 0;
+        for (int a = 0; a < kNeighbourCount; ++a) {
+            if ((set >> a & 1U) == 0) continue;
+            ++euler;
+            for (int b = 0; b < a; ++b) {
+                if ((set >> b & 1U) == 0 || !adjacent(a, b)) continue;
+                --euler;
+                for (int c = 0; c < b; ++c)
+                    if ((set >> c & 1U) != 0 && adjacent(a, c) && adjacent(b, c)) ++euler;
+            }
+        }
+        differ += LinkTopology::table().euler_characteristic(set) != euler ? 1 : 0;
+    }
+    EXPECT_EQ(differ, 0);
+}
+
+/// Random values, one in \p one_in of them negative; positive on the walls.
+PerNode<float> random_values(const Lattice& lattice, std::uint64_t seed, std::uint32_t one_in) {
+    Random random(seed);
+    PerNode<float> values(lattice.size());
+    for_each_node(lattice, [&](int x, int y, int z) {
+        const bool wall =
+            x == 0 || y == 0 || z == 0 || x == lattice.nx - 1 || y == lattice.ny - 1 || z == lattice.nz - 1;
+        const float size = random.unit() + 0.001F;
+        values[lattice.index(x, y, z)] = random.below(one_in) == 0 && !wall ? -size : size;
+    });
+    return values;
+}
+
+/// The boundary of a solid has twice its Euler characteristic, whatever its components, handles and cavities.
+TEST(MarchingTetrahedra, SurfaceHasTwiceTheEulerCharacteristicOfTheSolid) {
+    const Lattice lattice = small_lattice();
+    for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+        const PerNode<float> values = random_values(lattice, seed, 2 + seed % 10);
+        NodeSet solid(lattice.size());
+        for (NodeId i = 0; i < lattice.size(); ++i) solid[i] = values[i] < 0 ? 1 : 0;
+        const IndexedMesh<float> mesh = marching_tetrahedra(lattice, values);
+        const Network network(mesh.positions, mesh.faces);
+        ASSERT_EQ(network.validate(), "");
+        EXPECT_EQ(network.boundary_loop_count(), 0);
+        EXPECT_EQ(network.euler_characteristic(), 2 * euler_characteristic(lattice, solid)) << seed;
+        EXPECT_GT(referee::enclosed_volume(mesh), 0);
+        for (const VertexId v : network.vertices()) {
+            EXPECT_GE(network.ring(v).valence, 4);
+            EXPECT_LE(network.ring(v).valence, 12);
+        }
+    }
+}
+
+TEST(MarchingTetrahedra, VerticesAreZerosOfTheInterpolation) {
+    const Lattice lattice = small_lattice();
+    // A linear function, so that the interpolated zeros are those of the function: a plane that cuts a cube
+    // off.
+    const auto plane = [](const vcg::Point3f& p) { return p[0] + 2 * p[1] - 3 * p[2] - 0.7F; };
+    PerNode<float> values(lattice.size());
+    for_each_node(lattice, [&](int x, int y, int z) {
+        const bool inner = x >= 2 && x <= 8 && y >= 2 && y <= 8 && z >= 2 && z <= 8;
+        const float value = plane(lattice.position(x, y, z));
+        values[lattice.index(x, y, z)] = inner ? value : 100;
+    });
+    int on_plane = 0, exact = 0;
+    for (const vcg::Point3f& p : marching_tetrahedra(lattice, values).positions) {
+        const vcg::Point3f q = (p - lattice.corner) * (1 / lattice.step);
+        bool inner = true;
+        for (int k = 0; k < 3; ++k) inner = inner && q[k] > 2 && q[k] < 8;
+        if (!inner) continue;
+        ++on_plane;
+        // A vertex may be moved by a tenth of an edge, along which the function changes by at most 3.
+        EXPECT_LE(std::abs(plane(p)), 0.301F);
+        exact += std::abs(plane(p)) < 1e-4F ? 1 : 0;
+    }
+    EXPECT_GT(on_plane, 50);
+    EXPECT_GT(exact, on_plane / 2);
+}
+
+constexpr int kMaxRadius = 12;
+
+/// The nodes with inside(x, y, z) in a cube of 31 nodes per side around (0, 0, 0), grown to \p level.
+class Growth {
+public:
+    template <class Inside>
+    Growth(int level, const Inside& inside) : lattice_(box(), 1, 2), solid_(lattice_.size(), 0) {
+        PerNode<std::uint32_t> occupied(lattice_.size(), 0);
+        for_each_node(lattice_, [&](int x, int y, int z) {
+            if (!inside(x - 17, y - 17, z - 17)) return;
+            occupied[lattice_.index(x, y, z)] = 1;
+            solid_[lattice_.index(x, y, z)] = 1;
+        });
+        before_ = euler_characteristic(lattice_, solid_);
+        distances_ = squared_distances(lattice_, occupied, kMaxRadius);
+        grow_without_bridges(lattice_, distances_, level, solid_);
+    }
+    int before() const { return before_; }
+    int after() const { return euler_characteristic(lattice_, solid_); }
+    bool solid(int x, int y, int z) const { return solid_[lattice_.index(x + 17, y + 17, z + 17)] != 0; }
+    bool within_level(int level) const {
+        for (NodeId i = 0; i < solid_.size(); ++i)
+            if (solid_[i] != 0 && distances_[i] > level) return false;
+        return true;
+    }
+
+private:
+    static vcg::Box3f box() {
+        vcg::Box3f result;
+        result.Add(vcg::Point3f(-15, -15, -15));
+        result.Add(vcg::Point3f(15, 15, 15));
+        return result;
+    }
+    Lattice lattice_;
+    NodeSet solid_;
+    PerNode<SquaredRadius> distances_;
+    int before_ = 0;
+};
+
+/// A plate with a square hole of half width \p hole.
+auto plate(int hole) {
+    return [hole](int x, int y, int z) {
+        return std::abs(x) <= 10 && std::abs(y) <= 10 && std::abs(z) <= 1 &&
+               !(std::abs(x) <= hole && std::abs(y) <= hole);
+    };
+}
+
+TEST(BridgelessGrowth, FillsHolesUpToItsRadius) {
+    const Growth narrow(9, plate(2)), wide(9, plate(5));
+    EXPECT_EQ(narrow.before(), 0);  // one component, one handle
+    EXPECT_EQ(narrow.after(), 1);
+    EXPECT_TRUE(narrow.solid(0, 0, 0));
+    EXPECT_EQ(wide.after(), 0);
+    EXPECT_FALSE(wide.solid(0, 0, 0));
+    EXPECT_TRUE(narrow.within_level(9));
+}
+
+TEST(BridgelessGrowth, DoesNotJoinParts) {
+    const Growth growth(16, [](int x, int y, int z) {
+        return std::abs(x) <= 8 && std::abs(y) <= 8 && (std::abs(z - 4) <= 2 || std::abs(z + 4) <= 2);
+    });
+    EXPECT_EQ(growth.before(), 2);
+    EXPECT_EQ(growth.after(), 2);
+    EXPECT_TRUE(growth.solid(0, 0, 1));
+    EXPECT_TRUE(growth.solid(0, 0, -1));
+    EXPECT_FALSE(growth.solid(0, 0, 0) && growth.solid(0, 0, 1) && growth.solid(0, 0, -1));
+}
+
+TEST(BridgelessGrowth, MakesNoHandleWhereEndsMeet) {
+    // A C whose ends are 4 steps apart.
+    const Growth growth(16, [](int x, int y, int z) {
+        const int squared = x * x + y * y;
+        return squared >= 36 && squared <= 100 && std::abs(z) <= 2 && !(x > 0 && std::abs(y) <= 1);
+    });
+    EXPECT_EQ(growth.before(), 1);
+    EXPECT_EQ(growth.after(), 1);
+}
+
+TEST(BridgelessGrowth, LeavesNoCavities) {
+    // A hollow ball with a hole: growth fills the hollow from all sides and leaves nodes out where the fronts
+    // meet. They are cut off from outside.
+    const Growth growth(64, [](int x, int y, int z) {
+        const int squared = x * x + y * y + z * z;
+        return squared >= 36 && squared <= 64 && !(std::abs(x) <= 1 && std::abs(y) <= 1 && z > 0);
+    });
+    EXPECT_EQ(growth.before(), 1);
+    EXPECT_EQ(growth.after(), 1);
+    EXPECT_TRUE(growth.solid(0, 0, 0));
 }
 
 }  // namespace

@@ -1,20 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Points turned to a sensor, or up.
-#include "vcg_core/start/viewpoint.h"
-
+// The sides that open start meshes face: by normals, by a sensor, or up.
 #include <gtest/gtest.h>
 
+#include "tests/unit/support/depth_camera.h"
+#include "tests/unit/support/normal_clouds.h"
 #include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/referee.h"
 #include "vcg_core/mesh/triangle.h"
+#include "vcg_core/start/facing.h"
 #include "vcg_core/start/normal_orientation.h"
+#include "vcg_core/start/sensor_place.h"
+#include "vcg_core/start/viewpoint.h"
 
 namespace neuralmesh {
 namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;
+using namespace normal_clouds;
+using shapes::Cloud;
+using vcg::Point3d;
+using vcg::Point3f;
+
+// Points turned to a sensor, or up.
 
 const vcg::Point3f kFarAway(2000, 50000, 3);
 
@@ -177,6 +186,135 @@ TEST(Viewpoint, IsNowhereIfNobodySeesAllOfTheSurface) {
                 EXPECT_FALSE(seen.turn_to(origin));
                 EXPECT_EQ(seen.points.normals, normals);
             }
+}
+
+// Start meshes turned by normals.
+
+Network network_for(const TargetSpace& target, const shapes::Shape& shape) {
+    return targets::network_in_frame(target, shape);
+}
+
+/// Twice the signed volume of the fans from the origin of the input: positive if it faces away from there.
+double facing_away(const Network& network, const TargetSpace& target, VertexId first, VertexId end) {
+    double sum = 0;
+    for (const Triangle& f : network.faces()) {
+        if (f[0] < first || f[0] >= end) continue;
+        const auto at = [&](int k) {
+            return target.frame().outside(network.position(f[static_cast<std::size_t>(k)]));
+        };
+        sum += at(0) * (at(1) ^ at(2));
+    }
+    return sum;
+}
+
+TEST(Facing, OfASheetFollowsItsNormals) {
+    const Cloud cloud = shapes::plane_cloud(2000);
+    const TargetSpace target =
+        target_of(cloud, std::vector<PackedNormal>(cloud.size(), packed_point({0, 0, -1})));
+    Network network = network_for(target, shapes::grid(10, 10));
+    EXPECT_EQ(orient_by_normals(network, target), 1);
+    for (const Triangle& f : network.faces()) {
+        const auto at = [&](std::size_t k) { return network.position(f[k]); };
+        EXPECT_LT(((at(1) - at(0)) ^ (at(2) - at(0)))[2], 0);
+    }
+}
+
+TEST(Facing, OfAnOpenMeshFollowsMostNormals) {
+    const Cloud cloud = bowl(8000);
+    for (const bool in : {false, true}) {
+        const TargetSpace target = target_of(cloud, flipped(in ? inward(cloud) : outward(cloud), 5));
+        Network network = network_for(target, open_shapes::open_sphere());
+        ASSERT_EQ(network.boundary_loop_count(), 1);
+        orient_convex_side_outward(network);
+        EXPECT_GT(facing_away(network, target, 0, network.slot_count()), 0);
+        const FacingVote before = facing_votes(network, target).front();
+        EXPECT_NEAR(before.share_along(), in ? 0.2 : 0.8, 0.05);
+        EXPECT_EQ(orient_by_normals(network, target), 1);
+        EXPECT_EQ(facing_away(network, target, 0, network.slot_count()) < 0, in);
+        EXPECT_NEAR(facing_votes(network, target).front().share_along(), 0.8, 0.05);
+        EXPECT_EQ(network.validate(), "");
+    }
+}
+
+TEST(Facing, OfAnOpenMeshStaysWhereNormalsDisagreeOrAreMissing) {
+    const Cloud cloud = bowl(8000);
+    const TargetSpace disagreeing = target_of(cloud, flipped(inward(cloud), 2));
+    const TargetSpace without = targets::target_of(cloud);
+    for (const TargetSpace* target : {&disagreeing, &without}) {
+        Network network = network_for(*target, open_shapes::open_sphere());
+        const auto faces = network.faces();
+        EXPECT_EQ(orient_by_normals(network, *target), 0);
+        EXPECT_EQ(network.faces(), faces);
+    }
+}
+
+TEST(Facing, OfClosedComponentsStays) {
+    const Cloud cloud = shapes::sphere_cloud(8000);
+    const TargetSpace target = target_of(cloud, inward(cloud));
+    Network network = network_for(target, shapes::icosphere(2));
+    const auto faces = network.faces();
+    EXPECT_EQ(facing_votes(network, target).front().along, 0);
+    EXPECT_TRUE(facing_votes(network, target).front().is_clear());
+    EXPECT_EQ(orient_by_normals(network, target), 0);
+    EXPECT_EQ(network.faces(), faces);
+}
+
+TEST(Facing, OfEveryComponentIsItsOwn) {
+    // Two bowls side by side, whose normals point in and out.
+    shapes::Shape both = open_shapes::open_sphere();
+    const auto first = static_cast<VertexId>(both.positions.size());
+    shapes::append(both, open_shapes::open_sphere(), {3, 0, 0});
+    Cloud cloud = bowl(8000);
+    std::vector<PackedNormal> normals = outward(cloud);
+    for (const vcg::Point3d& p : bowl(8000)) {
+        cloud.push_back(p + vcg::Point3d(3, 0, 0));
+        normals.push_back(opposite(packed_point(p)));
+    }
+    const TargetSpace target = target_of(cloud, normals);
+    Network network = network_for(target, both);
+    EXPECT_EQ(orient_by_normals(network, target), 2);
+    const std::vector<FacingVote> votes = facing_votes(network, target);
+    ASSERT_EQ(votes.size(), 2U);
+    for (const FacingVote& vote : votes) EXPECT_GT(vote.share_along(), 0.99);
+    EXPECT_GT(facing_away(network, target, 0, first), 0);
+    EXPECT_EQ(network.validate(), "");
+}
+
+// The place of the camera of one frame, found from its points; none where there was no single camera.
+
+/// A frame whose camera stands at \p camera and looks along x.
+Cloud frame_from(const Point3d& camera, unsigned seed) {
+    Cloud cloud = sensors::depth_frame(200, seed);
+    for (Point3d& p : cloud) p = camera + Point3d(p[2], p[0], p[1]);
+    return cloud;
+}
+
+std::optional<Point3f> found(const Cloud& cloud) {
+    const std::vector<vcg::Point3f> points = shapes::in_float(cloud);  // which the surveys refer to
+    Surveys surveys(points, 1);
+    return sensor_place(surveys.points().cloud, surveys.surface().places());
+}
+
+TEST(SensorPlace, IsThatOfTheCamera) {
+    for (const unsigned seed : {1U, 2U, 3U})
+        for (const Point3d& camera : {Point3d(0, 0, 0), Point3d(-2, 3, 1), Point3d(20, 4, -7)}) {
+            const std::optional<Point3f> place = found(frame_from(camera, seed));
+            ASSERT_TRUE(place) << seed;
+            EXPECT_LT((Point3d::Construct(*place) - camera).Norm(), 0.4) << seed;  // the scene is 4 wide
+        }
+}
+
+TEST(SensorPlace, IsNoneForTwoCameras) {
+    Cloud cloud = frame_from({0, 0, 0}, 1);
+    for (const Point3d& p : sensors::depth_frame(200, 2)) cloud.emplace_back(6 - p[2], p[0], p[1]);
+    EXPECT_FALSE(found(cloud));
+}
+
+TEST(SensorPlace, IsNoneForEvenPoints) {
+    EXPECT_FALSE(found(shapes::plane_cloud(20000)));
+    EXPECT_FALSE(found(sensors::aerial_scan(20000, 10)));
+    EXPECT_FALSE(found(shapes::sphere_cloud(20000)));
+    EXPECT_FALSE(found(shapes::plane_cloud(30)));
 }
 
 }  // namespace

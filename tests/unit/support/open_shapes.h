@@ -98,26 +98,30 @@ inline std::vector<Case> cases() {
     };
 }
 
-/// The part of a sphere below .3, with one boundary.
-inline shapes::Shape open_sphere() {
-    shapes::Shape sphere = shapes::icosphere(3);
-    shapes::Shape open{sphere.positions, {}};
-    std::vector<int> moved(sphere.positions.size(), -1);
-    open.positions.clear();
-    for (const auto& f : sphere.faces) {
-        const auto z = [&](std::size_t k) { return sphere.positions[static_cast<std::size_t>(f[k])][2]; };
-        if (z(0) > 0.3 || z(1) > 0.3 || z(2) > 0.3) continue;
-        open.faces.push_back(f);
-        for (int& v : open.faces.back()) {
+/// The faces of \p shape whose corners \p keep accepts.
+template <class Keep>
+shapes::Shape cut(const shapes::Shape& shape, const Keep& keep) {
+    const auto at = [&](int v) { return shape.positions[static_cast<std::size_t>(v)]; };
+    shapes::Shape kept;
+    std::vector<int> moved(shape.positions.size(), -1);
+    for (const auto& f : shape.faces) {
+        if (!keep(at(f[0])) || !keep(at(f[1])) || !keep(at(f[2]))) continue;
+        kept.faces.push_back(f);
+        for (int& v : kept.faces.back()) {
             int& to = moved[static_cast<std::size_t>(v)];
             if (to < 0) {
-                to = static_cast<int>(open.positions.size());
-                open.positions.push_back(sphere.positions[static_cast<std::size_t>(v)]);
+                to = static_cast<int>(kept.positions.size());
+                kept.positions.push_back(at(v));
             }
             v = to;
         }
     }
-    return open;
+    return kept;
+}
+
+/// The part of a sphere below .3, with one boundary.
+inline shapes::Shape open_sphere() {
+    return cut(shapes::icosphere(3), [](const vcg::Point3d& p) { return p[2] <= 0.3; });
 }
 
 }  // namespace neuralmesh::open_shapes

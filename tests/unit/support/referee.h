@@ -7,6 +7,7 @@
 #include <vcg/space/point3.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -15,6 +16,7 @@
 
 #include "tests/unit/support/shapes.h"
 #include "vcg_core/mesh/network.h"
+#include "vcg_core/mesh/surface.h"
 
 namespace neuralmesh::referee {
 
@@ -25,6 +27,12 @@ inline Network network_of(const shapes::Shape& shape, double noise = 0, std::uin
     for (const vcg::Point3d& p : shape.positions)
         positions.push_back(vcg::Point3f::Construct(p + shapes::in_ball(random) * noise));
     return {positions, shape.faces};
+}
+
+inline std::vector<vcg::Point3f> positions_of(const Network& network) {
+    std::vector<vcg::Point3f> positions;
+    for (const VertexId v : network.vertices()) positions.push_back(network.position(v));
+    return positions;
 }
 
 /// The sorted faces, each rotated to start with its smallest vertex: equal for equal meshes.
@@ -121,6 +129,36 @@ inline Census census(const std::vector<Triangle>& faces) {
     return result;
 }
 
+/// A corner of a face of a mesh with vectors of positions and faces.
+template <class Mesh>
+vcg::Point3d corner(const Mesh& mesh, const Triangle& face, std::size_t k) {
+    return vcg::Point3d::Construct(mesh.positions[static_cast<std::size_t>(face[k % 3])]);
+}
+
+/// At right angles to a face, towards its outside; its length is the area.
+template <class Mesh>
+vcg::Point3d area_of(const Mesh& mesh, const Triangle& face) {
+    const vcg::Point3d a = corner(mesh, face, 0);
+    return ((corner(mesh, face, 1) - a) ^ (corner(mesh, face, 2) - a)) / 2;
+}
+
+template <class Mesh>
+vcg::Point3d middle_of(const Mesh& mesh, const Triangle& face) {
+    return (corner(mesh, face, 0) + corner(mesh, face, 1) + corner(mesh, face, 2)) / 3;
+}
+
+/// The area of the faces, and of those whose vectors and middles \p counts accepts.
+template <class Mesh, class Counts>
+std::pair<double, double> areas_of(const Mesh& mesh, const Counts& counts) {
+    std::pair<double, double> sums(0, 0);
+    for (const Triangle& face : mesh.faces) {
+        const vcg::Point3d area = area_of(mesh, face);
+        sums.first += area.Norm();
+        if (counts(area, middle_of(mesh, face))) sums.second += area.Norm();
+    }
+    return sums;
+}
+
 /// The volume that the faces enclose; positive if they are counter-clockwise seen from outside.
 template <class Position>
 double enclosed_volume(const std::vector<Triangle>& faces, const Position& position) {
@@ -143,6 +181,19 @@ double enclosed_volume(const Mesh& mesh) {
 
 inline double enclosed_volume(const Network& network) {
     return enclosed_volume(network.faces(), [&](VertexId v) { return network.position(v); });
+}
+
+/// The face of \p faces nearest to \p p, the first among equals; face -1 if there are none.
+template <class Faces>
+Hit nearest_face(const Vector3& p, const PerVertex<Vector3>& positions, const Faces& faces) {
+    Hit best{-1, {std::numeric_limits<float>::max(), {1, 0, 0}}};
+    int index = 0;
+    for (const Triangle& face : faces) {
+        const Foot foot = foot_on_triangle(p, positions[face[0]], positions[face[1]], positions[face[2]]);
+        if (foot.squared_distance < best.foot.squared_distance) best = {index, foot};
+        ++index;
+    }
+    return best;
 }
 
 }  // namespace neuralmesh::referee

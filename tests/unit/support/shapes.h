@@ -102,6 +102,13 @@ inline Shape divided(const Shape& given) {
     return shape;
 }
 
+/// The unit cube, each of its edges halved so many times.
+inline Shape fine_cube(int halvings) {
+    Shape shape = cube();
+    for (int i = 0; i < halvings; ++i) shape = divided(shape);
+    return shape;
+}
+
 /// The unit sphere: an icosahedron, each face divided into four \p levels times. 10 x 4^levels + 2 vertices.
 inline Shape icosphere(int levels) {
     const double t = (1 + std::sqrt(5.0)) / 2;
@@ -187,6 +194,12 @@ inline Shape tube(int m, int n) {
 
 using Cloud = std::vector<vcg::Point3d>;
 
+inline std::vector<vcg::Point3f> in_float(const Cloud& cloud) {
+    std::vector<vcg::Point3f> points;
+    for (const vcg::Point3d& p : cloud) points.push_back(vcg::Point3f::Construct(p));
+    return points;
+}
+
 /// Uniform in [-1, 1).
 inline double signed_unit(Random& random) { return 2 * static_cast<double>(random.unit()) - 1; }
 
@@ -218,7 +231,6 @@ inline Cloud sphere_cloud(int count, double noise = 0, std::uint64_t seed = 1) {
     return cloud;
 }
 
-/// On the torus of torus_point(u, v, 0.4), uniform in u and v.
 /// Of a unit sphere. The upper half has 1/\p ratio of the density of the lower one.
 inline Cloud uneven_sphere_cloud(int count, int ratio, double noise = 0) {
     Cloud cloud;
@@ -231,6 +243,14 @@ inline Cloud uneven_sphere_cloud(int count, int ratio, double noise = 0) {
     return cloud;
 }
 
+/// Two unit spheres of \p count points each, whose centres are \p apart.
+inline Cloud two_sphere_cloud(int count, double apart) {
+    Cloud cloud = sphere_cloud(count);
+    for (const vcg::Point3d& p : sphere_cloud(count, 0, 2)) cloud.emplace_back(p[0] + apart, p[1], p[2]);
+    return cloud;
+}
+
+/// On the torus of torus_point(u, v, 0.4), uniform in u and v.
 inline Cloud torus_cloud(int count, double noise = 0, std::uint64_t seed = 1) {
     Random random(seed);
     Cloud cloud;

@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "tests/unit/support/referee.h"
+#include "tests/unit/support/sentences.h"
 #include "tests/unit/support/targets.h"
 #include "vcg_core/reconstruct.h"
 
@@ -48,29 +48,13 @@ inline void expect_exact(const NeuralMesh& mesh, const Settings& settings) {
     EXPECT_EQ(mesh.report.stop_reason, StopReason::target_reached);
 }
 
-/// True if one of \p sentences contains \p words.
-/// The volume that \p mesh encloses.
-inline double volume_of(const NeuralMesh& mesh) {
-    double sum = 0;
-    for (const auto& [a, b, c] : mesh.faces)
-        sum += mesh.positions[static_cast<std::size_t>(a)] *
-               (mesh.positions[static_cast<std::size_t>(b)] ^ mesh.positions[static_cast<std::size_t>(c)]) /
-               6;
-    return sum;
-}
-
-inline bool has_one(const std::vector<std::string>& sentences, const std::string& words) {
-    return std::any_of(sentences.begin(), sentences.end(),
-                       [&](const std::string& each) { return each.find(words) != std::string::npos; });
-}
-
 /// True if a warning of the report contains \p words.
 inline bool has_warning(const NeuralMesh& mesh, const std::string& words) {
-    return has_one(mesh.report.warnings, words);
+    return sentences::has_one(mesh.report.warnings, words);
 }
 
 inline bool has_note(const NeuralMesh& mesh, const std::string& words) {
-    return has_one(mesh.report.notes, words);
+    return sentences::has_one(mesh.report.notes, words);
 }
 
 }  // namespace neuralmesh::soundness

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "tests/unit/support/open_shapes.h"
+#include "tests/unit/support/runs.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/targets.h"
 #include "vcg_core/mesh/boundary_loops.h"
@@ -51,14 +52,7 @@ Network swept(const TargetSpace& target, const std::vector<Hoop>& hoops, int aro
     return network;
 }
 
-/// Two unit spheres, 3 apart.
-shapes::Cloud two_spheres(int count) {
-    shapes::Cloud cloud = shapes::sphere_cloud(count);
-    for (const vcg::Point3d& p : shapes::sphere_cloud(count, 0, 2)) cloud.emplace_back(p[0] + 3, p[1], p[2]);
-    return cloud;
-}
-
-/// Both spheres with a bridge between them.
+/// Two unit spheres, 3 apart, with a bridge between them.
 Network bridged(const TargetSpace& target) {
     std::vector<Hoop> hoops;
     const auto add = [&](double x, double radius) {
@@ -85,8 +79,8 @@ Network plugged(const TargetSpace& target) {
 }
 
 /// Applies what topology_changes() finds until it finds no more. \return the number of changes
-int learn(Network& network, const TargetSpace& target, int threads = 1, const TopologyRules& rules = {}) {
-    ThreadTeam team(threads);
+int learn(Network& network, const TargetSpace& target, const TopologyRules& rules = {}) {
+    ThreadTeam team(1);
     NoProgress progress;
     Random random(1);
     int changes = 0;
@@ -107,7 +101,7 @@ int learn(Network& network, const TargetSpace& target, int threads = 1, const To
 }
 
 TEST(Reconnection, ABridgeBetweenTwoSpheresIsCut) {
-    const TargetSpace target = target_of(two_spheres(10000));
+    const TargetSpace target = target_of(shapes::two_sphere_cloud(10000, 3));
     Network network = bridged(target);
     ASSERT_EQ(network.component_count(), 1);
     EXPECT_GT(learn(network, target), 0);
@@ -127,22 +121,13 @@ TEST(Reconnection, ATubeWithTwoPlugsIsJoined) {
     EXPECT_EQ(network.boundary_loop_count(), 0);
 }
 
-/// Asks to stop at once.
-struct Stop : Progress {
-    bool operator()(double /*fraction*/, const char* /*text*/) override {
-        ++calls;
-        return false;
-    }
-    int calls = 0;
-};
-
 TEST(Reconnection, ObeysAStop) {
     const TargetSpace target = target_of(shapes::torus_cloud(20000));
     const Network network = plugged(target);
     ThreadTeam team(1);
     Random random(1);
     const auto now = topology_evidence(network, target, random, team);
-    Stop stop;
+    runs::Watch stop(0);
     EXPECT_TRUE(topology_changes(network, target, *now, {}, team, stop).empty());
     EXPECT_EQ(stop.calls, 1);
     NoProgress progress;
@@ -176,7 +161,7 @@ TEST(Reconnection, HandlesFormOnACoarseMeshIfTheyMay) {
     EXPECT_EQ(learn(network, target), 0);
     TopologyRules rules;
     rules.from_tetrahedron = true;
-    EXPECT_GT(learn(network, target, 1, rules), 0);
+    EXPECT_GT(learn(network, target, rules), 0);
     EXPECT_EQ(network.genus(), 1);
 }
 
@@ -207,7 +192,7 @@ TEST(Reconnection, MembranesOverOneHollowGoTogether) {
     Network network = network_in_frame(target, shapes::icosphere(3));
     TopologyRules rules;
     rules.from_tetrahedron = true;
-    EXPECT_GT(learn(network, target, 1, rules), 0);
+    EXPECT_GT(learn(network, target, rules), 0);
     EXPECT_EQ(network.genus(), 3);
     EXPECT_EQ(network.component_count(), 1);
     EXPECT_EQ(network.boundary_loop_count(), 0);
@@ -305,25 +290,18 @@ TEST(Reconnection, RightMeshesStay) {
     EXPECT_EQ(learn(ring, torus), 0);
 }
 
-TEST(Reconnection, DoesNotDependOnTheThreads) {
-    const TargetSpace target = target_of(two_spheres(10000));
-    Network one = bridged(target), three = one;
-    EXPECT_EQ(learn(one, target), learn(three, target, 3));
-    EXPECT_EQ(one.faces(), three.faces());
-}
-
 TEST(Reconnection, LeavesMeshesWithBoundaryAndSparseCloudsAlone) {
-    const TargetSpace target = target_of(two_spheres(10000));
+    const TargetSpace target = target_of(shapes::two_sphere_cloud(10000, 3));
     Network open = bridged(target);
     open.exchange_faces({open.faces().front()}, {});
     EXPECT_EQ(learn(open, target), 0);
-    const TargetSpace sparse = target_of(two_spheres(300));
+    const TargetSpace sparse = target_of(shapes::two_sphere_cloud(300, 3));
     Network network = bridged(sparse);
     EXPECT_EQ(learn(network, sparse), 0);
 }
 
 TEST(Membranes, AreCompletedSoThatTheRestIsAManifold) {
-    const TargetSpace target = target_of(two_spheres(5000));
+    const TargetSpace target = target_of(shapes::two_sphere_cloud(5000, 3));
     const Network network = bridged(target);
     const Surface surface(network);
     Random random(3);
@@ -372,12 +350,12 @@ TEST(TopologyStages, ArePassedOnceEachAndEndWithTheGoal) {
 }
 
 TEST(TopologyStages, EndWhereThePointsAreTooFew) {
-    const TargetSpace target = target_of(two_spheres(5000));
+    const TargetSpace target = target_of(shapes::two_sphere_cloud(5000, 3));
     EXPECT_EQ(most_examined(target), 10000 / 100 * 96 / 6);
     Random random(1);
     ThreadTeam team(1);
     EXPECT_TRUE(topology_evidence(bridged(target), target, random, team));
-    const TargetSpace few = target_of(two_spheres(1000));
+    const TargetSpace few = target_of(shapes::two_sphere_cloud(1000, 3));
     const Network network = bridged(few);
     ASSERT_GT(network.vertex_count(), most_examined(few));
     EXPECT_FALSE(topology_evidence(network, few, random, team));

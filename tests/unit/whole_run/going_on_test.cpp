@@ -8,12 +8,14 @@
 #include <utility>
 
 #include "tests/unit/support/open_shapes.h"
+#include "tests/unit/support/runs.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/reconstruct.h"
 
 namespace neuralmesh {
 namespace {
 
+using runs::learn;
 using shapes::Shape;
 
 Settings going_on(int vertices) {
@@ -23,23 +25,14 @@ Settings going_on(int vertices) {
     return settings;
 }
 
-NeuralMesh learn(const TargetSpace& target, const Settings& settings, const Shape& start) {
-    NoProgress progress;
-    return reconstruct(target, settings, progress, start);
-}
-
 /// A coarse result as the start of a finer one: as good as a new run, with fewer splits.
 TEST(GoingOn, RefinesAnEarlierResult) {
     const TargetSpace torus = targets::target_of(shapes::torus_cloud(20000));
-    Settings settings;
-    settings.target_vertices = 2500;
-    NoProgress progress;
-    const NeuralMesh coarse = reconstruct(torus, settings, progress);
+    const NeuralMesh coarse = learn(torus, runs::with_target(2500));
     const NeuralMesh fine = learn(torus, going_on(5000), {coarse.positions, coarse.faces});
     soundness::expect_exact(fine, going_on(5000));
     EXPECT_EQ(fine.report.genus, 1);
-    settings.target_vertices = 5000;
-    const NeuralMesh anew = reconstruct(torus, settings, progress);
+    const NeuralMesh anew = learn(torus, runs::with_target(5000));
     // Most of the splits that made the vertices of the earlier result are saved.
     EXPECT_LT(static_cast<double>(fine.report.splits), static_cast<double>(anew.report.splits) - 0.7 * 2500);
     EXPECT_LT(fine.report.rms_error, 1.05 * anew.report.rms_error);
@@ -73,10 +66,7 @@ TEST(GoingOn, FacesTheSideThatTheStartFaces) {
             for (auto& f : start.faces) std::swap(f[1], f[2]);
         const NeuralMesh mesh = learn(square, going_on(400), start);
         double up = 0;
-        for (const auto& f : mesh.faces) {
-            const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(f[k])]; };
-            up += ((at(1) - at(0)) ^ (at(2) - at(0)))[2];
-        }
+        for (const Triangle& f : mesh.faces) up += referee::area_of(mesh, f)[2];
         EXPECT_EQ(up < 0, down);
     }
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "tests/unit/support/open_shapes.h"
+#include "tests/unit/support/runs.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
 #include "tests/unit/support/targets.h"
@@ -17,45 +18,26 @@ namespace neuralmesh {
 namespace {
 
 using shapes::Cloud;
-using targets::target_of;
 
-/// Unit spheres whose centres are \p apart.
-Cloud two_spheres(int count, double apart) {
-    Cloud cloud = shapes::sphere_cloud(count);
-    for (const vcg::Point3d& p : shapes::sphere_cloud(count, 0, 2))
-        cloud.emplace_back(p[0] + apart, p[1], p[2]);
-    return cloud;
-}
-
-Settings settings_of(int threads = 1) {
+Settings settings_of() {
     Settings settings;
     settings.target_vertices = 1500;
     settings.learn_topology = true;
-    settings.threads = threads;
     return settings;
 }
 
-NeuralMesh learn_topology(const Cloud& cloud, const Settings& settings,
-                          const IndexedMesh<double>& start = {}) {
-    NoProgress progress;
-    return reconstruct(target_of(cloud), settings, progress, start);
-}
-
 /// One sphere around both.
-IndexedMesh<double> ball(double apart) {
-    const shapes::Shape sphere = shapes::icosphere(2);
-    IndexedMesh<double> mesh;
-    for (const vcg::Point3d& p : sphere.positions)
-        mesh.positions.emplace_back(p[0] * 2 + apart / 2, p[1] * 1.2, p[2] * 1.2);
-    for (const auto& f : sphere.faces) mesh.faces.push_back(f);
+shapes::Shape ball(double apart) {
+    shapes::Shape mesh = shapes::icosphere(2);
+    for (vcg::Point3d& p : mesh.positions) p = vcg::Point3d(p[0] * 2 + apart / 2, p[1] * 1.2, p[2] * 1.2);
     return mesh;
 }
 
 TEST(LearnedTopology, PartsThatTheStartMeshJoinsComeApart) {
     Settings settings = settings_of();
     settings.start_mesh = kTetrahedron;
-    const Cloud cloud = two_spheres(20000, 3);
-    const NeuralMesh apart = learn_topology(cloud, settings);
+    const Cloud cloud = shapes::two_sphere_cloud(20000, 3);
+    const NeuralMesh apart = runs::learn(cloud, settings);
     EXPECT_EQ(apart.report.components, 2);
     EXPECT_EQ(apart.report.genus, 0);
     EXPECT_EQ(apart.report.boundary_loops, 0);
@@ -63,13 +45,13 @@ TEST(LearnedTopology, PartsThatTheStartMeshJoinsComeApart) {
     EXPECT_NE(apart.report.notes.back().find("Membranes were given up"), std::string::npos);
     soundness::expect_exact(apart, settings);
     settings.learn_topology = false;
-    EXPECT_EQ(learn_topology(cloud, settings).report.components, 1);
+    EXPECT_EQ(runs::learn(cloud, settings).report.components, 1);
 }
 
 TEST(LearnedTopology, AGivenMeshKeepsItsTopology) {
     Settings settings = settings_of();
     settings.start_mesh = kGivenMesh;
-    EXPECT_EQ(learn_topology(two_spheres(20000, 3), settings, ball(3)).report.components, 1);
+    EXPECT_EQ(runs::learn(shapes::two_sphere_cloud(20000, 3), settings, ball(3)).report.components, 1);
 }
 
 TEST(LearnedTopology, FindsTheHandleOfATorusFromTheTetrahedron) {
@@ -78,13 +60,13 @@ TEST(LearnedTopology, FindsTheHandleOfATorusFromTheTetrahedron) {
     const Cloud cloud = shapes::torus_cloud(60000);
     for (const int seed : {1, 2, 3}) {
         settings.random_seed = seed;
-        const NeuralMesh ring = learn_topology(cloud, settings);
+        const NeuralMesh ring = runs::learn(cloud, settings);
         EXPECT_EQ(ring.report.genus, 1) << seed;
         EXPECT_EQ(ring.report.components, 1) << seed;
         soundness::expect_exact(ring, settings);
     }
     settings.learn_topology = false;
-    EXPECT_EQ(learn_topology(cloud, settings).report.genus, 0);
+    EXPECT_EQ(runs::learn(cloud, settings).report.genus, 0);
 }
 
 /// The part of a unit sphere below z = .6.
@@ -98,56 +80,42 @@ TEST(LearnedTopology, OpensWhereTheCloudEndsFromTheTetrahedron) {
     const Cloud cloud = bowl(30000);
     for (const int seed : {1, 2, 3, 4}) {
         settings.random_seed = seed;
-        const NeuralMesh open = learn_topology(cloud, settings);
+        const NeuralMesh open = runs::learn(cloud, settings);
         EXPECT_EQ(open.report.boundary_loops, 1) << seed;
         soundness::expect_exact(open, settings);
         double highest = -1, outward = 0;
         for (const vcg::Point3d& p : open.positions) highest = std::max(highest, p[2]);
         EXPECT_NEAR(highest, 0.6, 0.03) << seed;
-        for (const Triangle& f : open.faces) {
-            const auto at = [&](std::size_t k) { return open.positions[static_cast<std::size_t>(f[k])]; };
-            outward += ((at(1) - at(0)) ^ (at(2) - at(0))) * (at(0) + at(1) + at(2)) > 0 ? 1 : -1;
-        }
+        for (const Triangle& f : open.faces)
+            outward += referee::area_of(open, f) * referee::middle_of(open, f) > 0 ? 1 : -1;
         // Some faces along the boundary may be folded.
         EXPECT_GT(outward, 0.99 * static_cast<double>(open.faces.size())) << seed;
     }
     settings.surface = kClosedSurface;
-    EXPECT_EQ(learn_topology(cloud, settings).report.boundary_loops, 0);
+    EXPECT_EQ(runs::learn(cloud, settings).report.boundary_loops, 0);
 }
 
 TEST(LearnedTopology, TellsOfOpenings) {
     Settings settings = settings_of();
     settings.start_mesh = kTetrahedron;
     settings.surface = kOpenSurface;
-    const NeuralMesh open = learn_topology(bowl(30000), settings);
+    const NeuralMesh open = runs::learn(bowl(30000), settings);
     ASSERT_FALSE(open.report.notes.empty());
     EXPECT_NE(open.report.notes.back().find("genus 0 with 1 boundary loop(s)."), std::string::npos);
     EXPECT_TRUE(open.report.warnings.empty());
-    const NeuralMesh closed = learn_topology(shapes::sphere_cloud(30000), settings);
+    const NeuralMesh closed = runs::learn(shapes::sphere_cloud(30000), settings);
     EXPECT_EQ(closed.report.boundary_loops, 0);
     ASSERT_EQ(closed.report.warnings.size(), 1U);
     EXPECT_NE(closed.report.warnings.back().find("The surface is closed"), std::string::npos);
-}
-
-TEST(LearnedTopology, TheBytesDoNotDependOnTheThreads) {
-    Settings settings = settings_of(1);
-    settings.start_mesh = kTetrahedron;
-    const Cloud cloud = two_spheres(10000, 3);
-    const NeuralMesh one = learn_topology(cloud, settings);
-    EXPECT_EQ(one.report.components, 2);
-    settings.threads = 3;
-    const NeuralMesh three = learn_topology(cloud, settings);
-    EXPECT_EQ(one.positions, three.positions);
-    EXPECT_EQ(one.faces, three.faces);
 }
 
 // Small faces on either side of an edge have no points by chance.
 TEST(LearnedTopology, SharpEdgesAreNoWebs) {
     Settings settings = settings_of();
     const Cloud cloud = shapes::box_cloud(20000, {2, 2, 2});
-    const NeuralMesh with = learn_topology(cloud, settings);
+    const NeuralMesh with = runs::learn(cloud, settings);
     settings.learn_topology = false;
-    EXPECT_EQ(with.positions, learn_topology(cloud, settings).positions);
+    EXPECT_EQ(with.positions, runs::learn(cloud, settings).positions);
 }
 
 TEST(LearnedTopology, HostileCloudsGiveSoundMeshes) {
@@ -160,12 +128,12 @@ TEST(LearnedTopology, HostileCloudsGiveSoundMeshes) {
         strip.emplace_back(radius * std::cos(turn), radius * std::sin(turn), across * std::sin(turn / 2));
         curve.emplace_back(std::cos(turn), std::sin(turn), 0.3 * std::sin(3 * turn));
     }
-    for (const Cloud& cloud : {two_spheres(10000, 2), strip, curve}) {
+    for (const Cloud& cloud : {shapes::two_sphere_cloud(10000, 2), strip, curve}) {
         Settings settings = settings_of();
         settings.surface = kClosedSurface;
         settings.start_mesh = kTetrahedron;
         settings.target_vertices = 1000;
-        const NeuralMesh mesh = learn_topology(cloud, settings);
+        const NeuralMesh mesh = runs::learn(cloud, settings);
         soundness::expect_exact(mesh, settings);
         EXPECT_EQ(mesh.report.boundary_loops, 0);
     }

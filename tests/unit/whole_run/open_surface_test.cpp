@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/unit/support/open_shapes.h"
+#include "tests/unit/support/runs.h"
 #include "tests/unit/support/shell_shapes.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/base/error.h"
@@ -22,13 +23,9 @@ namespace neuralmesh {
 namespace {
 
 using open_shapes::Case;
+using runs::learn;
 using shapes::Cloud;
 using soundness::has_warning;
-
-NeuralMesh learn(const Cloud& cloud, const Settings& settings) {
-    NoProgress progress;
-    return reconstruct(soundness::target_of(cloud), settings, progress);
-}
 
 Settings settings_with(int vertices, int surface) {
     Settings settings;
@@ -39,30 +36,20 @@ Settings settings_with(int vertices, int surface) {
 }
 
 TEST(OpenSurface, ComesOutWithItsTopologyAndExactlyAsManyVertices) {
-    std::size_t i = 0;
-    for (const Case& each : open_shapes::cases()) {
-        const int vertices = ++i % 2 == 1 ? 300 : 1500;
-        SCOPED_TRACE(each.name + ", " + std::to_string(vertices));
-        const Settings settings = settings_with(vertices, kOpenSurface);
-        const NeuralMesh mesh = learn(each.cloud, settings);
-        soundness::expect_exact(mesh, settings);
-        EXPECT_EQ(mesh.report.components, each.components);
-        EXPECT_EQ(mesh.report.genus, each.genus);
-        EXPECT_EQ(mesh.report.boundary_loops, each.loops);
-        EXPECT_LT(mesh.report.rms_error, 0.7);
-    }
-}
-
-/// The share of the area that faces up.
-double share_upward(const NeuralMesh& mesh) {
-    double up = 0, all = 0;
-    for (const Triangle& f : mesh.faces) {
-        const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(f[k])]; };
-        const vcg::Point3d across = (at(1) - at(0)) ^ (at(2) - at(0));
-        all += across.Norm();
-        up += across[2] > 0 ? across.Norm() : 0;
-    }
-    return up / all;
+    bool chosen = false;  // by the filter, because the cloud encloses no space, or by the user
+    for (const Case& each : open_shapes::cases())
+        for (const int vertices : {300, 1500}) {
+            chosen = !chosen;
+            SCOPED_TRACE(each.name + ", " + std::to_string(vertices));
+            const Settings settings = settings_with(vertices, chosen ? kAutomatic : kOpenSurface);
+            const NeuralMesh mesh = learn(each.cloud, settings);
+            soundness::expect_exact(mesh, settings);
+            EXPECT_EQ(mesh.report.components, each.components);
+            EXPECT_EQ(mesh.report.genus, each.genus);
+            EXPECT_EQ(mesh.report.boundary_loops, each.loops);
+            EXPECT_LT(mesh.report.rms_error, 0.7);
+            EXPECT_EQ(has_warning(mesh, "the surface ends where they end"), chosen);
+        }
 }
 
 // The origin lies in the square, above it and below it.
@@ -72,7 +59,9 @@ TEST(OpenSurface, FacesTheOriginIfThatIsBesideItElseUp) {
         Random random(2);
         for (vcg::Point3d& p : cloud) p[2] = height + 0.002 * shapes::signed_unit(random);
         const NeuralMesh mesh = learn(cloud, settings_with(500, kOpenSurface));
-        EXPECT_NEAR(share_upward(mesh), height > 0 ? 0 : 1, 0.01) << height;
+        const auto [all, up] =
+            referee::areas_of(mesh, [](const vcg::Point3d& area, const auto&) { return area[2] > 0; });
+        EXPECT_NEAR(up / all, height > 0 ? 0 : 1, 0.01) << height;
     }
 }
 
@@ -85,28 +74,6 @@ TEST(OpenSurface, IsTheStartOfWallsWithGapsAsWideAsTheyAreThick) {
     EXPECT_EQ(mesh.report.boundary_loops, 0);
     EXPECT_LT(mesh.report.rms_error, 0.1);
     EXPECT_FALSE(has_warning(mesh, "enclose no space"));
-}
-
-TEST(OpenSurface, IsChosenWhereTheCloudEnclosesNoSpace) {
-    const std::vector<Case> cases = open_shapes::cases();
-    for (std::size_t i = 0; i < cases.size(); i += 2) {  // each is asked for as open above
-        const Case& each = cases[i];
-        SCOPED_TRACE(each.name);
-        const NeuralMesh mesh = learn(each.cloud, settings_with(400, kAutomatic));
-        EXPECT_EQ(mesh.report.boundary_loops, each.loops);
-        EXPECT_TRUE(has_warning(mesh, "the surface ends where they end"));
-    }
-}
-
-TEST(OpenSurface, LeavesClosedPartsClosed) {
-    // A sphere, and half of one apart from it.
-    Cloud cloud = shapes::sphere_cloud(20000);
-    for (const vcg::Point3d& p : shapes::sphere_cloud(20000))
-        if (p[0] < 0) cloud.push_back(p + vcg::Point3d(3, 0, 0));
-    const NeuralMesh mesh = learn(cloud, settings_with(600, kAutomatic));
-    EXPECT_EQ(mesh.report.components, 2);
-    EXPECT_EQ(mesh.report.genus, 0);
-    EXPECT_EQ(mesh.report.boundary_loops, 1);
 }
 
 TEST(OpenSurface, IsClosedWhereBothWallsArePoints) {
@@ -177,29 +144,6 @@ TEST(OpenSurface, IsNotChosenForClosedCloudsOfFewPoints) {
     }
 }
 
-TEST(OpenSurface, ClosesWhatIsNarrowerThanAskedFor) {
-    const Cloud cap =
-        open_shapes::cut(shapes::sphere_cloud(20000), [](const vcg::Point3d& p) { return p[2] < 0.8; });
-    Settings settings = settings_with(400, kAutomatic);
-    settings.close_holes_up_to = 2;  // the opening is 1.2 wide
-    EXPECT_EQ(learn(cap, settings).report.boundary_loops, 0);
-    settings.close_holes_up_to = 0.3;
-    EXPECT_EQ(learn(cap, settings).report.boundary_loops, 1);
-}
-
-TEST(OpenSurface, HasItsBoundaryWhereThePointsEnd) {
-    const Cloud square = shapes::plane_cloud(20000);
-    const NeuralMesh mesh = learn(square, settings_with(1000, kOpenSurface));
-    double area = 0;
-    for (const auto& f : mesh.faces) {
-        const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(f[k])]; };
-        area += ((at(1) - at(0)) ^ (at(2) - at(0))).Norm() / 2;
-    }
-    EXPECT_NEAR(area, 1, 0.02);
-    for (const vcg::Point3d& p : mesh.positions)
-        for (int k = 0; k < 2; ++k) EXPECT_LT(std::abs(p[k]), 0.55);  // 1.5 mean edges beyond
-}
-
 double boundary_length(const NeuralMesh& mesh) {
     double length = 0;
     const auto at = [&](VertexId v) { return mesh.positions[static_cast<std::size_t>(v)]; };
@@ -223,36 +167,19 @@ TEST(OpenSurface, OfFewVerticesHasABoundaryAsLongAsThatOfTheCloud) {
 }
 
 TEST(OpenSurface, OfALayerWithFacesEndsWhereTheyEnd) {
-    const shapes::Shape grid = shapes::grid(9, 9);
-    const TargetSpace target = TargetSpace::triangles(grid.faces.size(), [&](std::size_t f, int k) {
-        return grid.positions[static_cast<std::size_t>(grid.faces[f][static_cast<std::size_t>(k)])];
-    });
-    NoProgress progress;
     const Settings settings = settings_with(300, kAutomatic);
-    const NeuralMesh mesh = reconstruct(target, settings, progress);
+    const NeuralMesh mesh = learn(targets::target_of(shapes::grid(9, 9)), settings);
     soundness::expect_exact(mesh, settings);
     EXPECT_EQ(mesh.report.boundary_loops, 1);
 }
 
-/// A sphere of faces without those above \p height.
-TargetSpace faces_below(double height) {
-    shapes::Shape cap = shapes::icosphere(4);
-    const auto is_above = [&](const std::array<int, 3>& f) {
-        return std::any_of(f.begin(), f.end(),
-                           [&](int v) { return cap.positions[static_cast<std::size_t>(v)][2] > height; });
-    };
-    cap.faces.erase(std::remove_if(cap.faces.begin(), cap.faces.end(), is_above), cap.faces.end());
-    return TargetSpace::triangles(cap.faces.size(), [&](std::size_t f, int k) {
-        return cap.positions[static_cast<std::size_t>(cap.faces[f][static_cast<std::size_t>(k)])];
-    });
-}
-
+/// Of what is learned from a sphere of faces without those above \p height.
 int loops_of_faces_below(double height, double close_holes_up_to) {
-    const TargetSpace target = faces_below(height);
-    NoProgress progress;
+    const shapes::Shape cap =
+        open_shapes::cut(shapes::icosphere(4), [&](const vcg::Point3d& p) { return p[2] <= height; });
     Settings settings = settings_with(300, kAutomatic);
     settings.close_holes_up_to = close_holes_up_to;
-    return reconstruct(target, settings, progress).report.boundary_loops;
+    return learn(targets::target_of(cap), settings).report.boundary_loops;
 }
 
 TEST(OpenSurface, OfALayerWithFacesIsDecidedByTheirLoops) {
@@ -335,20 +262,6 @@ TEST(OpenSurface, CannotStartFromATetrahedron) {
     const NeuralMesh mesh = learn(shapes::sphere_cloud(2000), settings);
     EXPECT_EQ(mesh.report.boundary_loops, 0);
     EXPECT_TRUE(has_warning(mesh, "because start_mesh 1 (tetrahedron) is"));
-}
-
-TEST(OpenSurface, IsTheSameWithAnyNumberOfThreads) {
-    Settings settings = settings_with(3000, kOpenSurface);
-    settings.signals_per_split = 40;
-    settings.min_wins_per_split = 10;
-    const Cloud cloud = open_shapes::cases()[4].cloud;
-    settings.threads = 1;
-    const NeuralMesh one = learn(cloud, settings);
-    settings.threads = 3;
-    const NeuralMesh three = learn(cloud, settings);
-    EXPECT_TRUE(one.positions == three.positions);
-    EXPECT_EQ(one.faces, three.faces);
-    EXPECT_EQ(one.counters, three.counters);
 }
 
 }  // namespace

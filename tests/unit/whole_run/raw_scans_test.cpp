@@ -9,7 +9,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "tests/unit/support/crumpled.h"
 #include "tests/unit/support/depth_camera.h"
+#include "tests/unit/support/runs.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/mesh/self_crossings.h"
 #include "vcg_core/reconstruct.h"
@@ -21,10 +23,8 @@ using shapes::Cloud;
 using vcg::Point3d;
 
 NeuralMesh learn(const Cloud& cloud, int vertices) {
-    Settings settings;
-    settings.target_vertices = vertices;
-    NoProgress progress;
-    const NeuralMesh mesh = reconstruct(soundness::target_of(cloud), settings, progress);
+    const Settings settings = runs::with_target(vertices);
+    const NeuralMesh mesh = runs::learn(cloud, settings);
     soundness::expect_exact(mesh, settings);
     return mesh;
 }
@@ -37,29 +37,13 @@ struct Figures {
 
 Figures figures_of(const NeuralMesh& mesh, const Point3d& camera = {0, 0, 0}) {
     std::vector<double> angles;
-    double all = 0, facing = 0;
-    for (const auto& f : mesh.faces) {
-        const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(f[k])]; };
-        const Point3d across = (at(1) - at(0)) ^ (at(2) - at(0));
-        const double area = across.Norm();
-        if (!(area > 0)) continue;
-        const Point3d middle = (at(0) + at(1) + at(2)) / 3;
-        all += area;
-        facing += across * (middle - camera) < 0 ? area : 0;
-        angles.push_back(sensors::angle_to_scene(middle, across / area));
-    }
+    const auto [all, facing] = referee::areas_of(mesh, [&](const Point3d& area, const Point3d& middle) {
+        if (area.Norm() > 0) angles.push_back(sensors::angle_to_scene(middle, area / area.Norm()));
+        return area * (middle - camera) < 0;
+    });
     std::nth_element(angles.begin(), angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2),
                      angles.end());
     return {angles[angles.size() / 2], facing / all};
-}
-
-int cut_faces_of(const NeuralMesh& mesh) {
-    shapes::Shape shape;
-    shape.positions = mesh.positions;
-    shape.faces = mesh.faces;
-    const Surface surface(referee::network_of(shape));
-    ThreadTeam team(1);
-    return static_cast<int>(self_crossings(surface, team).size());
 }
 
 TEST(RawScans, ADepthFrameIsOneLayerThatFacesTheCamera) {
@@ -68,7 +52,7 @@ TEST(RawScans, ADepthFrameIsOneLayerThatFacesTheCamera) {
         const NeuralMesh mesh = learn(sensors::depth_frame(200), vertices);
         EXPECT_LE(mesh.report.genus, 1) << vertices;
         EXPECT_GE(mesh.report.boundary_loops, 1) << vertices;
-        EXPECT_EQ(cut_faces_of(mesh), 0) << vertices;
+        EXPECT_TRUE(cut_faces(referee::network_of({mesh.positions, mesh.faces})).empty()) << vertices;
         const Figures figures = figures_of(mesh);
         EXPECT_GT(figures.facing, 0.9) << vertices;
         // More vertices do not follow the noise, whose slopes between neighbouring points are 60 degrees.
@@ -91,14 +75,9 @@ TEST(RawScans, TheStepsOfDepthsAreNoSurface) {
         const NeuralMesh mesh = learn(sensors::frame_of_steps(240), vertices);
         EXPECT_EQ(mesh.report.genus, 0) << vertices;
         EXPECT_EQ(mesh.report.boundary_loops, 1) << vertices;
-        double steep = 0, all = 0;
-        for (const auto& f : mesh.faces) {
-            const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(f[k])]; };
-            const Point3d across = (at(1) - at(0)) ^ (at(2) - at(0));
-            all += across.Norm();
-            // 18 degrees.
-            steep += std::abs(across * sensors::kNormalOfSteps) < 0.95 * across.Norm() ? across.Norm() : 0;
-        }
+        const auto [all, steep] = referee::areas_of(mesh, [](const Point3d& area, const auto&) {
+            return std::abs(area * sensors::kNormalOfSteps) < 0.95 * area.Norm();  // 18 degrees
+        });
         EXPECT_LT(steep / all, 0.02) << vertices;
     }
 }
@@ -109,10 +88,7 @@ TEST(RawScans, TreesAreLeftOutAndTheGroundIsOneSheet) {
     EXPECT_EQ(mesh.report.genus, 0);
     EXPECT_TRUE(soundness::has_warning(mesh, "show no surface"));
     int above = 0, down = 0;
-    for (const auto& f : mesh.faces) {
-        const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(f[k])]; };
-        down += ((at(1) - at(0)) ^ (at(2) - at(0)))[2] < 0 ? 1 : 0;
-    }
+    for (const Triangle& f : mesh.faces) down += referee::area_of(mesh, f)[2] < 0 ? 1 : 0;
     for (const Point3d& p : mesh.positions)
         above += p[2] - std::sin(p[0] / 6) - std::cos(p[1] / 5) > sensors::kTree / 3 ? 1 : 0;
     EXPECT_LT(down, static_cast<int>(mesh.faces.size()) / 50);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "tests/unit/support/runs.h"
 #include "tests/unit/support/soundness.h"
 #include "tests/unit/support/targets.h"
 #include "vcg_core/learn_to_error.h"
@@ -14,6 +15,7 @@
 namespace neuralmesh {
 namespace {
 
+using runs::learn;
 using shapes::Cloud;
 
 Settings settings_for(double error, int most = 10000) {
@@ -23,18 +25,13 @@ Settings settings_for(double error, int most = 10000) {
     return settings;
 }
 
-NeuralMesh learn(const TargetSpace& target, const Settings& settings) {
-    NoProgress progress;
-    return reconstruct(target, settings, progress);
-}
-
 /// Root mean square of the distances of points spread over the faces, all alike, to the sphere of radius 1.
 double error_of_sphere(const NeuralMesh& mesh) {
     constexpr int kPerEdge = 8;
     double sum = 0;
     int count = 0;
-    for (const auto& f : mesh.faces) {
-        const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(f[k])]; };
+    for (const Triangle& f : mesh.faces) {
+        const auto at = [&](std::size_t k) { return referee::corner(mesh, f, k); };
         for (int i = 0; i < kPerEdge; ++i)
             for (int j = 0; i + j < kPerEdge; ++j, ++count) {
                 const double u = (i + 1.0 / 3) / kPerEdge, v = (j + 1.0 / 3) / kPerEdge;
@@ -126,9 +123,7 @@ TEST(TargetError, LeavesNoComponentOut) {
 }
 
 TEST(TargetError, IsLeftWhereItIsIfAskedToStop) {
-    class StopAtOnce : public Progress {
-        bool operator()(double, const char*) override { return false; }
-    } stop;
+    runs::Watch stop(0);
     const TargetSpace target = targets::target_of(shapes::sphere_cloud(6000));
     int made = 0;
     learn_to_error(target, settings_for(0.001), stop, stages_from(4, made));

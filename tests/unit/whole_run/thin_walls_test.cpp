@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/unit/support/crumpled.h"
+#include "tests/unit/support/runs.h"
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/soundness.h"
 #include "vcg_core/mesh/self_crossings.h"
@@ -21,15 +22,14 @@ namespace {
 
 constexpr double kWall = 0.03;
 
-Network network_of(const NeuralMesh& mesh) {
-    shapes::Shape shape;
-    for (const auto& p : mesh.positions) shape.positions.push_back(vcg::Point3d::Construct(p));
-    shape.faces = mesh.faces;
-    return referee::network_of(shape);
+/// Of exactly that many vertices, whose faces do not go through each other.
+NeuralMesh uncut_mesh(const shapes::Cloud& cloud, int vertices) {
+    const Settings settings = runs::with_target(vertices);
+    NeuralMesh mesh = runs::learn(cloud, settings);
+    soundness::expect_exact(mesh, settings);
+    EXPECT_TRUE(cut_faces(referee::network_of({mesh.positions, mesh.faces})).empty());
+    return mesh;
 }
-
-/// The pairs of faces of \p mesh that go through each other.
-std::vector<SelfCrossing> cuts_of(const NeuralMesh& mesh) { return crossings(Surface(network_of(mesh)), 1); }
 
 /// A random point of the surface of the box around the origin with the given \p edges, or nothing: of a side
 /// of the area \p largest always a point, of smaller ones as much more seldom.
@@ -90,14 +90,9 @@ TEST(ThinWalls, OfNestedBoxesKeepTheirSides) {
     Random random(4);
     add_box(outer, kPoints, random, cloud);
     add_box(inner, kPoints, random, cloud);
-    Settings settings;
-    settings.target_vertices = 2000;
-    NoProgress progress;
-    const NeuralMesh mesh = reconstruct(soundness::target_of(cloud), settings, progress);
-    soundness::expect_exact(mesh, settings);
+    const NeuralMesh mesh = uncut_mesh(cloud, 2000);
     EXPECT_EQ(mesh.report.components, 2);
     EXPECT_EQ(mesh.report.genus, 0);
-    EXPECT_TRUE(cuts_of(mesh).empty());
     double sum = 0;
     for (const auto& position : mesh.positions) {
         const auto p = vcg::Point3d::Construct(position);
@@ -110,15 +105,10 @@ TEST(ThinWalls, OfNestedBoxesKeepTheirSides) {
 // Without thicker walls while learning, 199 of the 2,996 faces cut others.
 TEST(ThinWalls, OfAnOpenBoxDoNotCross) {
     constexpr int kPoints = 40000;  // their spacing is a third of the wall, whose thickness is half an edge
-    Settings settings;
-    settings.target_vertices = 1500;
-    NoProgress progress;
-    const NeuralMesh mesh = reconstruct(soundness::target_of(open_box(kPoints)), settings, progress);
-    soundness::expect_exact(mesh, settings);
+    const NeuralMesh mesh = uncut_mesh(open_box(kPoints), 1500);
     EXPECT_EQ(mesh.report.components, 1);
     EXPECT_EQ(mesh.report.genus, 0);
     EXPECT_EQ(mesh.report.boundary_loops, 0);
-    EXPECT_TRUE(cut_faces(network_of(mesh)).empty());
     EXPECT_LT(mesh.report.rms_error, 100 * kWall / 10);
 }
 
