@@ -28,6 +28,22 @@ bool by_coordinates(const vcg::Point3f& p, const vcg::Point3f& q) {
     return std::tie(p[0], p[1], p[2]) < std::tie(q[0], q[1], q[2]);
 }
 
+/// By hashes of 64 bits, which take a tenth of the time to sort. That two points have the same by chance is
+/// next to impossible, and would hardly change the share.
+double share_of_repeated(const std::vector<vcg::Point3f>& points) {
+    std::vector<std::uint64_t> hashes;
+    hashes.reserve(points.size());
+    for (const vcg::Point3f& p : points) {
+        std::uint64_t hash = 0;
+        for (int k = 0; k < 3; ++k)  // -0 is 0
+            hash = (hash ^ bit_cast<std::uint32_t>(p[k] + 0.0F)) * 0x9e3779b97f4a7c15U;
+        hashes.push_back(hash ^ hash >> 32);
+    }
+    std::sort(hashes.begin(), hashes.end());
+    const auto distinct = std::unique(hashes.begin(), hashes.end()) - hashes.begin();
+    return 1 - static_cast<double>(distinct) / static_cast<double>(points.size());
+}
+
 vcg::Point3f interpolated(const vcg::Point3f& a, const vcg::Point3f& b, const vcg::Point3f& c, float u,
                           float v) {
     return a + (b - a) * u + (c - a) * v;
@@ -143,14 +159,12 @@ std::optional<TargetSpace> TargetSpace::without(const std::vector<std::uint8_t>&
 }
 
 std::optional<TargetSpace> TargetSpace::each_place_once() const {
-    if (is_exact()) return std::nullopt;
+    if (is_exact() || !(share_of_repeated(positions_) > kMaxDuplicates)) return std::nullopt;
     TargetSpace once;
     once.frame_ = frame_;
     once.positions_ = positions_;
     std::sort(once.positions_.begin(), once.positions_.end(), by_coordinates);
     once.positions_.erase(std::unique(once.positions_.begin(), once.positions_.end()), once.positions_.end());
-    const auto all = static_cast<double>(positions_.size());
-    if (1 - static_cast<double>(once.positions_.size()) / all <= kMaxDuplicates) return std::nullopt;
     if (!has_colors() && !has_normals()) return once;
     const auto begin = once.positions_.begin();
     if (has_colors()) once.colors_.resize(once.positions_.size());
