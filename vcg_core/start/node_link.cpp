@@ -28,45 +28,78 @@ std::array<NeighbourSet, kNeighbourCount> adjacent_sets() {
     return sets;
 }
 
-}  // namespace
-
-LinkTopology::LinkTopology()
-    : connected_(std::size_t{1} << kNeighbourCount), euler_(std::size_t{1} << kNeighbourCount) {
+std::vector<std::uint8_t> connected_sets() {
+    std::vector<std::uint8_t> connected(std::size_t{1} << kNeighbourCount);
     const auto adjacent_to = adjacent_sets();
-    for (NeighbourSet set = 1; set < connected_.size(); ++set) {
+    for (NeighbourSet set = 1; set < connected.size(); ++set) {
         NeighbourSet reached = set & (~set + 1), before = 0;
         while (reached != before) {
             before = reached;
             for (std::size_t i = 0; i < kNeighbourCount; ++i)
                 if ((before >> i & 1U) != 0) reached |= adjacent_to[i] & set;
         }
-        connected_[set] = reached == set ? 1 : 0;
+        connected[set] = reached == set ? 1 : 0;
     }
-    for (NeighbourSet set = 1; set < euler_.size(); ++set) {
-        const auto last = static_cast<std::size_t>(highest_bit(set));
-        const NeighbourSet rest = set & ~(NeighbourSet{1} << last), beside = rest & adjacent_to[last];
-        int edges = 0;  // between neighbours of the last
-        for (std::size_t i = 0; i < last; ++i)
-            if ((beside >> i & 1U) != 0) edges += bit_count(adjacent_to[i] & beside);
-        euler_[set] = static_cast<std::int8_t>(euler_[rest] + 1 - bit_count(beside) + edges / 2);
-    }
+    return connected;
 }
 
-const LinkTopology& LinkTopology::table() {
-    static const LinkTopology table;
-    return table;
+std::uint64_t bits_of(const std::uint8_t* nodes, int count) {
+    std::uint64_t bits = 0;
+    for (int i = 0; i < count; ++i) bits |= std::uint64_t{nodes[i]} << i;
+    return bits;
+}
+
+/// A bit for each node; the rows along x are padded to whole words, with a bit 0 at the least.
+struct Bits {
+    int words;  ///< per row
+    std::ptrdiff_t slice;
+    std::vector<std::uint64_t> of_rows;
+
+    Bits(const Lattice& l, const NodeSet& nodes)
+        : words(l.nx / 64 + 1),
+          slice(static_cast<std::ptrdiff_t>(words) * (l.ny + 1)),
+          of_rows(static_cast<std::size_t>(slice * (l.nz + 1) + words + 1)) {
+        for (int z = 0; z < l.nz; ++z)
+            for (int y = 0; y < l.ny; ++y)
+                for (int x = 0; x < l.nx; x += 64)
+                    of_rows[static_cast<std::size_t>(z * slice + y * words + x / 64)] =
+                        bits_of(nodes.data() + l.index(x, y, z), std::min(64, l.nx - x));
+    }
+};
+
+/// Of the simplices whose lowest nodes are the 64 from \p word on. Their other nodes are corners of the cube
+/// above it; each corner contains, as bits, those of the simplex before it. With the highest corner, 7, to
+/// each simplex without it there is one with it, which cancel each other; so that only nodes count where it
+/// is outside. Of the others, each has an edge with the two beside it in a ring.
+int euler_characteristic(const Bits& bits, const std::uint64_t* word) {
+    const auto corner = [&](unsigned c) {
+        const std::uint64_t* at = word + ((c & 2U) != 0 ? bits.words : 0) + ((c & 4U) != 0 ? bits.slice : 0);
+        return (c & 1U) != 0 ? at[0] >> 1 | at[1] << 63 : at[0];
+    };
+    const std::uint64_t nodes = *word & ~corner(7);
+    if (nodes == 0) return 0;
+    int sum = bit_count(nodes);
+    std::uint64_t before = corner(5);
+    for (const unsigned c : {1U, 3U, 2U, 6U, 4U, 5U}) {
+        const std::uint64_t here = corner(c);
+        sum += bit_count(nodes & here & before) - bit_count(nodes & here);
+        before = here;
+    }
+    return sum;
+}
+
+}  // namespace
+
+bool is_connected(NeighbourSet set) {
+    static const std::vector<std::uint8_t> connected = connected_sets();
+    return connected[set] != 0;
 }
 
 int euler_characteristic(const Lattice& lattice, const NodeSet& solid) {
-    const LinkTopology& topology = LinkTopology::table();
-    const Neighbours neighbours(lattice);
-    const auto in_solid = [&](NodeId i) { return solid[i] != 0; };
+    const Bits bits(lattice, solid);
     int sum = 0;
-    for (NodeId i = 0; i < solid.size(); ++i) {
-        if (!in_solid(i)) continue;
-        const NeighbourSet before = neighbours.places(i) & kSmallerIds;
-        sum += 1 - topology.euler_characteristic(neighbours_in(neighbours, i, before, in_solid));
-    }
+    for (std::ptrdiff_t i = 0; i < bits.slice * lattice.nz; ++i)
+        sum += euler_characteristic(bits, bits.of_rows.data() + i);
     return sum;
 }
 
