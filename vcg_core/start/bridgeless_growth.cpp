@@ -12,10 +12,40 @@
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/start/components.h"
-#include "vcg_core/start/node_link.h"
 
 namespace neuralmesh {
 namespace {
+
+bool adjacent(std::size_t i, std::size_t j) {
+    const auto &a = kNeighbourOffsets[i], &b = kNeighbourOffsets[j];
+    const NodeOffset difference = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    return std::find(kNeighbourOffsets.begin(), kNeighbourOffsets.end(), difference) !=
+           kNeighbourOffsets.end();
+}
+
+/// For every neighbour of a node those neighbours that are adjacent to it.
+std::array<NeighbourSet, kNeighbourCount> adjacent_sets() {
+    std::array<NeighbourSet, kNeighbourCount> sets{};
+    for (std::size_t i = 0; i < kNeighbourCount; ++i)
+        for (std::size_t j = 0; j < kNeighbourCount; ++j)
+            if (adjacent(i, j)) sets[i] |= NeighbourSet{1} << j;
+    return sets;
+}
+
+std::vector<std::uint8_t> connected_sets() {
+    std::vector<std::uint8_t> connected(std::size_t{1} << kNeighbourCount);
+    const auto adjacent_to = adjacent_sets();
+    for (NeighbourSet set = 1; set < connected.size(); ++set) {
+        NeighbourSet reached = set & (~set + 1), before = 0;
+        while (reached != before) {
+            before = reached;
+            for (std::size_t i = 0; i < kNeighbourCount; ++i)
+                if ((before >> i & 1U) != 0) reached |= adjacent_to[i] & set;
+        }
+        connected[set] = reached == set ? 1 : 0;
+    }
+    return connected;
+}
 
 constexpr int kRadiusFactor = 2;  // a handle has to persist over this range of radii
 // The radius of level 0 is 0 and cannot be doubled. Its solid grows by the diagonal of a lattice square.
@@ -47,6 +77,11 @@ void fill_cavities(const Lattice& lattice, const PerNode<SquaredRadius>& clearan
 
 }  // namespace
 
+bool is_connected(NeighbourSet set) {
+    static const std::vector<std::uint8_t> connected = connected_sets();
+    return connected[set] != 0;
+}
+
 void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
                           NodeSet& solid) {
     Indexed<std::vector<NodeId>> waiting(level + 1);
@@ -61,8 +96,8 @@ void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& 
             const NodeId i = front[k];
             if (solid[i] != 0) continue;
             const NeighbourSet places = neighbours.places(i);
-            const NeighbourSet link =
-                neighbours_in(neighbours, i, places, [&](NodeId j) { return solid[j]; });
+            NeighbourSet link = 0;  // the neighbours in the solid
+            neighbours.for_each_at(i, places, [&](NodeId j, int n) { link |= NeighbourSet{solid[j]} << n; });
             if (!is_connected(link)) continue;
             solid[i] = 1;
             neighbours.for_each_at(i, places & ~link, [&](NodeId j, int) {

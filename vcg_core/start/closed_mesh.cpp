@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "vcg_core/start/bridgeless_growth.h"
+#include "vcg_core/start/components.h"
 #include "vcg_core/start/marching_tetrahedra.h"
-#include "vcg_core/start/node_link.h"
 
 namespace neuralmesh {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The connected components of a set of lattice nodes, as runs of nodes instead of one by one.
+// The topology of a set of lattice nodes, from runs and words of nodes instead of one by one.
 #pragma once
 
 #include <functional>
@@ -31,5 +31,9 @@ struct Run {
 /// hundred at a time, + O(runs).
 void for_each_component(const Lattice& lattice, const NodeSet& nodes, std::uint8_t value,
                         const std::function<void(Span<const Run>)>& visit);
+
+/// Euler characteristic of the simplices all of whose nodes are in \p solid: components - handles + cavities.
+/// O(nodes), 64 at a time.
+int euler_characteristic(const Lattice& lattice, const NodeSet& solid);
 
 }  // namespace neuralmesh

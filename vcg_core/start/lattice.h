@@ -140,11 +140,6 @@ public:
             }
         }
     }
-    /// Calls visit(j, k) for the neighbours j of node \p i, where k is j's place in kNeighbourOffsets.
-    template <class Visit>
-    void for_each(NodeId i, const Visit& visit) const {
-        for_each_at(i, places(i), visit);
-    }
 
 private:
     Lattice lattice_;  // a copy, so that the compiler need not reload its numbers after each store of an id

@@ -8,7 +8,8 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "vcg_core/start/node_link.h"
+#include "tests/unit/support/small_lattice.h"
+#include "vcg_core/start/components.h"
 
 namespace neuralmesh {
 namespace {
@@ -101,6 +102,22 @@ TEST(BridgelessGrowth, LeavesNoCavities) {
     EXPECT_EQ(growth.before(), 1);
     EXPECT_EQ(growth.after(), 1);
     EXPECT_TRUE(growth.solid(0, 0, 0));
+}
+
+TEST(BridgelessGrowth, ConnectedSetsAreThoseOfOneComponent) {
+    const Lattice lattice = small_lattice();
+    const NodeId middle = lattice.index(5, 6, 7);
+    const Neighbours neighbours(lattice);
+    int differ = 0;
+    for (NeighbourSet set = 0; set < NeighbourSet{1} << kNeighbourCount; ++set) {
+        NodeSet members(lattice.size(), 0);
+        neighbours.for_each_at(middle, neighbours.places(middle),
+                               [&](NodeId j, int k) { members[j] = set >> k & 1U; });
+        int components = 0;
+        for_each_component(lattice, members, 1, [&](const auto&) { ++components; });
+        differ += is_connected(set) != (components == 1) ? 1 : 0;
+    }
+    EXPECT_EQ(differ, 0);
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ TEST(Lattice, AdjacencyIsThatOfTheFreudenthalSubdivision) {
             const bool diagonal = *low == *high && std::abs(*low) == 1;
             if (ahead || behind || diagonal) expected.insert(lattice.index(x, y, z));
         });
-        neighbours.for_each(i, [&](NodeId j, int k) {
+        neighbours.for_each_at(i, neighbours.places(i), [&](NodeId j, int k) {
             found.insert(j);
             const auto b = lattice.coordinates(j);
             const auto& offset = kNeighbourOffsets[static_cast<std::size_t>(k)];

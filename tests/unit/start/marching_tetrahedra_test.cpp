@@ -11,7 +11,7 @@
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/small_lattice.h"
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/start/node_link.h"
+#include "vcg_core/start/components.h"
 
 namespace neuralmesh {
 namespace {
