@@ -164,15 +164,6 @@ PerNode<std::uint32_t> count_points(const Lattice& lattice, const std::vector<vc
     return counts;
 }
 
-double points_per_occupied_node(const PerNode<std::uint32_t>& counts) {
-    std::uint64_t occupied = 0, points = 0;
-    for (const std::uint32_t c : counts) {
-        occupied += c != 0;
-        points += c;
-    }
-    return occupied == 0 ? 0 : static_cast<double>(points) / static_cast<double>(occupied);
-}
-
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step,
                const std::vector<LayerPlace>& places) {
     Region region;

@@ -175,6 +175,15 @@ void set_outliers(const std::vector<Point3f>& points, const Region& region, cons
     if (learn_outliers || static_cast<double>(result.ignored_points) > most) result.outliers.clear();
 }
 
+void warn_of_outliers(std::size_t all, const Region& region, StartMesh& result) {
+    if (result.ignored_points == 0) return;
+    result.warnings.push_back(std::to_string(result.ignored_points) + " of " + std::to_string(all) +
+                              " points were ignored as outliers" +
+                              (result.outliers.empty() ? " by the start mesh, but are learned" : "") +
+                              ": they lie in isolated groups of fewer than " +
+                              std::to_string(region.min_points) + " points.");
+}
+
 void warn_of_uncertain_topology(const LatticeSurvey& survey, StartMesh& result) {
     const bool coarser = survey.region.lattice.step > survey.step ||
                          result.radius > kCoarseRadius * static_cast<double>(survey.step);
@@ -229,10 +238,7 @@ StartMesh Shell::mesh(Progress& progress) const {
     set_outliers(points_, region, closed, options_.learn_outliers, result);
     warn_of_uncertain_topology(survey_, result);
     warn_of_open_surface(result);
-    const std::string outliers =
-        warning_of_outliers(result.ignored_points, static_cast<long long>(points_.size()), region.min_points,
-                            result.outliers.empty());
-    if (!outliers.empty()) result.warnings.push_back(outliers);
+    warn_of_outliers(points_.size(), region, result);
     progress(1.0, "Start mesh: done");
     return result;
 }
