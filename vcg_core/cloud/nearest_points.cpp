@@ -89,8 +89,13 @@ void NearestPoints::nearest(Place place, int k, std::vector<Neighbour>& result) 
     const auto wanted = std::min(static_cast<std::size_t>(k), static_cast<std::size_t>(size()) - 1);
     result.clear();
     if (wanted == 0) return;
-    result.reserve(wanted + 1);
-    float bound = std::numeric_limits<float>::infinity();
+    // Those among the places around are about as near, so that the search has a bound from the beginning.
+    const auto reach = static_cast<Place>(wanted);
+    for (Place p = place - std::min(place, reach); p <= std::min(place + reach, size() - 1); ++p)
+        if (p != place) result.push_back({(this->point(p) - point(place)).SquaredNorm(), p});
+    std::nth_element(result.begin(), result.begin() + reach - 1, result.end());
+    float bound = result[wanted - 1].squared_distance;
+    result.clear();
     const auto add = [&](Place p, float d) {
         const Neighbour candidate{d, p};
         if (d > bound || p == place || (result.size() == wanted && !(candidate < result.back()))) return;

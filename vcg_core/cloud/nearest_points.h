@@ -13,8 +13,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace neuralmesh {
@@ -52,6 +54,12 @@ public:
     /// The same around any place in space.
     template <class Predicate>
     bool any_within(const vcg::Point3f& centre, float radius, const Predicate& counts) const;
+
+    /// Calls visit(point) for all points within \p farthest of \p centre that are within \p radius of its
+    /// line along \p direction, of length 1, and for some around them.
+    template <class Visit>
+    void along(const vcg::Point3f& centre, const vcg::Point3f& direction, float farthest, float radius,
+               const Visit& visit) const;
 
     /// The points within \p radius of \p centre, in the order of their places; where there are more than \p
     /// most, every second, fourth, ... of them. \p result is overwritten.
@@ -143,6 +151,31 @@ bool NearestPoints::any_within(const vcg::Point3f& centre, float radius, const P
         centre, [&](Place p, float d) { found = found || (d <= limit && counts(p)); },
         [&] { return found ? -1.0F : limit; });
     return found;
+}
+
+template <class Visit>
+void NearestPoints::along(const vcg::Point3f& centre, const vcg::Point3f& direction, float farthest,
+                          float radius, const Visit& visit) const {
+    std::vector<std::pair<std::size_t, std::size_t>> stack{{boxes_.size() - 1, 0}};  // levels and boxes
+    while (!stack.empty()) {
+        const auto [level, box] = stack.back();
+        stack.pop_back();
+        const vcg::Box3f& bounds = boxes_[level][box];
+        const vcg::Point3f d = bounds.Center() - centre;
+        const float height = d * direction, margin = 0.501F * bounds.Diag();  // with room for rounding
+        const float beside = radius + margin;
+        if (std::abs(height) > farthest + margin || d.SquaredNorm() - height * height > beside * beside)
+            continue;
+        const std::size_t size = level > 0 ? kBranch : kLeaf, begin = box * size;
+        const std::size_t end = std::min(begin + size, level > 0 ? boxes_[level - 1].size() : points_.size());
+        for (std::size_t i = begin; i < end; ++i) {
+            if (level > 0) {
+                stack.emplace_back(level - 1, i);
+            } else {
+                visit(points_[i]);
+            }
+        }
+    }
 }
 
 template <class Predicate>

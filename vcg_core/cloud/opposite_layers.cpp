@@ -69,16 +69,15 @@ float layer_among(const std::vector<float>& heights, std::size_t count, float em
 }
 
 /// Fills the distances of the opposite layers. \p radius: of the circle around the neighbours
-void find_opposite_layers(const NearestPoints& cloud, NearestPoints::Place place, float radius,
-                          LayerPlace& result) {
+void find_opposite_layers(const NearestPoints& cloud, float radius, LayerPlace& result) {
     const float squared_column = kColumn * kColumn * radius * radius;
+    const float squared_farthest = kFarthest * radius * kFarthest * radius;
     std::vector<float> above, below;
-    cloud.any_within(place, kFarthest * radius, [&](NearestPoints::Place other) {
-        const Point3f d = cloud.point(other) - cloud.point(place);
+    cloud.along(result.position, result.normal, kFarthest * radius, kColumn * radius, [&](const Point3f& p) {
+        const Point3f d = p - result.position;
         const float height = d * result.normal;
-        if (d.SquaredNorm() - height * height < squared_column)
+        if (d.SquaredNorm() <= squared_farthest && d.SquaredNorm() - height * height < squared_column)
             (height > 0 ? above : below).push_back(std::abs(height));
-        return false;
     });
     std::sort(above.begin(), above.end());
     std::sort(below.begin(), below.end());
@@ -111,7 +110,7 @@ std::vector<LayerPlace> layer_places(const CloudSurvey& survey, ThreadTeam& team
             cloud.nearest(place, kLayerNeighbours, near);
             if (near.size() < static_cast<std::size_t>(kLayerNeighbours)) return;
             LayerPlace found = place_at(cloud, place, near);
-            find_opposite_layers(cloud, place, std::sqrt(near.back().squared_distance), found);
+            find_opposite_layers(cloud, std::sqrt(near.back().squared_distance), found);
             places.push_back(found);
         });
 }

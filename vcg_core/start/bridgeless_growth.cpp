@@ -11,10 +11,41 @@
 #include <cstdint>
 
 #include "vcg_core/base/parallel_for.h"
-#include "vcg_core/start/node_link.h"
+#include "vcg_core/start/components.h"
 
 namespace neuralmesh {
 namespace {
+
+bool adjacent(std::size_t i, std::size_t j) {
+    const auto &a = kNeighbourOffsets[i], &b = kNeighbourOffsets[j];
+    const NodeOffset difference = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    return std::find(kNeighbourOffsets.begin(), kNeighbourOffsets.end(), difference) !=
+           kNeighbourOffsets.end();
+}
+
+/// For every neighbour of a node those neighbours that are adjacent to it.
+std::array<NeighbourSet, kNeighbourCount> adjacent_sets() {
+    std::array<NeighbourSet, kNeighbourCount> sets{};
+    for (std::size_t i = 0; i < kNeighbourCount; ++i)
+        for (std::size_t j = 0; j < kNeighbourCount; ++j)
+            if (adjacent(i, j)) sets[i] |= NeighbourSet{1} << j;
+    return sets;
+}
+
+std::vector<std::uint8_t> connected_sets() {
+    std::vector<std::uint8_t> connected(std::size_t{1} << kNeighbourCount);
+    const auto adjacent_to = adjacent_sets();
+    for (NeighbourSet set = 1; set < connected.size(); ++set) {
+        NeighbourSet reached = set & (~set + 1), before = 0;
+        while (reached != before) {
+            before = reached;
+            for (std::size_t i = 0; i < kNeighbourCount; ++i)
+                if ((before >> i & 1U) != 0) reached |= adjacent_to[i] & set;
+        }
+        connected[set] = reached == set ? 1 : 0;
+    }
+    return connected;
+}
 
 constexpr int kRadiusFactor = 2;  // a handle has to persist over this range of radii
 // The radius of level 0 is 0 and cannot be doubled. Its solid grows by the diagonal of a lattice square.
@@ -26,48 +57,38 @@ constexpr std::array<int, 8> kGrownFromLevels = {0, 1, 2, 3, 4, 6, 9, 16};
 constexpr int kJoiningLevel = 4 * 4;
 constexpr double kFragmentShare = 0.05;
 
-constexpr std::uint8_t kInSolid = 1;
-
 Solid solid_at(const Region& region, int level) {
     return solid_of(region.lattice, region.clearance, region.counts, level, region.min_points);
 }
 
-/// Adds the components of the nodes left out of \p solid that touch no node with clearance > level.
-/// \p left_out holds all nodes of clearance <= level that were outside before growth.
-void fill_cavities(const Lattice& lattice, const std::vector<NodeId>& left_out,
-                   const PerNode<SquaredRadius>& clearance, int level, NodeSet& solid) {
-    constexpr std::uint8_t kVisited = 2;  // in solid: visited, but not in it
-    const Neighbours neighbours(lattice);
-    std::vector<NodeId> component;
-    for (const NodeId seed : left_out) {
-        if (solid[seed] != 0) continue;
-        bool open = false;
-        solid[seed] = kVisited;
-        const auto enter = [&](NodeId j) {
-            open = open || clearance[j] > level;
-            if (solid[j] != 0 || clearance[j] > level) return false;
-            solid[j] = kVisited;
-            return true;
-        };
-        flood(neighbours, seed, enter, component);
-        for (const NodeId i : component) open = open || neighbours.places(i) != kAllNeighbours;
-        if (open) continue;
-        for (const NodeId i : component) solid[i] = kInSolid;
-    }
-    for (const NodeId i : left_out) solid[i] = solid[i] == kInSolid ? kInSolid : 0;
+/// Adds the components of the nodes outside \p solid that hold no node with clearance > level.
+void fill_cavities(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
+                   NodeSet& solid) {
+    const auto is_open = [&](const Run& run) {
+        return std::any_of(run.begin_in(clearance), run.end_in(clearance),
+                           [&](int c) { return c > level; }) ||
+               lattice.is_on_side(run.begin) || lattice.is_on_side(run.end - 1);
+    };
+    for_each_component(lattice, solid, 0, [&](Span<const Run> component) {
+        if (std::any_of(component.begin(), component.end(), is_open)) return;
+        for (const Run& run : component) std::fill(run.begin_in(solid), run.end_in(solid), 1);
+    });
 }
 
 }  // namespace
 
+bool is_connected(NeighbourSet set) {
+    static const std::vector<std::uint8_t> connected = connected_sets();
+    return connected[set] != 0;
+}
+
 void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& clearance, int level,
                           NodeSet& solid) {
     Indexed<std::vector<NodeId>> waiting(level + 1);
-    std::vector<NodeId> outside;
-    for (NodeId i = 0; i < solid.size(); ++i)
-        if (solid[i] == 0 && clearance[i] <= level) {
-            waiting[clearance[i]].push_back(i);
-            outside.push_back(i);
-        }
+    NodeSet outside(solid.size());
+    std::transform(clearance.begin(), clearance.end(), solid.begin(), outside.begin(),
+                   [level](SquaredRadius c, std::uint8_t in) { return c <= level && in == 0 ? 1 : 0; });
+    for_each_member(outside, [&](NodeId i) { waiting[clearance[i]].push_back(i); });
     const Neighbours neighbours(lattice);
     for (int l = 0; l <= level; ++l) {
         std::vector<NodeId>& front = waiting[l];
@@ -75,17 +96,17 @@ void grow_without_bridges(const Lattice& lattice, const PerNode<SquaredRadius>& 
             const NodeId i = front[k];
             if (solid[i] != 0) continue;
             const NeighbourSet places = neighbours.places(i);
-            const NeighbourSet link =
-                neighbours_in(neighbours, i, places, [&](NodeId j) { return solid[j] == kInSolid; });
-            if (!LinkTopology::table().is_connected(link)) continue;
-            solid[i] = kInSolid;
+            NeighbourSet link = 0;  // the neighbours in the solid
+            neighbours.for_each_at(i, places, [&](NodeId j, int n) { link |= NeighbourSet{solid[j]} << n; });
+            if (!is_connected(link)) continue;
+            solid[i] = 1;
             neighbours.for_each_at(i, places & ~link, [&](NodeId j, int) {
                 // It may have been left out, and be connected to the solid in another way now.
                 if (clearance[j] <= l) front.push_back(j);
             });
         }
     }
-    fill_cavities(lattice, outside, clearance, level, solid);
+    fill_cavities(lattice, clearance, level, solid);
 }
 
 int grown_level(int level) {

@@ -14,6 +14,9 @@
 
 namespace neuralmesh {
 
+/// Whether a set of neighbours is connected. The empty set is not.
+bool is_connected(NeighbourSet set);
+
 /// Adds to \p solid the nodes with clearance <= \p level, one by one in order of clearance, except nodes at
 /// which separate parts of the solid would meet. This fills tunnels and holes narrower than the level, makes
 /// no handle and joins no components: the result has the components of \p solid and those of its handles

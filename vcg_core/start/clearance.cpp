@@ -7,7 +7,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <vector>
+
+#include "vcg_core/start/components.h"
 
 namespace neuralmesh {
 namespace {
@@ -52,7 +55,12 @@ PerNode<SquaredRadius> clearances(const Lattice& lattice, const PerNode<SquaredR
                                   int max_radius, const NodeSet& inside, const std::vector<NodeId>& hollows) {
     const int far = beyond(max_radius);
     constexpr SquaredRadius kUnknown = -1, kInside = 0;
-    PerNode<SquaredRadius> out(lattice.size(), kUnknown);
+    // Neighbours beyond the sides are others on the sides, or in the margin; all are known from the
+    // beginning.
+    const NodeId size = lattice.size(), margin = lattice.index(1, 1, 1);
+    std::vector<SquaredRadius> padded(at(size + 2 * margin), kInside);
+    SquaredRadius* const out = padded.data() + margin;
+    std::fill_n(out, size, kUnknown);
     // First in, first out on every level, so that inside and outside meet halfway.
     Indexed<std::vector<NodeId>> waiting(far + 1);
     const auto wait = [&](NodeId i, int level, bool in) {
@@ -60,59 +68,74 @@ PerNode<SquaredRadius> clearances(const Lattice& lattice, const PerNode<SquaredR
         out[i] = in ? kInside : static_cast<SquaredRadius>(l);
         waiting[l].push_back(i);
     };
-    for (NodeId i = 0; i < inside.size(); ++i)
-        if (inside[i] != 0) wait(i, far, true);
+    for_each_member(inside, [&](NodeId i) { wait(i, far, true); });
     for (const NodeId i : hollows) wait(i, far, false);
-    for_each_node(lattice, [&](int x, int y, int z) {
-        const NodeId i = lattice.index(x, y, z);
-        if (lattice.is_on_side(x, y, z) && out[i] == kUnknown) wait(i, far, false);
-    });
+    for (NodeId row = 0; row < size; row += lattice.nx) {
+        const int stride = lattice.is_on_side(row + 1) ? 1 : lattice.nx - 1;
+        for (NodeId i = row; i < row + lattice.nx; i += stride)
+            if (out[i] == kUnknown) wait(i, far, false);
+    }
     const Neighbours neighbours(lattice);
     for (int level = far; level > 0; --level) {
         std::vector<NodeId>& front = waiting[level];
         for (std::size_t k = 0; k < front.size(); ++k) {
-            const bool in = out[front[k]] == kInside;
-            neighbours.for_each(front[k], [&](NodeId j, int) {
-                if (out[j] == kUnknown) wait(j, level, in);
-            });
+            const NodeId i = front[k];
+            const SquaredRadius* const here = out + i;
+            int any = 0;  // negative if one is unknown
+            for (int n = 0; n < kNeighbourCount; ++n) any |= here[neighbours.difference(n)];
+            if (any >= 0) continue;
+            for (int n = 0; n < kNeighbourCount; ++n)
+                if (here[neighbours.difference(n)] == kUnknown)
+                    wait(i + neighbours.difference(n), level, *here == kInside);
         }
         std::vector<NodeId>().swap(front);
     }
-    for (SquaredRadius& c : out) c = std::max(c, kInside);  // unknown: occupied nodes all around
-    return out;
+    PerNode<SquaredRadius> result(size);
+    // Unknown: occupied nodes all around.
+    std::transform(out, out + size, result.begin(),
+                   [](SquaredRadius c) { return std::max<SquaredRadius>(c, 0); });
+    return result;
 }
 
 SealedSpaces enclosed_spaces(const Lattice& lattice, const PerNode<SquaredRadius>& distances,
                              const PerNode<SquaredRadius>& clearance, double width_ratio,
                              int min_squared_depth) {
-    SealedSpaces result;
-    result.inside.assign(lattice.size(), 0);
-    const auto hidden = [&](NodeId i) { return distances[i] > clearance[i]; };
-    for_each_component(lattice, hidden, [&](const std::vector<NodeId>& space) {
+    SealedSpaces result{NodeSet(lattice.size())};
+    std::transform(distances.begin(), distances.end(), clearance.begin(), result.inside.begin(),
+                   [](SquaredRadius d, SquaredRadius c) { return d > c ? 1 : 0; });
+    for_each_component(lattice, result.inside, 1, [&](Span<const Run> space) {
         int depth = 0;
-        for (const NodeId i : space) depth = std::max<int>(depth, distances[i]);
-        const int opening = clearance[space.front()];  // the same for all nodes of the space
-        if (depth < min_squared_depth || depth < width_ratio * width_ratio * std::max(1, opening)) return;
-        for (const NodeId i : space) result.inside[i] = 1;
-        result.nodes += static_cast<long long>(space.size());
-        result.widest_opening = std::max(result.widest_opening, opening);
+        for (const Run& run : space)
+            depth = std::max<int>(depth, *std::max_element(run.begin_in(distances), run.end_in(distances)));
+        const int opening = clearance[space[0].begin];  // the same for all nodes of the space
+        const bool sealed =
+            depth >= min_squared_depth && depth >= width_ratio * width_ratio * std::max(1, opening);
+        if (sealed) result.widest_opening = std::max(result.widest_opening, opening);
+        for (const Run& run : space) {
+            if (sealed)
+                result.nodes += run.end - run.begin;
+            else
+                std::fill(run.begin_in(result.inside), run.end_in(result.inside), 0);
+        }
     });
     return result;
 }
 
 Solid solid_of(const Lattice& lattice, const PerNode<SquaredRadius>& clearance,
                const PerNode<std::uint32_t>& counts, int level, long long min_points) {
-    Solid result{NodeSet(lattice.size(), 0)};
-    const auto solid = [&](NodeId i) { return clearance[i] <= level; };
-    for_each_component(lattice, solid, [&](const std::vector<NodeId>& component) {
+    Solid result{NodeSet(lattice.size())};
+    std::transform(clearance.begin(), clearance.end(), result.nodes.begin(),
+                   [level](SquaredRadius c) { return c <= level ? 1 : 0; });
+    for_each_component(lattice, result.nodes, 1, [&](Span<const Run> component) {
         long long points = 0;
-        for (const NodeId i : component) points += counts[i];
-        if (points < min_points) {
-            result.points_in_specks += points;
+        for (const Run& run : component)
+            points = std::accumulate(run.begin_in(counts), run.end_in(counts), points);
+        if (points >= min_points) {
+            ++result.components;
             return;
         }
-        ++result.components;
-        for (const NodeId i : component) result.nodes[i] = 1;
+        result.points_in_specks += points;
+        for (const Run& run : component) std::fill(run.begin_in(result.nodes), run.end_in(result.nodes), 0);
     });
     return result;
 }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "vcg_core/base/ablation.h"
+#include "vcg_core/start/components.h"
 
 namespace neuralmesh {
 namespace {
@@ -72,17 +73,16 @@ Spaces::Spaces(const Lattice& lattice, const PerNode<SquaredRadius>& distances,
       clearance_(clearance),
       space_(lattice.size(), kOutside),
       kinds_{Kind::void_space} {
-    for_each_component(
-        lattice, [&](NodeId i) { return inside[i] != 0; },
-        [&](const std::vector<NodeId>& space) {
-            NodeId deepest = space.front();
-            for (const NodeId i : space) {
+    for_each_component(lattice, inside, 1, [&](Span<const Run> space) {
+        NodeId deepest = space[0].begin;
+        for (const Run& run : space)
+            for (NodeId i = run.begin; i < run.end; ++i) {
                 space_[i] = static_cast<int>(kinds_.size());
                 if (distances[i] > distances[deepest]) deepest = i;
             }
-            deepest_.push_back(deepest);
-            kinds_.push_back(Kind::unknown);
-        });
+        deepest_.push_back(deepest);
+        kinds_.push_back(Kind::unknown);
+    });
 }
 
 /// \param wall the distance of the opposite layer in this direction; 0: there is none

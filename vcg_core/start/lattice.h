@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A regular lattice of nodes over a box: indices, adjacency, flood fill, and passes of separable sums, maxima
+// A regular lattice of nodes over a box: indices, adjacency, and passes of separable sums, maxima
 // and distances.
 #pragma once
 
@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "vcg_core/base/indexed.h"
@@ -66,6 +67,10 @@ struct Lattice {
     bool is_on_side(int x, int y, int z) const {
         return x == 0 || y == 0 || z == 0 || x + 1 == nx || y + 1 == ny || z + 1 == nz;
     }
+    bool is_on_side(NodeId i) const {
+        const auto [x, y, z] = coordinates(i);
+        return is_on_side(x, y, z);
+    }
     vcg::Point3f position(int x, int y, int z) const {
         return corner +
                vcg::Point3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) * step;
@@ -109,8 +114,8 @@ public:
             differences_[k] = lattice.index(dx, dy, dz);
         }
     }
-    /// The neighbour of node \p i at the place \p k in kNeighbourOffsets, if it has one.
-    NodeId at(NodeId i, int k) const { return i + differences_[static_cast<std::size_t>(k)]; }
+    /// From a node to its neighbour at the place \p k in kNeighbourOffsets, if it has one.
+    NodeId difference(int k) const { return differences_[at(k)]; }
     /// The places in kNeighbourOffsets at which node \p i has a neighbour: all, but for nodes on a side.
     NeighbourSet places(NodeId i) const {
         const Lattice& l = lattice_;
@@ -127,18 +132,13 @@ public:
     template <class Visit>
     void for_each_at(NodeId i, NeighbourSet places, const Visit& visit) const {
         if (places == kAllNeighbours) {
-            for (int k = 0; k < kNeighbourCount; ++k) visit(at(i, k), k);
+            for (int k = 0; k < kNeighbourCount; ++k) visit(i + difference(k), k);
         } else {
             for (; places != 0; places &= places - 1) {
                 const int k = lowest_bit(places);
-                visit(at(i, k), k);
+                visit(i + difference(k), k);
             }
         }
-    }
-    /// Calls visit(j, k) for the neighbours j of node \p i, where k is j's place in kNeighbourOffsets.
-    template <class Visit>
-    void for_each(NodeId i, const Visit& visit) const {
-        for_each_at(i, places(i), visit);
     }
 
 private:
@@ -154,33 +154,15 @@ void for_each_node(const Lattice& l, const Visit& visit) {
             for (int x = 0; x < l.nx; ++x) visit(x, y, z);
 }
 
-/// Flood fill: puts \p seed into \p nodes and then, breadth first, each neighbour j of a node in it for which
-/// enter(j) is true. enter() must be true at most once per node, so it marks the nodes it lets in.
-template <class Enter>
-void flood(const Neighbours& neighbours, NodeId seed, const Enter& enter, std::vector<NodeId>& nodes) {
-    nodes.assign(1, seed);
-    for (std::size_t k = 0; k < nodes.size(); ++k)
-        neighbours.for_each(nodes[k], [&](NodeId j, int) {
-            if (enter(j)) nodes.push_back(j);
-        });
-}
-
-/// Calls visit(nodes) for each connected component of the nodes i with member(i), in order of their smallest
-/// nodes. O(nodes), and one byte per node.
-template <class Member, class Visit>
-void for_each_component(const Lattice& lattice, const Member& member, const Visit& visit) {
-    NodeSet seen(lattice.size(), 0);
-    const auto enter = [&](NodeId i) {
-        if (seen[i] != 0 || !member(i)) return false;
-        seen[i] = 1;
-        return true;
-    };
-    const Neighbours neighbours(lattice);
-    std::vector<NodeId> nodes;
-    for (NodeId seed = 0; seed < lattice.size(); ++seed) {
-        if (!enter(seed)) continue;
-        flood(neighbours, seed, enter, nodes);
-        visit(nodes);
+/// Calls visit(i) for the members of \p nodes, in order. O(nodes), a hundred at a time, + O(members).
+template <class Visit>
+void for_each_member(const NodeSet& nodes, const Visit& visit) {
+    const std::uint8_t* const begin = nodes.data();
+    const std::uint8_t* const end = begin + nodes.size();
+    for (const std::uint8_t* i = begin; i != end; ++i) {
+        i = static_cast<const std::uint8_t*>(std::memchr(i, 1, static_cast<std::size_t>(end - i)));
+        if (i == nullptr) return;
+        visit(static_cast<NodeId>(i - begin));
     }
 }
 

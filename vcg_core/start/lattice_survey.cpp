@@ -51,7 +51,9 @@ float step_for(const std::vector<Point3f>& points, const Box3f& box, double max_
         step *= kNextStepForSize;
     while (step < side / kMinStepsPerSide) {
         const Lattice lattice(box, step, Region::kMargin);
-        if (points_per_occupied_node(count_points(lattice, points)) >= points_per_node) break;
+        const PerNode<std::uint32_t> counts = count_points(lattice, points);
+        const auto occupied = counts.size() - std::count(counts.begin(), counts.end(), 0U);
+        if (static_cast<double>(points.size()) / static_cast<double>(occupied) >= points_per_node) break;
         step *= kNextStepForDensity;
     }
     return step;

@@ -57,46 +57,32 @@ float way_to_end(const Lattice& lattice, const NodeSet& solid, bool inside, cons
     return farthest;
 }
 
-/// Between the points, which lie \p radius below the shell.
-struct Widths {
-    float wall, gap;
-};
-
-Widths widths_at(const Lattice& lattice, const NodeSet& solid, float radius, const Point3f& p,
-                 const Point3f& n, float farthest) {
-    return {way_to_end(lattice, solid, true, p, -n, farthest + 2 * radius) - 2 * radius,
-            way_to_end(lattice, solid, false, p, n, farthest - 2 * radius) + 2 * radius};
-}
-
 }  // namespace
 
-PerVertex<float> local_widths(const Network& shell, const Lattice& lattice, const NodeSet& solid,
-                              float radius, float farthest) {
-    const float least = std::max(radius, kLeastSteps * lattice.step);
-    PerVertex<float> widths(shell.slot_count(), farthest);
+LocalWidths::LocalWidths(const Network& shell, const Lattice& lattice, const NodeSet& solid, float radius,
+                         float farthest)
+    : radius_(radius), step_(lattice.step), behind_(shell.slot_count()), before_(shell.slot_count()) {
     const PerVertex<Point3f> normals = smooth_normals(shell);
     for (const VertexId v : shell.vertices()) {
-        const Widths at = widths_at(lattice, solid, radius, shell.position(v), normals[v], farthest);
-        widths[v] = std::min(farthest, std::max(least, std::min(at.wall, at.gap)));
+        const Point3f& p = shell.position(v);
+        behind_[v] = way_to_end(lattice, solid, true, p, -normals[v], farthest + 2 * radius);
+        before_[v] = way_to_end(lattice, solid, false, p, normals[v], farthest - 2 * radius);
     }
-    return widths;
 }
 
-PerVertex<float> thickenings(const Network& shell, const Lattice& lattice, const NodeSet& solid, float radius,
-                             float thick) {
-    PerVertex<float> lengths(shell.slot_count(), 0);
-    const PerVertex<Point3f> normals = smooth_normals(shell);
-    const float farthest = std::max(2 * thick, 4 * radius);
-    for (const VertexId v : shell.vertices()) {
-        const Widths at = widths_at(lattice, solid, radius, shell.position(v), normals[v], farthest);
-        // Moved by a quarter of the room on either side, the wall is still no wider than the gap. Thinner
-        // walls, where both sides may be one, are taken for the thinnest that the lattice tells: a blade
-        // whose edges are not moved has twice the error there (ablation.py).
-        const float wall = std::max(at.wall, kLeastSteps * lattice.step);
-        const float room = std::max(0.0F, std::min(at.gap, thick) - wall);
-        lengths[v] = std::min(kMostRadii * radius, room / 4);
-    }
-    return lengths;
+float LocalWidths::width(VertexId v, float farthest) const {
+    const float least = std::max(radius_, kLeastSteps * step_);
+    return std::min(farthest, std::max(least, std::min(wall(v, farthest), gap(v, farthest))));
+}
+
+float LocalWidths::thickening(VertexId v, float thick) const {
+    const float farthest = farthest_for(thick, radius_);
+    // Moved by a quarter of the room on either side, the wall is still no wider than the gap. Thinner walls,
+    // where both sides may be one, are taken for the thinnest that the lattice tells: a blade whose edges are
+    // not moved has twice the error there (ablation.py).
+    const float thickness = std::max(wall(v, farthest), kLeastSteps * step_);
+    const float room = std::max(0.0F, std::min(gap(v, farthest), thick) - thickness);
+    return std::min(kMostRadii * radius_, room / 4);
 }
 
 }  // namespace neuralmesh

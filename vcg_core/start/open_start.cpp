@@ -21,7 +21,6 @@
 #include "vcg_core/start/consolidated_points.h"
 #include "vcg_core/start/facing.h"
 #include "vcg_core/start/normal_orientation.h"
-#include "vcg_core/start/outliers.h"
 #include "vcg_core/start/point_triangulation.h"
 #include "vcg_core/start/sensor_place.h"
 #include "vcg_core/start/short_handles.h"

@@ -46,13 +46,6 @@ void remove_surface_nodes(const Region& region, const NodeSet& solid, int level,
 
 }  // namespace
 
-std::string warning_of_outliers(long long ignored, long long all, long long least, bool learned) {
-    if (ignored == 0) return "";
-    return std::to_string(ignored) + " of " + std::to_string(all) + " points were ignored as outliers" +
-           (learned ? " by the start mesh, but are learned" : "") +
-           ": they lie in isolated groups of fewer than " + std::to_string(least) + " points.";
-}
-
 std::vector<std::uint8_t> outliers_of(const std::vector<Point3f>& points, const Region& region,
                                       const NodeSet& solid, int level) {
     NodeSet outlying = isolated_nodes(region, level);

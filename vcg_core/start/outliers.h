@@ -7,17 +7,12 @@
 #include <vcg/space/point3.h>
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "vcg_core/start/lattice.h"
 #include "vcg_core/start/region.h"
 
 namespace neuralmesh {
-
-/// The sentence on \p ignored points of \p all that the start mesh leaves out, as they lie in groups of fewer
-/// than \p least points; empty if there are none. \p learned: learning does not leave them out.
-std::string warning_of_outliers(long long ignored, long long all, long long least, bool learned);
 
 /// 1 for each outlier; empty if there are none. A point is an outlier if it lies outside region.lattice, or
 /// if all of these hold:

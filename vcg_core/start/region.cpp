@@ -33,13 +33,16 @@ constexpr double kFringeShare = 0.2;
 constexpr std::uint32_t kFringeMinPoints = 40;
 
 /// For every node combine() of the values in a cube of 2 * reach + 1 nodes per side around it, axis by axis.
-template <class Combine>
-PerNode<std::uint32_t> combine_boxes(const Lattice& l, const PerNode<std::uint32_t>& values, int reach,
-                                     const Combine& combine) {
-    PerNode<std::uint32_t> out = values;
-    std::vector<std::uint32_t> scratch;
-    for (NodeId first = 0; first < l.size(); first += l.nx)
-        combine_rows(out.data() + first, l.nx, 1, 1, reach, combine, scratch);
+template <class T, class Combine>
+PerNode<T> combine_boxes(const Lattice& l, const PerNode<T>& values, int reach, const Combine& combine) {
+    PerNode<T> out = values;
+    for (NodeId row = 0; row < l.size(); row += l.nx)
+        for (int d = 1; d <= reach; ++d) {
+            const T* const in = values.data() + row;
+            T* const to = out.data() + row;
+            for (int x = 0; x < l.nx - d; ++x) to[x] = combine(to[x], in[x + d], d);
+            for (int x = d; x < l.nx; ++x) to[x] = combine(to[x], in[x - d], d);
+        }
     combine_across_rows(l, reach, combine, out);
     return out;
 }
@@ -50,9 +53,9 @@ PerNode<std::uint32_t> box_sums(const Lattice& lattice, const PerNode<std::uint3
 }
 
 /// The largest value in the 5 x 5 x 5 nodes around every node.
-PerNode<std::uint32_t> box_maxima(const Lattice& lattice, const PerNode<std::uint32_t>& values) {
-    return combine_boxes(lattice, values, 2,
-                         [](std::uint32_t a, std::uint32_t b, int) { return a < b ? b : a; });
+template <class T>
+PerNode<T> box_maxima(const Lattice& lattice, const PerNode<T>& values) {
+    return combine_boxes(lattice, values, 2, [](T a, T b, int) { return a < b ? b : a; });
 }
 
 /// 0 instead of the counts of fringe nodes.
@@ -67,8 +70,19 @@ PerNode<std::uint32_t> without_fringe(const Lattice& lattice, const PerNode<std:
 /// Adds to \p inside the nodes of \p lattice whose nearest node of \p coarse is in \p coarse_inside.
 void add_refined(const Lattice& coarse, const NodeSet& coarse_inside, const Lattice& lattice,
                  NodeSet& inside) {
+    // Of node (x, y, z) it is xs[x] + ys[y] + zs[z].
+    const auto along = [&](int axis, int count) {
+        std::vector<NodeId> nearest;
+        for (int i = 0; i < count; ++i) {
+            vcg::Point3f p = coarse.corner;
+            p[axis] = lattice.position(i, i, i)[axis];
+            nearest.push_back(coarse.node_of(p));
+        }
+        return nearest;
+    };
+    const std::vector<NodeId> xs = along(0, lattice.nx), ys = along(1, lattice.ny), zs = along(2, lattice.nz);
     for_each_node(lattice, [&](int x, int y, int z) {
-        const NodeId j = coarse.node_of(lattice.position(x, y, z));
+        const NodeId j = xs[at(x)] + ys[at(y)] + zs[at(z)];
         if (j < coarse.size() && coarse_inside[j] != 0) inside[lattice.index(x, y, z)] = 1;
     });
 }
@@ -121,11 +135,11 @@ long long points_of_component(long long total) {
 }  // namespace
 
 ThinParts thin_parts(const Region& region, const std::vector<LayerPlace>& places) {
-    PerNode<std::uint32_t> enclosed(region.lattice.size(), 0);
+    NodeSet enclosed(region.lattice.size(), 0);
     if (region.encloses_space)
         for (NodeId i = 0; i < enclosed.size(); ++i)
             enclosed[i] = region.clearance[i] == 0 && region.distances[i] > 0 ? 1 : 0;
-    const PerNode<std::uint32_t> beside = box_maxima(region.lattice, enclosed);
+    const NodeSet beside = box_maxima(region.lattice, enclosed);
     long long nodes = 0, of_sheet = 0;
     for (NodeId i = 0; i < beside.size(); ++i) {
         if (region.counts[i] == 0) continue;
@@ -148,15 +162,6 @@ PerNode<std::uint32_t> count_points(const Lattice& lattice, const std::vector<vc
         if (i < counts.size()) ++counts[i];
     }
     return counts;
-}
-
-double points_per_occupied_node(const PerNode<std::uint32_t>& counts) {
-    std::uint64_t occupied = 0, points = 0;
-    for (const std::uint32_t c : counts) {
-        occupied += c != 0;
-        points += c;
-    }
-    return occupied == 0 ? 0 : static_cast<double>(points) / static_cast<double>(occupied);
 }
 
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step,

@@ -62,7 +62,4 @@ ThinParts thin_parts(const Region& region, const std::vector<LayerPlace>& places
 /// Points per node of \p lattice; points outside it are not counted. O(nodes + points).
 PerNode<std::uint32_t> count_points(const Lattice& lattice, const std::vector<vcg::Point3f>& points);
 
-/// Mean of the counts above 0; 0 if there is none.
-double points_per_occupied_node(const PerNode<std::uint32_t>& counts);
-
 }  // namespace neuralmesh

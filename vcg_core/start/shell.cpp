@@ -66,43 +66,20 @@ double area_around(const Network& network, VertexId v) {
     return sum / 6;  // a third of each face, whose area vector is twice as long as its area
 }
 
-/// The number of vertices of a mesh of \p network with edges of \p lengths.
-double vertices_of(const Network& network, const PerVertex<float>& lengths) {
-    double count = 0;
-    for (const VertexId v : network.vertices()) {
-        const auto length = static_cast<double>(lengths[v]);
-        count += area_around(network, v) / (kAreaPerVertex * length * length);
-    }
-    return count;
-}
-
-/// The lengths that the edges should have in a mesh with edges of \p even_edge that is finer where the
-/// surface is close to itself, and the number of its vertices.
-struct WantedEdges {
-    PerVertex<float> lengths;
-    double vertices;
-};
-
-WantedEdges wanted_edges(const ClosedMesh& closed, const Lattice& lattice, float radius, double even_edge) {
-    PerVertex<float> lengths = local_widths(closed.network, lattice, closed.solid, radius,
-                                            static_cast<float>(even_edge / kEdgeOverWidth));
-    for (const VertexId v : closed.network.vertices()) lengths[v] *= static_cast<float>(kEdgeOverWidth);
-    const double vertices = vertices_of(closed.network, lengths);
-    return {std::move(lengths), vertices};
-}
-
 void copy_mesh(Network& network, IndexedMesh<float>& mesh) {
     network.compact();
     for (const VertexId v : network.vertices()) mesh.positions.push_back(network.position(v));
     mesh.faces = network.faces();
 }
 
-WallSides wall_sides(const Network& shell, const PerVertex<float>& thickenings) {
-    if (std::none_of(thickenings.begin(), thickenings.end(), [](float length) { return length > 0; }) ||
-        skips("thickening"))
-        return {};
+WallSides wall_sides(const Network& shell, const LocalWidths& widths, float thick) {
     WallSides result;
-    for (const VertexId v : shell.vertices()) result.thickenings.push_back(thickenings[v]);
+    bool any = false;
+    for (const VertexId v : shell.vertices()) {
+        result.thickenings.push_back(widths.thickening(v, thick));
+        any = any || result.thickenings.back() > 0;
+    }
+    if (!any || skips("thickening")) return {};
     Network compacted = shell;
     copy_mesh(compacted, result);
     return result;
@@ -115,23 +92,30 @@ constexpr const char* kReducing = "Start mesh: reducing it";
 WallSides reduce(ClosedMesh& closed, const Region& region, int vertices, double most, int final_vertices,
                  Progress& progress) {
     Network& network = closed.network;
-    const Lattice& lattice = region.lattice;
+    PerVertex<double> areas(network.slot_count(), 0);
     double area = 0;
-    for (const VertexId v : network.vertices()) area += area_around(network, v);
-    const double even_edge = std::sqrt(area / (kAreaPerVertex * vertices));
-    const float radius = lattice.step * std::sqrt(static_cast<float>(closed.level) + kHalfLevel);
-    const WantedEdges edges = wanted_edges(closed, lattice, radius, even_edge);
-    const int wanted = static_cast<int>(std::min(edges.vertices, most));
+    for (const VertexId v : network.vertices()) area += areas[v] = area_around(network, v);
+    const auto even_edge = [area](int count) { return std::sqrt(area / (kAreaPerVertex * count)); };
+    const auto widest = static_cast<float>(even_edge(vertices) / kEdgeOverWidth);
+    const auto thick = static_cast<float>(kThickEdges * even_edge(final_vertices));
+    const float radius = region.lattice.step * std::sqrt(static_cast<float>(closed.level) + kHalfLevel);
+    const LocalWidths widths(network, region.lattice, closed.solid, radius,
+                             std::max(widest, LocalWidths::farthest_for(thick, radius)));
+    PerVertex<float> lengths(network.slot_count(), 0);
+    double needed = 0;  // vertices of a mesh of edges of these lengths
+    for (const VertexId v : network.vertices()) {
+        lengths[v] = widths.width(v, widest) * static_cast<float>(kEdgeOverWidth);
+        const auto length = static_cast<double>(lengths[v]);
+        needed += areas[v] / (kAreaPerVertex * length * length);
+    }
+    const int wanted = static_cast<int>(std::min(needed, most));
     if (!(wanted > kWorthwhile * vertices)) {
         simplify(network, vertices);
         return {};
     }
-    progress(0.83, kReducing);
-    const double thick = kThickEdges * std::sqrt(area / (kAreaPerVertex * final_vertices));
-    WallSides walls =
-        wall_sides(network, thickenings(network, lattice, closed.solid, radius, static_cast<float>(thick)));
     progress(0.86, kReducing);
-    simplify(network, wanted, edges.lengths);
+    WallSides walls = wall_sides(network, widths, thick);
+    simplify(network, wanted, lengths);
     return walls;
 }
 
@@ -191,6 +175,15 @@ void set_outliers(const std::vector<Point3f>& points, const Region& region, cons
     if (learn_outliers || static_cast<double>(result.ignored_points) > most) result.outliers.clear();
 }
 
+void warn_of_outliers(std::size_t all, const Region& region, StartMesh& result) {
+    if (result.ignored_points == 0) return;
+    result.warnings.push_back(std::to_string(result.ignored_points) + " of " + std::to_string(all) +
+                              " points were ignored as outliers" +
+                              (result.outliers.empty() ? " by the start mesh, but are learned" : "") +
+                              ": they lie in isolated groups of fewer than " +
+                              std::to_string(region.min_points) + " points.");
+}
+
 void warn_of_uncertain_topology(const LatticeSurvey& survey, StartMesh& result) {
     const bool coarser = survey.region.lattice.step > survey.step ||
                          result.radius > kCoarseRadius * static_cast<double>(survey.step);
@@ -245,10 +238,7 @@ StartMesh Shell::mesh(Progress& progress) const {
     set_outliers(points_, region, closed, options_.learn_outliers, result);
     warn_of_uncertain_topology(survey_, result);
     warn_of_open_surface(result);
-    const std::string outliers =
-        warning_of_outliers(result.ignored_points, static_cast<long long>(points_.size()), region.min_points,
-                            result.outliers.empty());
-    if (!outliers.empty()) result.warnings.push_back(outliers);
+    warn_of_outliers(points_.size(), region, result);
     progress(1.0, "Start mesh: done");
     return result;
 }

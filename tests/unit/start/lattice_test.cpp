@@ -16,9 +16,9 @@
 #include "tests/unit/support/small_lattice.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/start/bridgeless_growth.h"
+#include "vcg_core/start/components.h"
 #include "vcg_core/start/lattice.h"
 #include "vcg_core/start/marching_tetrahedra.h"
-#include "vcg_core/start/node_link.h"
 
 namespace neuralmesh {
 namespace {
@@ -58,7 +58,7 @@ TEST(Lattice, AdjacencyIsThatOfTheFreudenthalSubdivision) {
             const bool diagonal = *low == *high && std::abs(*low) == 1;
             if (ahead || behind || diagonal) expected.insert(lattice.index(x, y, z));
         });
-        neighbours.for_each(i, [&](NodeId j, int k) {
+        neighbours.for_each_at(i, neighbours.places(i), [&](NodeId j, int k) {
             found.insert(j);
             const auto b = lattice.coordinates(j);
             const auto& offset = kNeighbourOffsets[static_cast<std::size_t>(k)];
@@ -66,68 +66,6 @@ TEST(Lattice, AdjacencyIsThatOfTheFreudenthalSubdivision) {
         });
         ASSERT_EQ(found, expected) << i;
     }
-}
-
-// The table of sets of neighbours against a search for components and a count of simplices.
-
-template <class Member>
-NeighbourSet set_of(const Neighbours& neighbours, NodeId i, const Member& member) {
-    return neighbours_in(neighbours, i, neighbours.places(i), member);
-}
-
-TEST(NodeLink, ConnectedSetsAreThoseOfOneComponent) {
-    const Lattice lattice = small_lattice();
-    const NodeId middle = lattice.index(5, 6, 7);
-    const Neighbours neighbours(lattice);
-    int differ = 0;
-    for (NeighbourSet set = 0; set < NeighbourSet{1} << kNeighbourCount; ++set) {
-        NodeSet members(lattice.size(), 0);
-        neighbours.for_each(middle, [&](NodeId j, int k) { members[j] = set >> k & 1U; });
-        // Only the neighbours are searched: a search of the whole lattice would take a minute.
-        int components = 0;
-        std::vector<NodeId> nodes;
-        neighbours.for_each(middle, [&](NodeId j, int) {
-            if (members[j] == 0) return;
-            ++components;
-            members[j] = 0;
-            flood(
-                neighbours, j,
-                [&](NodeId i) {
-                    if (members[i] == 0) return false;
-                    members[i] = 0;
-                    return true;
-                },
-                nodes);
-        });
-        differ += LinkTopology::table().is_connected(set) != (components == 1) ? 1 : 0;
-    }
-    EXPECT_EQ(differ, 0);
-}
-
-TEST(NodeLink, EulerCharacteristicsAreThoseOfTheSimplices) {
-    const Lattice lattice = small_lattice();
-    const Neighbours neighbours(lattice);
-    const NodeId middle = lattice.index(5, 6, 7);
-    const auto adjacent = [&](int a, int b) {
-        const NodeId there = neighbours.at(middle, b);
-        return set_of(neighbours, neighbours.at(middle, a), [&](NodeId j) { return j == there; }) != 0;
-    };
-    int differ = 0;
-    for (NeighbourSet set = 0; set < NeighbourSet{1} << kNeighbourCount; set += 7) {
-        int euler = 0;
-        for (int a = 0; a < kNeighbourCount; ++a) {
-            if ((set >> a & 1U) == 0) continue;
-            ++euler;
-            for (int b = 0; b < a; ++b) {
-                if ((set >> b & 1U) == 0 || !adjacent(a, b)) continue;
-                --euler;
-                for (int c = 0; c < b; ++c)
-                    if ((set >> c & 1U) != 0 && adjacent(a, c) && adjacent(b, c)) ++euler;
-            }
-        }
-        differ += LinkTopology::table().euler_characteristic(set) != euler ? 1 : 0;
-    }
-    EXPECT_EQ(differ, 0);
 }
 
 /// Random values, one in \p one_in of them negative; positive on the walls.
@@ -277,6 +215,22 @@ TEST(BridgelessGrowth, LeavesNoCavities) {
     EXPECT_EQ(growth.before(), 1);
     EXPECT_EQ(growth.after(), 1);
     EXPECT_TRUE(growth.solid(0, 0, 0));
+}
+
+TEST(BridgelessGrowth, ConnectedSetsAreThoseOfOneComponent) {
+    const Lattice lattice = small_lattice();
+    const NodeId middle = lattice.index(5, 6, 7);
+    const Neighbours neighbours(lattice);
+    int differ = 0;
+    for (NeighbourSet set = 0; set < NeighbourSet{1} << kNeighbourCount; ++set) {
+        NodeSet members(lattice.size(), 0);
+        neighbours.for_each_at(middle, neighbours.places(middle),
+                               [&](NodeId j, int k) { members[j] = set >> k & 1U; });
+        int components = 0;
+        for_each_component(lattice, members, 1, [&](const auto&) { ++components; });
+        differ += is_connected(set) != (components == 1) ? 1 : 0;
+    }
+    EXPECT_EQ(differ, 0);
 }
 
 }  // namespace

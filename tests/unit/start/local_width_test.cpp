@@ -41,10 +41,10 @@ Body body_of(const Inside& inside) {
 
 /// The widths at the vertices of the shell at which \p counts is true.
 std::vector<float> widths_where(const Body& solid, float radius, const Inside& counts) {
-    const PerVertex<float> widths = local_widths(solid.shell, solid.lattice, solid.nodes, radius, kFarthest);
+    const LocalWidths widths(solid.shell, solid.lattice, solid.nodes, radius, kFarthest);
     std::vector<float> chosen;
     for (const VertexId v : solid.shell.vertices())
-        if (counts(solid.shell.position(v))) chosen.push_back(widths[v]);
+        if (counts(solid.shell.position(v))) chosen.push_back(widths.width(v, kFarthest));
     return chosen;
 }
 
@@ -99,13 +99,14 @@ PlateSides thickenings_of_plates(float thickness, float gap, float radius, float
         const bool in_plate = (z > 0 && z < thickness) || (z > thickness + gap && z < 2 * thickness + gap);
         return std::abs(p[0]) < 0.5F && std::abs(p[1]) < 0.5F && in_plate;
     });
-    const PerVertex<float> lengths = thickenings(plates.shell, plates.lattice, plates.nodes, radius, thick);
+    const LocalWidths widths(plates.shell, plates.lattice, plates.nodes, radius,
+                             LocalWidths::farthest_for(thick, radius));
     PlateSides sides;
     for (const VertexId v : plates.shell.vertices()) {
         const vcg::Point3f& p = plates.shell.position(v);
         const float z = p[2] - kBottom;
         if (!in_the_middle(p) || z > thickness + gap / 2) continue;
-        (z < thickness / 2 ? sides.outer : sides.facing).push_back(lengths[v]);
+        (z < thickness / 2 ? sides.outer : sides.facing).push_back(widths.thickening(v, thick));
     }
     EXPECT_FALSE(sides.outer.empty() || sides.facing.empty());
     return sides;

@@ -12,8 +12,8 @@
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/small_lattice.h"
 #include "vcg_core/start/clearance.h"
+#include "vcg_core/start/components.h"
 #include "vcg_core/start/lattice_survey.h"
-#include "vcg_core/start/node_link.h"
 #include "vcg_core/start/outliers.h"
 #include "vcg_core/start/region.h"
 
@@ -53,8 +53,9 @@ PerNode<SquaredRadius> relaxed_clearances(const Lattice& lattice, const PerNode<
                               z == lattice.nz - 1;
             const NodeId i = lattice.index(x, y, z);
             SquaredRadius best = wall ? distances[i] : SquaredRadius{0};
-            neighbours.for_each(
-                i, [&](NodeId j, int) { best = std::max(best, std::min(result[j], distances[i])); });
+            neighbours.for_each_at(i, neighbours.places(i), [&](NodeId j, int) {
+                best = std::max(best, std::min(result[j], distances[i]));
+            });
             changed = changed || best > result[i];
             result[i] = std::max(result[i], best);
         });
