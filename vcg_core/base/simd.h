@@ -11,6 +11,9 @@
 
 #include "vcg_core/base/platform.h"
 
+#ifdef NEURALMESH_SSE2
+#include <emmintrin.h>
+#endif
 #ifndef NEURALMESH_GNU
 #include "vcg_core/base/lanes.h"
 #endif
@@ -31,6 +34,11 @@ using EightInts = Lanes<std::int32_t, 8>;
 using EightWords = Lanes<std::uint32_t, 8>;
 #endif
 
+// GCC has __builtin_shufflevector from 12 on.
+#if defined(NEURALMESH_GNU) && (defined(__clang__) || __GNUC__ >= 12)
+#define NEURALMESH_SHUFFLES
+#endif
+
 /// Loads 16 bytes, aligned to 16, unchanged.
 inline Four load_raw(const void* from) {
     Four v;
@@ -48,6 +56,18 @@ inline void store_xyz(void* to, Four v) {
     const FourInts bits = (bit_cast<FourInts>(v) & FourInts{-1, -1, -1, 0}) |
                           (bit_cast<FourInts>(load_raw(to)) & FourInts{0, 0, 0, -1});
     std::memcpy(assume_aligned<16>(to), &bits, sizeof bits);
+}
+
+/// A mask whose bit i is set if words[i] == v, i = 0..3.
+inline unsigned equal_mask(const std::int32_t* words, std::int32_t v) {
+#ifdef NEURALMESH_SSE2
+    const __m128i four = _mm_loadu_si128(reinterpret_cast<const __m128i*>(words));
+    return static_cast<unsigned>(_mm_movemask_ps(_mm_castsi128_ps(_mm_cmpeq_epi32(four, _mm_set1_epi32(v)))));
+#else
+    unsigned mask = 0;
+    for (unsigned i = 0; i < 4; ++i) mask |= (words[i] == v ? 1u : 0u) << i;
+    return mask;
+#endif
 }
 
 /// Eight points or vectors, one per lane.
@@ -142,25 +162,77 @@ inline FourInts to_ints(Four v) {
 #endif
 }
 
-/// Transposes eight points (x, y, z, w) into their x, their y and their z; drops w. GCC makes code of this
-/// that is as fast as shuffles written by hand.
+#ifdef NEURALMESH_SHUFFLES
+/// Transposes eight points (x, y, z, w) into their x, their y and their z; drops w.
 NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v) {
-    v.x = Eight{p[0][0], p[1][0], p[2][0], p[3][0], p[4][0], p[5][0], p[6][0], p[7][0]};
-    v.y = Eight{p[0][1], p[1][1], p[2][1], p[3][1], p[4][1], p[5][1], p[6][1], p[7][1]};
-    v.z = Eight{p[0][2], p[1][2], p[2][2], p[3][2], p[4][2], p[5][2], p[6][2], p[7][2]};
+    const auto pair = [](const Four& low, const Four& high, Eight& both) {
+        both = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+    };
+    Eight a, b, c, d;
+    pair(p[0], p[4], a);
+    pair(p[1], p[5], b);
+    pair(p[2], p[6], c);
+    pair(p[3], p[7], d);
+    const Eight xy01 = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+    const Eight xy23 = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
+    const Eight z01 = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+    const Eight z23 = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+    v.x = __builtin_shufflevector(xy01, xy23, 0, 1, 8, 9, 4, 5, 12, 13);
+    v.y = __builtin_shufflevector(xy01, xy23, 2, 3, 10, 11, 6, 7, 14, 15);
+    v.z = __builtin_shufflevector(z01, z23, 0, 1, 8, 9, 4, 5, 12, 13);
 }
 
 /// The same; \p last_words receives the bits of w.
 NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v, EightInts& last_words) {
     transpose(p, v);
-    last_words = EightInts{};
-    for (int i = 0; i < 8; ++i) last_words[i] = bit_cast<FourInts>(p[i])[3];
+    const auto last_of_pair = [](const Four& low, const Four& high, Eight& both) {
+        both = __builtin_shufflevector(low, high, 2, 3, 2, 3, 6, 7, 6, 7);
+    };
+    Eight a, b, c, d;
+    last_of_pair(p[0], p[4], a);
+    last_of_pair(p[1], p[5], b);
+    last_of_pair(p[2], p[6], c);
+    last_of_pair(p[3], p[7], d);
+    const Eight w01 = __builtin_shufflevector(a, b, 1, 9, 1, 9, 5, 13, 5, 13);
+    const Eight w23 = __builtin_shufflevector(c, d, 1, 9, 1, 9, 5, 13, 5, 13);
+    const Eight w = __builtin_shufflevector(w01, w23, 0, 1, 8, 9, 4, 5, 12, 13);
+    std::memcpy(&last_words, &w, sizeof last_words);
 }
 
 /// The inverse transposition: to[i] = (x, y, z, 0) of lane i.
 NEURALMESH_ALWAYS_INLINE void transpose(const EightVectors& v, Four* to) {
+    const Eight zero = {0, 0, 0, 0, 0, 0, 0, 0};
+    const Eight xy_low = __builtin_shufflevector(v.x, v.y, 0, 8, 1, 9, 4, 12, 5, 13);
+    const Eight xy_high = __builtin_shufflevector(v.x, v.y, 2, 10, 3, 11, 6, 14, 7, 15);
+    const Eight z_low = __builtin_shufflevector(v.z, zero, 0, 8, 1, 9, 4, 12, 5, 13);
+    const Eight z_high = __builtin_shufflevector(v.z, zero, 2, 10, 3, 11, 6, 14, 7, 15);
+    to[0] = __builtin_shufflevector(xy_low, z_low, 0, 1, 8, 9);
+    to[1] = __builtin_shufflevector(xy_low, z_low, 2, 3, 10, 11);
+    to[2] = __builtin_shufflevector(xy_high, z_high, 0, 1, 8, 9);
+    to[3] = __builtin_shufflevector(xy_high, z_high, 2, 3, 10, 11);
+    to[4] = __builtin_shufflevector(xy_low, z_low, 4, 5, 12, 13);
+    to[5] = __builtin_shufflevector(xy_low, z_low, 6, 7, 14, 15);
+    to[6] = __builtin_shufflevector(xy_high, z_high, 4, 5, 12, 13);
+    to[7] = __builtin_shufflevector(xy_high, z_high, 6, 7, 14, 15);
+}
+#else
+NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v) {
+    for (int i = 0; i < 8; ++i) {
+        v.x[i] = p[i][0];
+        v.y[i] = p[i][1];
+        v.z[i] = p[i][2];
+    }
+}
+
+NEURALMESH_ALWAYS_INLINE void transpose(const Four* p, EightVectors& v, EightInts& last_words) {
+    transpose(p, v);
+    for (int i = 0; i < 8; ++i) last_words[i] = bit_cast<FourInts>(p[i])[3];
+}
+
+NEURALMESH_ALWAYS_INLINE void transpose(const EightVectors& v, Four* to) {
     for (int i = 0; i < 8; ++i) to[i] = Four{v.x[i], v.y[i], v.z[i], 0};
 }
+#endif
 
 }  // namespace neuralmesh
 

@@ -122,7 +122,7 @@ void EightSteps::Kernels::gather_star(EightSteps& p, const Network& network, int
     for (int lane = 0; lane < kLanes; ++lane) {
         const Ring& ring = network.ring((*p.rings_[lane])[i]);
         outer.rings[lane] = &ring;
-        outer.first[lane] = ring.find(p.winners_[lane]) + kSkipped;
+        outer.first[lane] = ring.find_existing(p.winners_[lane]) + kSkipped;
         outer.counts[lane] = ring.valence - 3;
         star.inner[lane] = static_cast<std::int32_t>(ring.open) - 1;
         most = std::max(most, ring.valence - 3);

@@ -83,7 +83,7 @@ NEURALMESH_MULTIVERSIONED RankedVertex scan_eight_cells(const VertexRecord* slot
     do {
         Four points[8];
         for (int i = 0; i < 8; ++i) points[i] = load_raw(&slots[links[i]]);
-        EightVectors p{};  // GCC thinks that it is read
+        EightVectors p;
         EightInts next;
         transpose(points, p, next);
         std::memcpy(links, &next, sizeof links);

@@ -62,7 +62,7 @@ bool is_as_measured(const Network& network, VertexId v, const PerVertex<char>& t
     for (int i = 0; i < ring.face_count(); ++i) {
         if (touched[ring[i]] == 0 || touched[ring.next(i)] == 0) continue;
         const Ring& around = network.ring(ring[i]);
-        if (touched[around.previous(around.find(ring.next(i)))] != 0) return false;
+        if (touched[around.previous(around.find_existing(ring.next(i)))] != 0) return false;
     }
     return true;
 }

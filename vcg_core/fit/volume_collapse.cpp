@@ -132,7 +132,7 @@ private:
 
     Place place(VertexId a, VertexId b) const {
         const Ring& ring = network_.ring(a);
-        const int i = ring.find(b);
+        const int i = ring.find_existing(b);
         const Vector3d first = at(a);
         const Vector3d second = at(b);
         FaceSums sums = around_[a].faces;

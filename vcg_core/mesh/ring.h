@@ -9,6 +9,8 @@
 #include <cstdint>
 
 #include "vcg_core/base/indexed.h"
+#include "vcg_core/base/platform.h"
+#include "vcg_core/base/simd.h"
 
 namespace neuralmesh {
 
@@ -45,6 +47,14 @@ struct alignas(64) Ring {
         for (int i = 0; i < valence; ++i)
             if ((*this)[i] == v) return i;
         return -1;
+    }
+    /// As find(), for a \p v that is in the ring; without unpredictable branches.
+    int find_existing(VertexId v) const {
+        // The padding repeats the ring, so the first hit is the position.
+        unsigned hits = equal_mask(neighbours.data(), v) | equal_mask(neighbours.data() + 4, v) << 4;
+        if (hits == 0)
+            hits = equal_mask(neighbours.data() + 8, v) << 8 | equal_mask(neighbours.data() + 11, v) << 11;
+        return lowest_bit(hits);
     }
     /// The neighbour after position i, cyclically.
     VertexId next(int i) const { return (*this)[i + 1 == valence ? 0 : i + 1]; }

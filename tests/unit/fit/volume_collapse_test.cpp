@@ -148,7 +148,7 @@ TEST(VolumeCollapse, TakesShortEdgesBesideACreaseBeforeFlatOnes) {
     for (const VertexId v : network.vertices())
         if (network.position(v) == vcg::Point3f(0, 0.5F, 0.5F)) middle = v;
     ASSERT_GE(middle, 0);
-    const int along = network.ring(middle).find([&] {
+    const int along = network.ring(middle).find_existing([&] {
         for (const VertexId w : network.ring(middle))
             if (network.position(w)[1] == 0.5F && network.position(w)[2] == 0.5F) return w;
         return VertexId{-1};
