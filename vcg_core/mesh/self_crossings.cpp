@@ -23,19 +23,33 @@ using Corners = std::array<Eigen::Vector3d, 3>;
 
 double largest(const Eigen::Vector3d& v) { return v.cwiseAbs().maxCoeff(); }
 
+using Heights = std::array<double, 3>;
+
 /// The heights of the corners of \p s over the plane of \p t, times a positive number; 0 where rounding could
 /// have made the sign, as of faces that lie apart in one tilted plane.
-std::array<double, 3> heights(const Corners& s, const Corners& t) {
+Heights heights(const Corners& s, const Corners& t) {
     constexpr double kRounding = 1e-14;
     const Eigen::Vector3d a = t[1] - t[0], b = t[2] - t[0], normal = a.cross(b);
     const double rounding = kRounding * largest(a) * largest(b);
-    std::array<double, 3> found;
+    Heights found;
     for (std::size_t k = 0; k < 3; ++k) {
         const Eigen::Vector3d c = s[k] - t[0];
         const double height = normal.dot(c);
         found[k] = std::abs(height) > rounding * largest(c) ? height : 0;
     }
     return found;
+}
+
+/// Whether all corners but \p common are on one side of the plane: then the faces meet there at most.
+bool on_one_side(const Heights& height, std::size_t common) {
+    int above = 0, below = 0, counted = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (k == common) continue;
+        ++counted;
+        above += height[k] > 0 ? 1 : 0;
+        below += height[k] < 0 ? 1 : 0;
+    }
+    return above == counted || below == counted;
 }
 
 /// Whether the line through \p p and \p q, which crosses the plane of the triangle \p t, meets t.
@@ -45,10 +59,9 @@ bool meets(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Corners& t)
     return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
 }
 
-/// Whether an edge of \p s goes through \p t. \param common the corner of s that is one of t, too, and whose
-/// edges do not count; 3 if there is none
-bool pierces(const Corners& s, const Corners& t, std::size_t common) {
-    const std::array<double, 3> height = heights(s, t);
+/// Whether an edge of \p s, whose corners have that \p height over the plane of \p t, goes through t.
+/// \param common the corner of s that is one of t, too, and whose edges do not count; 3 if there is none
+bool pierces(const Corners& s, const Heights& height, const Corners& t, std::size_t common) {
     for (std::size_t k = 0; k < 3; ++k) {
         if (common < 3 && common != k) continue;
         const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
@@ -97,7 +110,9 @@ private:
                 }
         if (common > 1) return false;
         const Corners of_f = corners_of(f), of_g = corners_of(g);
-        return pierces(of_f, of_g, in_s) || pierces(of_g, of_f, in_t);
+        const Heights over_g = heights(of_f, of_g);
+        if (on_one_side(over_g, in_s)) return false;
+        return pierces(of_f, over_g, of_g, in_s) || pierces(of_g, heights(of_g, of_f), of_f, in_t);
     }
 
     const Surface& surface_;
