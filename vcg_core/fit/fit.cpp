@@ -85,7 +85,10 @@ private:
         const double error = fitter_.error_at(at_start_, fitted);
         const double edge = static_cast<double>(mean_edge_length(fitted));
         const double variance = static_cast<double>(fitter_.noise_variance());
-        const double optimism = variance * (learned_share + kCrumpling * variance / (edge * edge));
+        // A learned mesh that follows the steps of the coordinates is near the held-out points by all that
+        // the points of a step share.
+        const double optimism =
+            variance * (learned_share + kCrumpling * variance / (edge * edge)) + fitter_.rounding_variance();
         report_.improved =
             error * error < report_.rms_unfitted * report_.rms_unfitted + optimism || skips("held_out");
         if (report_.improved) report_.rms_fitted = error;

@@ -120,6 +120,37 @@ TEST(Fit, SmoothsNoiseRatherThanChasingIt) {
     EXPECT_LT(error(), 0.006);
 }
 
+// A plane as a depth camera sees it, whose heights have steps of two spacings. A learned mesh that follows
+// the steps is close to held-out points, too, as they lie on the same steps.
+TEST(Fit, SmoothsStepsThatTheMeshFollows) {
+    constexpr double kSlope = 0.5, kStep = 0.01;
+    const auto stepped = [](double x) { return std::round(kSlope * x / kStep) * kStep; };
+    Random random(6);
+    Cloud cloud;
+    for (int i = 0; i < 40000; ++i) {
+        const double x = shapes::signed_unit(random) / 2;
+        cloud.emplace_back(x, shapes::signed_unit(random) / 2, stepped(x));
+    }
+    const TargetSpace target = target_of(cloud);
+    Shape shape = shapes::grid(120, 120);
+    for (vcg::Point3d& p : shape.positions) p[2] = stepped(p[0]);
+    Network network = network_in_frame(target, shape);
+    const auto error = [&] {
+        double sum = 0;
+        for (VertexId v = 0; v < network.slot_count(); ++v) {
+            const vcg::Point3d p = target.frame().outside(network.position(v));
+            sum += std::pow(p[2] - kSlope * p[0], 2);
+        }
+        return std::sqrt(sum / network.vertex_count());
+    };
+    const double before = error();
+    Surveys surveys(target.positions(), 1);
+    FitOptions options;
+    options.noise = &surveys.surface();
+    EXPECT_TRUE(fit(network, target, options).improved);
+    EXPECT_LT(error(), before / 2);
+}
+
 TEST(Fit, IsNotDrawnByOutliers) {
     Cloud cloud = shapes::sphere_cloud(20000);
     Random random(4);
