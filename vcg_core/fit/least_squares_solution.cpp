@@ -112,6 +112,7 @@ PerVertex<FourVectors> PointToPlaneSystem::solutions(const Four& lambdas, const 
     std::array<bool, kLanes> done{};
     for (int i = 0; i < accuracy.iterations; ++i) {
         for (std::size_t k = 0; k < kLanes; ++k) done[k] = done[k] || !(energy[k] > enough[k]);
+        if (std::all_of(done.begin(), done.end(), [](bool lane) { return lane; })) break;
         multiply(lambdas, at.step, team, forces, image);
         const FourSums curvature = dot(at.step, image);
         Four alpha{}, beta{};
@@ -119,7 +120,6 @@ PerVertex<FourVectors> PointToPlaneSystem::solutions(const Four& lambdas, const 
             done[k] = done[k] || !(curvature[k] > 0);
             if (!done[k]) alpha[k] = static_cast<float>(energy[k] / curvature[k]);
         }
-        if (std::all_of(done.begin(), done.end(), [](bool lane) { return lane; })) break;
         for_rows([&](VertexId v) {
             at.u[v] += alpha * at.step[v];
             at.residual[v] += -alpha * image[v];
