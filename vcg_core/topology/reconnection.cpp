@@ -35,8 +35,9 @@ constexpr float kLeastShare = 0.4F, kLeastGain = 8;
 /// A membrane that more others face is left alone: points that fill space, as leaves do, make membranes all
 /// around, and any surface in their place is as wrong.
 constexpr std::size_t kMostFacing = 8;
-/// What a search may cost: so many faces looked at for each face of the mesh. Small meshes from a tetrahedron
-/// are full of membranes: up to 90,000 are looked at where there are 600 to 6,000.
+/// What a search may cost: so many faces looked at for each face of the mesh. In groups, for so many faces at
+/// least: small meshes from a tetrahedron are full of membranes, and up to 90,000 faces are looked at where
+/// there are 600 to 6,000.
 constexpr std::int64_t kVisitsPerFace = 8, kFewestFaces = 12000;
 /// Candidates between two looks at the budget and the progress. A number that depends on the threads would
 /// let them change the result.
@@ -50,7 +51,8 @@ using Group = std::vector<int>;
 class Search {
 public:
     Search(const Network& network, const Surface& surface, const FaceSignals& support,
-           const std::vector<Membrane>& membranes, bool handles, ThreadTeam& team, Progress& progress);
+           const std::vector<Membrane>& membranes, bool handles, bool in_groups, ThreadTeam& team,
+           Progress& progress);
 
     /// Every certain membrane, and every two that face each other and are no clutter.
     std::vector<Group> candidates();
@@ -80,6 +82,7 @@ private:
     FaceTree tree_;
     const FaceSignals& support_;
     bool handles_;  ///< joints may make some
+    std::int64_t most_visits_;
     ThreadTeam& team_;
     Progress& progress_;
     float edge_;
@@ -90,12 +93,15 @@ private:
 };
 
 Search::Search(const Network& network, const Surface& surface, const FaceSignals& support,
-               const std::vector<Membrane>& membranes, bool handles, ThreadTeam& team, Progress& progress)
+               const std::vector<Membrane>& membranes, bool handles, bool in_groups, ThreadTeam& team,
+               Progress& progress)
     : network_(network),
       surface_(surface),
       tree_(surface, team),
       support_(support),
       handles_(handles),
+      most_visits_(kVisitsPerFace *
+                   std::max<std::int64_t>(surface.face_count(), in_groups ? kFewestFaces : 0)),
       team_(team),
       progress_(progress),
       edge_(mean_edge_length(surface)),
@@ -108,9 +114,8 @@ Search::Search(const Network& network, const Surface& surface, const FaceSignals
 
 template <class Found, class Find>
 std::vector<Found> Search::collect(int count, const Find& find) {
-    const std::int64_t most = kVisitsPerFace * std::max<std::int64_t>(surface_.face_count(), kFewestFaces);
     std::vector<Found> all;
-    for (int begin = 0; begin < count && !stopped_ && visits_ < most; begin += kBetweenLooks) {
+    for (int begin = 0; begin < count && !stopped_ && visits_ < most_visits_; begin += kBetweenLooks) {
         const int some = std::min(kBetweenLooks, count - begin);
         for (Found& found : parallel_collect<Found>(
                  some, 1, team_, [&](int i, std::vector<Found>&part) { find(begin + i, part); }))
@@ -291,7 +296,7 @@ std::vector<Reconnection> find_reconnections(const Network& network, const Surfa
                                              const std::vector<Membrane>& membranes, bool handles,
                                              bool in_groups, ThreadTeam& team, Progress& progress) {
     if (membranes.empty()) return {};
-    Search search(network, surface, support, membranes, handles, team, progress);
+    Search search(network, surface, support, membranes, handles, in_groups, team, progress);
     std::vector<Group> groups = search.candidates();
     if (in_groups && !skips("membrane_groups"))
         for (Group& group : with_smaller(membrane_groups(surface, membranes, search.edge(), kMostOfGroup)))
