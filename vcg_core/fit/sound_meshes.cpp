@@ -17,7 +17,7 @@ namespace neuralmesh {
 namespace {
 
 constexpr int kRounds = 10;
-constexpr float kLongestMove = 1;  ///< of a vertex, in mean edge lengths
+constexpr float kLongestMove = 1;  ///< of a vertex, in mean lengths of its edges
 constexpr int kRestoredRings = 6;  ///< around self-crossings that remain; they get their old positions back
 constexpr int kSweeps = 2;         ///< of smoothing per round
 constexpr int kMaxPairs = 100;     ///< of overlapping face boxes per face; a smooth surface has six
@@ -59,12 +59,15 @@ void smooth(const Network& network, const std::vector<SelfCrossing>& crossings, 
     }
 }
 
-/// Shortens the moves from \p start to \p positions to at most \p length.
-void limit_moves(const PerVertex<Vector3>& start, float length, PerVertex<Vector3>& positions) {
-    for (VertexId v = 0; v < start.size(); ++v) {
+/// Shortens the moves from \p start to \p positions to kLongestMove.
+void limit_moves(const Network& network, const PerVertex<Vector3>& start, PerVertex<Vector3>& positions) {
+    for (const VertexId v : network.vertices()) {
         const Vector3 move = positions[v] - start[v];
-        const float norm = move.norm();
-        if (norm > length) positions[v] = start[v] + (length / norm) * move;
+        if (move.isZero()) continue;
+        float edges = 0;
+        for (const VertexId u : network.ring(v)) edges += (start[u] - start[v]).norm();
+        const float longest = kLongestMove * edges / static_cast<float>(network.ring(v).valence);
+        if (move.norm() > longest) positions[v] = start[v] + (longest / move.norm()) * move;
     }
 }
 
@@ -122,14 +125,13 @@ std::optional<std::vector<SelfCrossing>> untangle(Network& network, ThreadTeam& 
     std::int64_t pairs = 0;
     std::vector<SelfCrossing> at_start = self_crossings(surface, team, &pairs);
     if (at_start.empty() || pairs > std::int64_t{kMaxPairs} * surface.face_count()) return at_start;
-    const float max_move = kLongestMove * mean_edge_length(surface);
     std::vector<SelfCrossing> crossings = at_start;
     for (int round = 0; round < kRounds && !crossings.empty(); ++round) {
         if (stopped(round + 1)) return std::nullopt;
         const Surface before = surface;
         const int rings = std::min(1 + round / 2, kMaxRings);
         for (int sweep = 0; sweep < kSweeps; ++sweep) smooth(network, crossings, rings, surface.positions);
-        limit_moves(start, max_move, surface.positions);
+        limit_moves(network, start, surface.positions);
         crossings = update_self_crossings(surface, before, crossings, team);
     }
     if (!crossings.empty()) {

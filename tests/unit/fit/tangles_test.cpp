@@ -62,6 +62,19 @@ TEST(Untangle, SmoothsOutACrumpledCap) {
     EXPECT_LT(moved, 200) << "vertices far from the cap do not move";
 }
 
+TEST(Untangle, MovesVerticesAsFarAsTheirOwnEdgesAreLong) {
+    // The crumpled cap beside a ball of short edges, of which most edges are.
+    const Network crumpled = crumpled_sphere(0.13);
+    Shape shape = shapes::scaled(shapes::icosphere(3), 10);
+    for (std::size_t v = 0; v < shape.positions.size(); ++v)
+        if (shape.positions[v][2] > 8)
+            shape.positions[v] = vcg::Point3d::Construct(crumpled.position(static_cast<VertexId>(v)));
+    shapes::append(shape, shapes::scaled(shapes::icosphere(5), 0.5), {20, 0, 0});
+    Network network = referee::network_of(shape);
+    ASSERT_FALSE(cut_faces(network).empty());
+    EXPECT_TRUE(smoothed_out(network, 1).empty());
+}
+
 TEST(Untangle, SmoothsOutARimThatCutsItself) {
     Network network = referee::network_of(shapes::grid(8, 8));
     // A boundary edge is drawn inwards, one end above the sheet and the other below.
