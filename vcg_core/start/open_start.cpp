@@ -173,8 +173,10 @@ std::vector<int> vertices_of_points(Surveys& surveys, const Sheet& sheet, Thread
     return vertices;
 }
 
-/// Drops the parts of \p sheet that have fewer than \p least points. \return 1 for each point of \p cloud, in
-/// the order given, that belongs to nothing that is kept
+/// Drops the parts of \p sheet that have fewer than \p least points, and those not wider than the usual
+/// radius: however many points they have, such as repeated readings, they are one place beside the rest.
+/// \return for each point, in the order given, 1 if it belongs to nothing that is kept, and 2 if that is such
+/// a place
 std::vector<std::uint8_t> drop_small_parts(Surveys& surveys, long long least, ThreadTeam& team,
                                            Sheet& sheet) {
     const Parts parts = parts_of(sheet.mesh);
@@ -182,10 +184,16 @@ std::vector<std::uint8_t> drop_small_parts(Surveys& surveys, long long least, Th
     std::vector<long long> points(at(parts.count), 0);
     for (const int v : vertices)
         if (v >= 0) ++points[at(parts.of[v])];
-    const auto counts = [&](int part) { return points[at(part)] >= least; };
+    std::vector<Box3f> boxes(points.size());
+    for (VertexId v = 0; v < parts.of.size(); ++v) boxes[at(parts.of[v])].Add(sheet.mesh.positions[at(v)]);
+    const double narrow = surveys.surface().usual_radius();
+    const auto left_out = [&](int part) {
+        const std::uint8_t one_place = static_cast<double>(boxes[at(part)].Diag()) <= narrow ? 2 : 0;
+        return points[at(part)] < least ? std::uint8_t{1} : one_place;
+    };
     std::vector<Triangle>& faces = sheet.mesh.faces;
     faces.erase(std::remove_if(faces.begin(), faces.end(),
-                               [&](const Triangle& f) { return !counts(parts.of[f[0]]); }),
+                               [&](const Triangle& f) { return left_out(parts.of[f[0]]) != 0; }),
                 faces.end());
     std::vector<int> source(sheet.radii.size());
     std::iota(source.begin(), source.end(), 0);
@@ -195,7 +203,8 @@ std::vector<std::uint8_t> drop_small_parts(Surveys& surveys, long long least, Th
     std::vector<std::uint8_t> out(cloud.size(), 0);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const int v = vertices[i];
-        out[cloud.index(static_cast<NearestPoints::Place>(i))] = v < 0 || !counts(parts.of[v]) ? 1 : 0;
+        out[cloud.index(static_cast<NearestPoints::Place>(i))] =
+            v < 0 ? std::uint8_t{1} : left_out(parts.of[v]);
     }
     return out;
 }
@@ -209,7 +218,7 @@ bool misses_surface(Surveys& surveys, const std::vector<std::uint8_t>& out) {
     const SurfaceSurvey& survey = surveys.surface();
     std::size_t count = 0;
     for (NearestPoints::Place place = 0; place < cloud.size(); ++place)
-        if (out[cloud.index(place)] != 0 && !survey.at(cloud.point(place)).clutter) ++count;
+        if (out[cloud.index(place)] == 1 && !survey.at(cloud.point(place)).clutter) ++count;
     const double share = static_cast<double>(count) / static_cast<double>(cloud.size());
     return share > std::max(kMost, survey.clutter());
 }
@@ -252,6 +261,7 @@ void fill_small_holes(Sheet& sheet, const OpenStartOptions& options, OpenStart& 
 }
 
 void set_outliers(std::vector<std::uint8_t> outliers, bool learn, OpenStart& result) {
+    std::replace(outliers.begin(), outliers.end(), 2, 1);
     const auto ignored = static_cast<std::size_t>(std::count(outliers.begin(), outliers.end(), 1));
     result.left_out = static_cast<double>(ignored) / static_cast<double>(outliers.size());
     if (ignored == 0) return;

@@ -100,6 +100,17 @@ TEST(OpenStart, LeavesOutSpecks) {
     EXPECT_TRUE(warns(start, "30 of 5030 points (0.6 %) show no surface"));
 }
 
+TEST(OpenStart, TakesManyReadingsOfOnePlaceForNoPart) {
+    // A tenth of the points, as a disc that is narrower than the others are apart.
+    Cloud cloud = shapes::plane_cloud(5000);
+    for (const vcg::Point3d& p : shapes::plane_cloud(500))
+        cloud.push_back(p * 0.01 + vcg::Point3d(0, 0, 0.6));
+    const OpenStart start = start_of(cloud);
+    EXPECT_EQ(start.components, 1);
+    EXPECT_FALSE(start.misses_surface);
+    EXPECT_EQ(std::count(start.outliers.end() - 500, start.outliers.end(), 1), 500);
+}
+
 TEST(OpenStart, SaysIfItMissesTheNarrowSidesOfASlab) {
     EXPECT_TRUE(start_of(shapes::box_cloud(3000, {1, 0.7, 0.1})).misses_surface);
     EXPECT_FALSE(start_of(shapes::box_cloud(12000, {1, 0.7, 0.1})).misses_surface);
