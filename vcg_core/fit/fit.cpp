@@ -77,7 +77,8 @@ public:
 
 private:
     /// Whether the best mesh is closer to the held-out points than the mesh before the rounds was, along the
-    /// directions of the latter.
+    /// directions of the latter. Where the noise of each place is known, the fit cannot follow it, and
+    /// learned meshes may be near held-out points by what these share: steps of coordinates, flying points.
     void judge(double learned_share, ThreadTeam& team) {
         if (report_.rounds == 0) return;
         const Surface fitted(best_);
@@ -85,12 +86,10 @@ private:
         const double error = fitter_.error_at(at_start_, fitted);
         const double edge = static_cast<double>(mean_edge_length(fitted));
         const double variance = static_cast<double>(fitter_.noise_variance());
-        // A learned mesh that follows the steps of the coordinates is near the held-out points by all that
-        // the points of a step share.
-        const double optimism =
-            variance * (learned_share + kCrumpling * variance / (edge * edge)) + fitter_.rounding_variance();
-        report_.improved =
-            error * error < report_.rms_unfitted * report_.rms_unfitted + optimism || skips("held_out");
+        const double optimism = variance * (learned_share + kCrumpling * variance / (edge * edge));
+        report_.improved = options_.noise != nullptr ||
+                           error * error < report_.rms_unfitted * report_.rms_unfitted + optimism ||
+                           skips("held_out");
         if (report_.improved) report_.rms_fitted = error;
     }
 

@@ -145,11 +145,6 @@ void Fitter::measure_noise(const Surface& surface, const PointsByFace& points) {
     });
 }
 
-double Fitter::rounding_variance() const {
-    const double sum = std::accumulate(rounding_variances_.begin(), rounding_variances_.end(), 0.0);
-    return sum / network_.vertex_count();
-}
-
 /// By Bayes' rule: what gaps of likely length weigh, in points per vertex.
 VertexNoise Fitter::noise_around(const Surface& surface, const PointsByFace& points) const {
     if (options_.noise == nullptr) return {};

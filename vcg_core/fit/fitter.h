@@ -69,9 +69,6 @@ public:
 
     const HeldOut& held_out() const { return held_out_; }
     float noise_variance() const { return noise_variance_; }
-    /// The part of the variance that the points of one step of their coordinates share, in the mean over the
-    /// vertices.
-    double rounding_variance() const;
 
 private:
     PointsByFace assign(const Surface& surface, const std::vector<Hit>& hits);
