@@ -25,9 +25,11 @@ constexpr float kStarReach = 3;
 constexpr int kMostNeighbours = 32;
 /// Circles through the corners of a triangle that are wider than so many radii lie in a gap.
 constexpr float kWidestCircle = 1.5F;
-/// A point belongs to another layer if its normal differs by more than a right angle and a bit, or if it lies
-/// above the tangent plane rather than beside it.
-constexpr float kLeastCosine = -0.2F, kMostAcross = 0.8F;
+/// A point belongs to another layer if its normal differs by more than that of the other side of an edge of
+/// 45 degrees, or if it lies above the tangent plane rather than beside it: on the other side of such an
+/// edge, as far from it, the sine is .92. With a right angle and .8, models cut open had cracks along their
+/// edges.
+constexpr float kLeastCosine = -0.7F, kMostAcross = 0.93F;
 constexpr float kHalfTurn = 2;  // in the measure of angle()
 
 struct Plane {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "tests/unit/support/open_shapes.h"
@@ -66,6 +67,20 @@ TEST(OpenStart, ClosesHolesUpToTheDiameterAskedFor) {
     EXPECT_EQ(start_of(holed.cloud, options).loops, 3);
     options.close_holes_up_to = 0;
     EXPECT_EQ(start_of(holed.cloud, options).loops, 3);
+}
+
+TEST(OpenStart, HasNoCrackAlongASharpEdge) {
+    // Two sides of a wedge of 45 degrees, a square each.
+    Cloud wedge;
+    for (const vcg::Point3d& p : shapes::plane_cloud(4000, 1)) wedge.emplace_back(p[0], p[1], 0);
+    const double half = std::sqrt(0.5);
+    double lowest = 0;
+    for (const vcg::Point3d& p : wedge) lowest = std::min(lowest, p[1]);
+    for (const vcg::Point3d& p : shapes::plane_cloud(4000, 2))
+        wedge.emplace_back(p[0], lowest + half * (p[1] - lowest), half * (p[1] - lowest));
+    const OpenStart start = start_of(wedge);
+    EXPECT_EQ(start.components, 1);
+    EXPECT_EQ(start.loops, 1);
 }
 
 TEST(OpenStart, FollowsTheDensityOfTheCloud) {
