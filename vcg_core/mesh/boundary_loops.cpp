@@ -8,8 +8,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "vcg_core/mesh/triangle.h"
-
 namespace neuralmesh {
 namespace {
 
@@ -130,17 +128,7 @@ void HoleFiller::undo(const Filling& filling) {
         for (const VertexId v : *edge) neighbours(v).pop_back();
 }
 
-bool HoleFiller::fill(const std::vector<VertexId>& loop, float most_width) {
-    const auto at = [this](VertexId v) { return mesh_.positions[static_cast<std::size_t>(v)]; };
-    float length = 0;
-    Point3f area(0, 0, 0);  // no surface that the loop bounds has a smaller one
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-        const Point3f a = at(loop[i]), b = at(loop[(i + 1) % loop.size()]);
-        length += (b - a).Norm();
-        area += (a - at(loop[0])) ^ (b - at(loop[0])) / 2;
-    }
-    const float most_area = most_width * length / 4;
-    if (area.Norm() > most_area) return false;
+bool HoleFiller::fill(const std::vector<VertexId>& loop) {
     Filling filling;
     filling.rest = loop;
     while (filling.rest.size() > 3 && cut_ear(filling)) {
@@ -149,13 +137,11 @@ bool HoleFiller::fill(const std::vector<VertexId>& loop, float most_width) {
     const bool closes = rest.size() == 3 && std::all_of(rest.begin(), rest.end(), [&](VertexId v) {
                             return neighbours(v).size() >= 3;
                         });
-    float sum = 0;
-    if (closes) filling.faces.push_back({rest[0], rest[2], rest[1]});
-    for (const Triangle& f : filling.faces) sum += area_vector(at(f[0]), at(f[1]), at(f[2])).Norm() / 2;
-    if (!closes || sum > most_area) {
+    if (!closes) {
         undo(filling);
         return false;
     }
+    filling.faces.push_back({rest[0], rest[2], rest[1]});
     mesh_.faces.insert(mesh_.faces.end(), filling.faces.begin(), filling.faces.end());
     return true;
 }

@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "vcg_core/mesh/indexed_mesh.h"
@@ -33,10 +32,8 @@ public:
 
     /// Fills the hole that \p loop, one of the loops, bounds by cutting ears, those of the smallest angle
     /// first. The mesh stays a simplicial manifold. \return false, with the mesh unchanged, if that cannot
-    /// be. Nor is a hole filled that is wider than \p most_width across: four areas over the length of the
-    /// loop, the diameter of a round hole and twice the width of a long crack. O(n^2), O(n) for most wide
-    /// holes.
-    bool fill(const std::vector<VertexId>& loop, float most_width = std::numeric_limits<float>::infinity());
+    /// be. O(n^2).
+    bool fill(const std::vector<VertexId>& loop);
 
 private:
     /// A hole being filled: what is left of it, and what was added.

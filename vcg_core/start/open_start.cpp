@@ -36,9 +36,6 @@ constexpr int kHighestValence = 12;  // leaves room for what the reduction and t
 /// The automatic bound for holes that are filled, in radii of the points around; and what is filled in any
 /// case, because it is a gap between points.
 constexpr float kGapRadii = 6, kLeastGapRadii = 4;
-/// Twice the width of a crack that is filled however long it is: the points on its sides have normals that
-/// contradict each other.
-constexpr float kCrackRadii = 1.5F;
 /// A cloud with a larger share of clutter, or of curves, is no surface.
 constexpr double kMostWithoutSurface = 0.5;
 /// So many links between points contradict each other along a cut; fewer do at rough places.
@@ -235,8 +232,8 @@ double diagonal_of(const std::vector<Point3f>& positions) {
     return static_cast<double>(box.Diag());
 }
 
-/// Fills holes up to options.close_holes_up_to, or where that is negative, up to kGapRadii radii; cracks,
-/// which are long but narrow; and all, if none that is left is wider than options.closed_up_to.
+/// Fills holes up to options.close_holes_up_to, or where that is negative, up to kGapRadii radii; and all, if
+/// none that is left is wider than options.closed_up_to.
 void fill_small_holes(Sheet& sheet, const OpenStartOptions& options, OpenStart& result) {
     IndexedMesh<float>& mesh = sheet.mesh;
     const auto loops = boundary_loops(static_cast<int>(mesh.positions.size()), mesh.faces);
@@ -250,7 +247,7 @@ void fill_small_holes(Sheet& sheet, const OpenStartOptions& options, OpenStart& 
         const double most = options.close_holes_up_to >= 0 ? std::max(options.close_holes_up_to, gap)
                                                            : static_cast<double>(kGapRadii * radius);
         const double diameter = diameter_of(loop, mesh.positions);
-        if ((diameter <= most && filler.fill(loop)) || filler.fill(loop, kCrackRadii * radius)) continue;
+        if (diameter <= most && filler.fill(loop)) continue;
         left.push_back(&loop);
         // Half a radius of surface, on both sides, is beyond the last vertices.
         widest = std::max(widest, diameter - static_cast<double>(radius));

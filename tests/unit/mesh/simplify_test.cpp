@@ -154,22 +154,6 @@ TEST(BoundaryLoops, AreFilledToClosedManifolds) {
     }
 }
 
-TEST(BoundaryLoops, AreFilledIfNarrowAcross) {
-    // One end of a tube squeezed to a crack, about 2 long.
-    const Network tube = network_of(shapes::tube(40, 3));
-    IndexedMesh<float> mesh = mesh_of(tube);
-    const auto loops = boundary_loops(tube.slot_count(), mesh.faces);
-    for (const VertexId v : loops[0]) mesh.positions[static_cast<std::size_t>(v)][0] *= 0.01F;
-    HoleFiller filler(mesh, loops, 12);
-    EXPECT_FALSE(filler.fill(loops[1], 0.5F));  // round, of diameter 2
-    EXPECT_EQ(mesh.faces, tube.faces());
-    EXPECT_FALSE(filler.fill(loops[0], 0.01F));
-    EXPECT_EQ(mesh.faces, tube.faces());
-    EXPECT_TRUE(filler.fill(loops[0], 0.5F));
-    EXPECT_TRUE(filler.fill(loops[1], 3));
-    EXPECT_EQ(Network(mesh.positions, mesh.faces).validate(), "");
-}
-
 TEST(BoundaryLoops, StayOpenWhereVerticesWouldGetTooManyNeighbours) {
     const Network tube = network_of(shapes::tube(12, 3));
     IndexedMesh<float> mesh = mesh_of(tube);
