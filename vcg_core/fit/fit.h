@@ -67,7 +67,8 @@ struct FitReport {
 /// - Outliers: the influence of a far point falls with its squared distance. With options.expect_strays
 ///   points that are far for their surroundings have none.
 /// - The result of the rounds is kept only if its error at the held-out points is smaller, allowing for the
-///   noise that learning has followed (see rms_unfitted). Else the mesh stays as it was before them.
+///   noise that learning has followed (see rms_unfitted). Else the mesh stays as it was before them. With
+///   options.noise it is always kept.
 /// - The reduction falls short of options.reduce_to if it was stopped, if no more vertices can go without
 ///   harm, or if there are fewer than 64 points.
 /// - If \p progress asks to stop, the best mesh so far is kept. Fractions run from 0 to 1.
