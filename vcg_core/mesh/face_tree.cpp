@@ -49,7 +49,11 @@ void FaceTree::build(const Surface& surface, ThreadTeam& team) {
         entries[i] = {surface.corner(f, 0) + surface.corner(f, 1) + surface.corner(f, 2), f};
     });
     nodes_.resize(node_count(order_.size()));
-    divide(entries, 0, 0, order_.size());
+    std::vector<Part> parts{{0, 0, order_.size()}};
+    for (const int levels : {1, 1, 1, 1, static_cast<int>(kStack)})
+        parts = parallel_collect<Part>(
+            static_cast<int>(parts.size()), 1, team,
+            [&](int i, std::vector<Part>& below) { divide(entries, parts[i], levels, below); });
     for (int i = 0; i < order_.size(); ++i) order_[i] = entries[i].face;
     set_boxes(surface, team);
 }
@@ -69,8 +73,13 @@ int FaceTree::node_count(int faces) {
     return 2 * (parts + divided) - 1;
 }
 
-/// Makes the node of the faces from \p begin to \p end, and, divided at the median, those below it.
-void FaceTree::divide(Indexed<Entry>& entries, int node, int begin, int end) {
+/// Makes \p levels levels of nodes, divided at the median, and appends the parts of those below.
+void FaceTree::divide(Indexed<Entry>& entries, const Part& part, int levels, std::vector<Part>& below) {
+    const auto [node, begin, end] = part;
+    if (levels == 0) {
+        below.push_back(part);
+        return;
+    }
     nodes_[node] = {Box(), begin, end, -1};
     if (end - begin <= kLeafFaces) return;
     Box box;
@@ -85,8 +94,8 @@ void FaceTree::divide(Indexed<Entry>& entries, int node, int begin, int end) {
                          return x < y || (x == y && a.face < b.face);
                      });
     nodes_[node].right = node + 1 + node_count(middle - begin);
-    divide(entries, node + 1, begin, middle);
-    divide(entries, nodes_[node].right, middle, end);
+    divide(entries, {node + 1, begin, middle}, levels - 1, below);
+    divide(entries, {nodes_[node].right, middle, end}, levels - 1, below);
 }
 
 void FaceTree::set_boxes(const Surface& surface, ThreadTeam& team) {

@@ -81,10 +81,15 @@ private:
         int face;
     };
 
+    /// A node while the tree is built, with its faces.
+    struct Part {
+        int node, begin, end;
+    };
+
     static Box box_of(const Surface& surface, int face);
     void build(const Surface& surface, ThreadTeam& team);
     static int node_count(int faces);
-    void divide(Indexed<Entry>& entries, int node, int begin, int end);
+    void divide(Indexed<Entry>& entries, const Part& part, int levels, std::vector<Part>& below);
     void set_boxes(const Surface& surface, ThreadTeam& team);
     struct Packet;
     template <class Visit>
