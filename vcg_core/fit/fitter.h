@@ -88,7 +88,9 @@ private:
     void redirect_to_survivors(const std::vector<DoneCollapse>& collapses);
     void set_points_aside(int points_per_vertex);
     bool wants_reduction(int vertices, int at_start, Progress& progress) const;
-    bool reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress);
+    /// \param error that of the last solution
+    bool reduce_by_volume(int vertices, double error, Surface& surface, PointsByFace points,
+                          Progress& progress);
     bool reduce_by_costs(int vertices, Surface& surface, Progress& progress);
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
 
