@@ -7,7 +7,6 @@
 
 #include "bytes.h"
 #include "tests/unit/support/referee.h"
-#include "tests/unit/support/shapes.h"
 
 namespace {
 
@@ -18,7 +17,7 @@ using fuzz::fail;
 
 constexpr int kMostVertices = 120;
 
-shapes::Shape start_of(int choice) {
+Shape start_of(int choice) {
     switch (choice) {
         case 0: return shapes::tetrahedron();
         case 1: return shapes::bipyramid(3);
@@ -31,7 +30,7 @@ shapes::Shape start_of(int choice) {
         case 8: return shapes::icosphere(1);
         default: break;
     }
-    shapes::Shape two = shapes::cube();
+    Shape two = shapes::cube();
     shapes::append(two, shapes::grid(3, 3), {3, 0, 0});
     return two;
 }
@@ -79,16 +78,16 @@ void operate(Network& network, Bytes& bytes) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Bytes bytes(data, size);
-    Network network = referee::network_of(start_of(bytes.below(10)));
-    const referee::Census topology = referee::census(network.faces());
+    Network network = network_of(start_of(bytes.below(10)));
+    const Census topology = census(network.faces());
     while (bytes.left() > 0) {
         operate(network, bytes);
         const std::string breach = network.validate();
         if (!breach.empty()) fail(breach);
     }
-    const referee::Census census = referee::census(network.faces());
-    if (!census.breach.empty()) fail("the faces are no manifold: " + census.breach);
-    expect(census.same_topology(topology), "the topology has changed");
+    const Census found = census(network.faces());
+    if (!found.breach.empty()) fail("the faces are no manifold: " + found.breach);
+    expect(found.same_topology(topology), "the topology has changed");
     expect(network.euler_characteristic() == topology.euler(), "the Euler characteristic is miscounted");
     expect(network.component_count() == topology.components, "the components are miscounted");
     expect(network.boundary_loop_count() == topology.loops, "the boundary loops are miscounted");

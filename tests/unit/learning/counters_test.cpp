@@ -2,20 +2,13 @@
 // Copyright the Neural Mesh authors
 
 // Counters, the turn of normals, and saturation.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <vector>
-
+#include "tests/unit/support/prelude.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/learning/growth_schedule.h"
 #include "vcg_core/learning/normal_turn.h"
 #include "vcg_core/learning/utility_counter.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::counters_test {
 
 // The counters with a common scale against eager ones, which are multiplied one by one after every signal.
 
@@ -299,5 +292,4 @@ TEST(Saturation, IsNotReachedWhileTheStartMeshIsThinnedOut) {
     EXPECT_TRUE(period(40));
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::counters_test

@@ -2,13 +2,6 @@
 // Copyright the Neural Mesh authors
 
 // A cloud on one lattice: clearances, spaces, outliers, and the vote of several radii.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <vector>
-
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/small_lattice.h"
 #include "vcg_core/start/clearance.h"
@@ -17,8 +10,7 @@
 #include "vcg_core/start/outliers.h"
 #include "vcg_core/start/region.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::region_test {
 
 using vcg::Point3f;
 
@@ -172,10 +164,6 @@ std::vector<Point3f> sphere(int count, float radius, const Point3f& centre, std:
     return points;
 }
 
-void append(std::vector<Point3f>& points, const std::vector<Point3f>& more) {
-    points.insert(points.end(), more.begin(), more.end());
-}
-
 /// A sphere of radius 0.5 with 20,000 points, which is in one piece at level 4, and \p others.
 struct Examined {
     explicit Examined(const std::vector<Point3f>& others)
@@ -202,7 +190,7 @@ struct Examined {
 
 private:
     static Region with(const std::vector<Point3f>& others, std::vector<Point3f>& points) {
-        append(points, others);
+        points.insert(points.end(), others.begin(), others.end());
         const vcg::Box3f box(Point3f(-1, -1, -1), Point3f(1, 1, 1));
         return examine(points, box, 0.04F);
     }
@@ -284,5 +272,4 @@ TEST(LatticeSurvey, PrefersAFinerLatticeThatIsNotUncertain) {
     EXPECT_TRUE(is_better(other, first, false));
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::region_test

@@ -2,30 +2,17 @@
 // Copyright the Neural Mesh authors
 
 // Whole runs on what comes out of sensors: one layer, towards the sensor, smooth where the points are noisy.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
 #include "tests/unit/support/crumpled.h"
 #include "tests/unit/support/depth_camera.h"
 #include "tests/unit/support/runs.h"
-#include "tests/unit/support/soundness.h"
-#include "vcg_core/mesh/self_crossings.h"
-#include "vcg_core/reconstruct.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::raw_scans_test {
 
-using shapes::Cloud;
 using vcg::Point3d;
 
 NeuralMesh learn(const Cloud& cloud, int vertices) {
-    const Settings settings = runs::with_target(vertices);
-    const NeuralMesh mesh = runs::learn(cloud, settings);
-    soundness::expect_exact(mesh, settings);
+    const Settings settings = with_target(vertices);
+    const NeuralMesh mesh = learn_exactly(cloud, settings);
     return mesh;
 }
 
@@ -37,7 +24,7 @@ struct Figures {
 
 Figures figures_of(const NeuralMesh& mesh, const Point3d& camera = {0, 0, 0}) {
     std::vector<double> angles;
-    const auto [all, facing] = referee::areas_of(mesh, [&](const Point3d& area, const Point3d& middle) {
+    const auto [all, facing] = areas_of(mesh, [&](const Point3d& area, const Point3d& middle) {
         if (area.Norm() > 0) angles.push_back(sensors::angle_to_scene(middle, area / area.Norm()));
         return area * (middle - camera) < 0;
     });
@@ -52,7 +39,7 @@ TEST(RawScans, ADepthFrameIsOneLayerThatFacesTheCamera) {
         const NeuralMesh mesh = learn(sensors::depth_frame(200), vertices);
         EXPECT_LE(mesh.report.genus, 1) << vertices;
         EXPECT_GE(mesh.report.boundary_loops, 1) << vertices;
-        EXPECT_TRUE(cut_faces(referee::network_of({mesh.positions, mesh.faces})).empty()) << vertices;
+        EXPECT_TRUE(cut_faces(network_of({mesh.positions, mesh.faces})).empty()) << vertices;
         const Figures figures = figures_of(mesh);
         EXPECT_GT(figures.facing, 0.9) << vertices;
         // More vertices do not follow the noise, whose slopes between neighbouring points are 60 degrees.
@@ -73,9 +60,8 @@ TEST(RawScans, AFrameFacesItsCameraInTheCoordinatesOfARoom) {
 TEST(RawScans, TheStepsOfDepthsAreNoSurface) {
     for (const int vertices : {1500, 6000}) {
         const NeuralMesh mesh = learn(sensors::frame_of_steps(240), vertices);
-        EXPECT_EQ(mesh.report.genus, 0) << vertices;
-        EXPECT_EQ(mesh.report.boundary_loops, 1) << vertices;
-        const auto [all, steep] = referee::areas_of(mesh, [](const Point3d& area, const auto&) {
+        EXPECT_EQ(topology_of(mesh), kDisc) << vertices;
+        const auto [all, steep] = areas_of(mesh, [](const Point3d& area, const auto&) {
             return std::abs(area * sensors::kNormalOfSteps) < 0.95 * area.Norm();  // 18 degrees
         });
         EXPECT_LT(steep / all, 0.02) << vertices;
@@ -86,9 +72,9 @@ TEST(RawScans, TreesAreLeftOutAndTheGroundIsOneSheet) {
     const Cloud cloud = sensors::aerial_scan(40000, 30);
     const NeuralMesh mesh = learn(cloud, 3000);
     EXPECT_EQ(mesh.report.genus, 0);
-    EXPECT_TRUE(soundness::has_warning(mesh, "show no surface"));
+    EXPECT_TRUE(has_warning(mesh, "show no surface"));
     int above = 0, down = 0;
-    for (const Triangle& f : mesh.faces) down += referee::area_of(mesh, f)[2] < 0 ? 1 : 0;
+    for (const Triangle& f : mesh.faces) down += area_of(mesh, f)[2] < 0 ? 1 : 0;
     for (const Point3d& p : mesh.positions)
         above += p[2] - std::sin(p[0] / 6) - std::cos(p[1] / 5) > sensors::kTree / 3 ? 1 : 0;
     EXPECT_LT(down, static_cast<int>(mesh.faces.size()) / 50);
@@ -101,8 +87,7 @@ TEST(RawScans, PointsAtSeveralHeightsDoNotFoldASheet) {
     Random random(1);
     Cloud cloud;
     for (int i = 0; i < 30000; ++i) {
-        const double x = kSize * static_cast<double>(random.unit()),
-                     y = kSize * static_cast<double>(random.unit());
+        const double x = kSize * shapes::unit(random), y = kSize * shapes::unit(random);
         const double height = static_cast<double>(2 * random.unit() - 1);
         const bool wood = x > kSize / 2;
         cloud.emplace_back(x, y,
@@ -124,13 +109,11 @@ TEST(RawScans, LinesDenserAlongThanAcrossAreOneSheet) {
         Random random(1);
         Cloud cloud;
         for (int i = 0; i < kLines * kLines * density; ++i) {
-            const double x = static_cast<double>(random.unit()), y = static_cast<double>(i % kLines) / kLines;
+            const double x = shapes::unit(random), y = static_cast<double>(i % kLines) / kLines;
             cloud.emplace_back(x, y, 0.3 * x * (1 - x) * (1 + y));
         }
         const NeuralMesh mesh = learn(cloud, 1000);
-        EXPECT_EQ(mesh.report.components, 1) << density;
-        EXPECT_EQ(mesh.report.boundary_loops, 1) << density;
-        EXPECT_EQ(mesh.report.genus, 0) << density;
+        EXPECT_EQ(topology_of(mesh), kDisc) << density;
     }
 }
 
@@ -140,5 +123,4 @@ TEST(RawScans, APointAtTheSensorIsNotLearned) {
     for (const Point3d& p : learn(cloud, 1500).positions) EXPECT_GT(p[2], 0.5);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::raw_scans_test
