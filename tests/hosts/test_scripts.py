@@ -2,13 +2,10 @@
 # Copyright the Neural Mesh authors
 
 """The example scripts, up to date and run in meshlabserver 2020.09, where vcglib checks the results; the page of parameters;
-the Python of the first page."""
+the Python of the first page; the demo, with and without a cloud that MeshLab reads."""
 
-import os
 import re
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import example_scripts
@@ -17,6 +14,7 @@ import meshlabserver
 from check_mesh import check_mesh
 import numpy as np
 import parameters_page
+import programs
 import pytest
 
 NAMES = sorted(example_scripts.EXAMPLES)
@@ -42,16 +40,15 @@ def test_the_page_of_parameters_agrees_with_the_tables(build):
 def test_the_python_of_the_first_page_runs(build, site, model, tmp_path, number):
     shutil.copy(model("sphere")[0], tmp_path / "cloud.ply")
     np.savetxt(tmp_path / "cloud.xyz", library_clouds.directions(20_000, 1))
-    done = subprocess.run([sys.executable, "-c", PYTHON[number]], cwd=tmp_path, env=dict(os.environ, PYTHONPATH=str(site)),
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-    assert done.returncode == 0, done.stdout
+    done = programs.python(site, "-c", PYTHON[number], cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
     found = check_mesh(tmp_path / "mesh.ply")
     assert found["vertices"] == 5000 and found["watertight"]
     assert found["quality"] and (number == 0 or done.stdout.startswith("5000 0 "))
 
 
 def test_a_script_with_an_unknown_parameter_is_not_written(build, tmp_path):
-    with pytest.raises(Exception, match="write_mlx"):
+    with pytest.raises(meshlabserver.ServerError, match="target_vertexes"):
         meshlabserver.write_script(build, tmp_path / "wrong.mlx", target_vertexes=5)
 
 
@@ -83,3 +80,22 @@ def test_the_script_of_counters_selects_the_creases(build, server, model, tmp_pa
     found = check_mesh(tmp_path / "out.ply")
     assert report["stop_reason"] == 0 and found["quality"]
     assert 0 < found["selected"] == report["feature_vertices"] < report["vertices"] == found["vertices"]
+
+
+def demo(build, *words):
+    """The finished process, run by Debian's Python as in run.sh."""
+    return programs.run("/usr/bin/python3", Path(__file__).with_name("demo.py"), "--build", build, *words, timeout=300)
+
+
+def test_a_cloud_becomes_a_mesh_and_a_picture(build, model, tmp_path):
+    done = demo(build, "--cloud", model("sphere")[0], "--vertices", 500, "--out", tmp_path / "out" / "ball.ply")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert check_mesh(tmp_path / "out" / "ball.ply")["vertices"] == 500
+    assert (tmp_path / "out" / "ball.png").exists()
+    assert "996, closed, genus 0" in done.stdout
+
+
+def test_a_format_that_meshlab_cannot_read_is_reported(build, tmp_path):
+    (tmp_path / "cloud.las").write_text("LASF")
+    done = demo(build, "--cloud", tmp_path / "cloud.las", "--vertices", 500, "--out", tmp_path / "ball.ply")
+    assert done.returncode == 1 and "made no mesh of" in done.stderr and "Traceback" not in done.stderr
