@@ -196,21 +196,13 @@ private:
     }
 };
 
-TEST(Outliers, OfASurfaceAloneThereAreNone) { EXPECT_TRUE(Examined({}).outliers().empty()); }
-
-TEST(Outliers, AreIsolatedPointsOutside) {
-    EXPECT_EQ(Examined({{0.8F, 0, 0}, {0, 0, -0.9F}}).outliers(), (std::vector<int>{1, 1}));
-}
-
-TEST(Outliers, ArePointsOutsideTheLattice) {
-    EXPECT_EQ(Examined({{3, 0, 0}, {0, -1e20F, 0}}).outliers(), (std::vector<int>{1, 1}));
-}
-
-TEST(Outliers, ArePointsDeepInside) {
-    EXPECT_EQ(Examined({{0, 0, 0}, {0.2F, 0, 0}}).outliers(), (std::vector<int>{1, 1}));
-}
-
-TEST(Outliers, AreNotPointsCloseToTheSurface) {
+TEST(Outliers, ArePointsFarFromTheSurface) {
+    EXPECT_TRUE(Examined({}).outliers().empty());
+    using Points = std::vector<Point3f>;
+    for (const Points& far : {Points{{0.8F, 0, 0}, {0, 0, -0.9F}},  // outside
+                              Points{{3, 0, 0}, {0, -1e20F, 0}},    // outside the lattice
+                              Points{{0, 0, 0}, {0.2F, 0, 0}}})     // deep inside
+        EXPECT_EQ(Examined(far).outliers(), (std::vector<int>{1, 1})) << far[0][0];
     EXPECT_TRUE(Examined({{0.52F, 0, 0}, {0, 0.48F, 0}}).outliers().empty());
     // Each is judged on its own: of these the second one is an outlier.
     EXPECT_EQ(Examined({{0.52F, 0, 0}, {0.8F, 0, 0}}).outliers(), (std::vector<int>{0, 1}));
