@@ -112,8 +112,8 @@ def _name_and_parameters(build, filter_name):
     return name, [dict(zip(keys, line.split("\t"))) for line in lines]
 
 
-def write_script(build, path, filter_name="", **values):
-    """A complete script with the defaults of a filter, by its Python name or the reconstruction, and the given values.
+def script(build, filter_name="", **values):
+    """The text of a complete script with the defaults of a filter, by its Python name or the reconstruction, and the given values.
     (meshlabserver aborts on scripts that omit a parameter.)"""
     name, table = _name_and_parameters(build, filter_name)
     lines = ["<!DOCTYPE FilterScript>", "<FilterScript>", f' <filter name="{name}">']
@@ -129,5 +129,9 @@ def write_script(build, path, filter_name="", **values):
         lines.append("  <Param " + " ".join(f'{key}="{text}"' for key, text in attributes.items()) + "/>")
     if values:
         raise ServerError(f"{name} has no parameters {', '.join(values)}.")
-    Path(path).write_text("\n".join([*lines, " </filter>", "</FilterScript>", ""]), encoding="utf-8")
+    return "\n".join([*lines, " </filter>", "</FilterScript>", ""])
+
+
+def write_script(build, path, filter_name="", **values):
+    Path(path).write_text(script(build, filter_name, **values), encoding="utf-8")
     return Path(path)

@@ -8,7 +8,6 @@ import re
 import shutil
 from pathlib import Path
 
-import example_scripts
 import library_clouds
 import meshlabserver
 from check_mesh import check_mesh
@@ -17,23 +16,15 @@ import parameters_page
 import programs
 import pytest
 
-NAMES = sorted(example_scripts.EXAMPLES)
 FIRST_PAGE = Path(__file__).resolve().parents[2] / "README.md"
 PYTHON = re.findall(r"^```python\n(.*?)^```", FIRST_PAGE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 
 
-def test_every_script_agrees_with_the_table_of_parameters(build, tmp_path):
-    found = sorted(path.stem for path in example_scripts.FOLDER.glob("*.mlx"))
-    assert found == NAMES, "run tests/hosts/example_scripts.py"
-    for name in NAMES:
-        fresh = example_scripts.write(build, name, tmp_path / "fresh.mlx")
-        assert (example_scripts.FOLDER / f"{name}.mlx").read_text() == fresh.read_text(), \
-            f"{name}.mlx is out of date: run tests/hosts/example_scripts.py"
-
-
-def test_the_page_of_parameters_agrees_with_the_tables(build):
-    assert parameters_page.PAGE.read_text(encoding="utf-8") == parameters_page.text(build), \
-        "filter_neuralmesh/docs/parameters.md is out of date: run tests/hosts/parameters_page.py"
+def test_the_page_and_the_scripts_agree_with_the_tables_of_parameters(build):
+    texts = parameters_page.texts(build)
+    assert set(texts) == {parameters_page.PAGE, *parameters_page.SCRIPTS.glob("*.mlx")}
+    for path, text in texts.items():
+        assert path.read_text(encoding="utf-8") == text, f"{path} is out of date: run tests/hosts/parameters_page.py"
 
 
 @pytest.mark.parametrize("number", range(2))
@@ -54,7 +45,7 @@ def test_a_script_with_an_unknown_parameter_is_not_written(build, tmp_path):
 
 def test_the_script_with_the_defaults_makes_a_sound_mesh(build, server, model, tmp_path):
     cloud, surface = model("bunny")
-    script = example_scripts.FOLDER / "reconstruct.mlx"
+    script = parameters_page.SCRIPTS / "reconstruct.mlx"
     report = meshlabserver.reconstruct(server, cloud, script, tmp_path / "out.ply")
     found = check_mesh(tmp_path / "out.ply", surface)
     wanted = int(re.search(r'name="target_vertices" value="(\d+)"', script.read_text()).group(1))
@@ -75,7 +66,7 @@ def test_the_script_with_the_defaults_makes_a_sound_mesh(build, server, model, t
 def test_the_script_of_counters_selects_the_creases(build, server, model, tmp_path):
     """Of a layer that is mesh and points at once."""
     surface = model("crossed-cylinders")[1]
-    script = example_scripts.FOLDER / "counters_of_a_mesh.mlx"
+    script = parameters_page.SCRIPTS / "counters_of_a_mesh.mlx"
     report = meshlabserver.reconstruct(server, surface, script, tmp_path / "out.ply")
     found = check_mesh(tmp_path / "out.ply")
     assert report["stop_reason"] == 0 and found["quality"]
