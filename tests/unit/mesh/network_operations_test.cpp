@@ -184,6 +184,22 @@ TEST(Network, EveryFlipIsExactOrRefused) {
     EXPECT_GT(tally.refused, 1000);
 }
 
+TEST(Network, OperationsOnAFreeIdAreRefused) {
+    Network network = network_of(shapes::icosphere(1));
+    constexpr VertexId kGone = 0;
+    network.collapse(kGone, network.ring(kGone)[0]);
+    Tally tally;
+    for (const int count : {0, 1, 3}) try_split(network, kGone, 0, count, tally);
+    for (const VertexId v : network.vertices())
+        for (const auto& [a, b] : {std::pair(kGone, v), std::pair(v, kGone)}) {
+            try_flip(network, a, b, tally);
+            EXPECT_FALSE(network.can_collapse(a, b));
+            EXPECT_THROW(network.collapse(a, b), TopologyError);
+        }
+    EXPECT_EQ(tally.done, 0);
+    EXPECT_EQ(network.validate(), "");
+}
+
 /// Tries the operation at every vertex of the starts. \p by_hand changes the faces and returns whether the
 /// vertices allow that; \p can and \p operation are the network's.
 template <class ByHand>
@@ -236,6 +252,7 @@ TEST(Network, StaysAManifoldOverTenThousandRandomOperations) {
             Random random(static_cast<std::uint64_t>(most));
             for (int step = 0; step < 10000; ++step) {
                 random_operation(network, random, 1, most);
+                if (step % 500 == 499) network.compact();
                 ASSERT_EQ(network.validate(), "") << "at step " << step;
                 ASSERT_EQ(network.euler_characteristic(), start.euler) << step;
                 ASSERT_EQ(topology_of(network), (Topology{start.components, start.genus, start.loops}))

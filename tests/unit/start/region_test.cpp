@@ -105,6 +105,7 @@ TEST(Clearance, SmallComponentsAreSpecks) {
     EXPECT_EQ(small.points_in_specks, 3);
     EXPECT_EQ(small.nodes[lattice.index(2, 2, 3)], 1);
     EXPECT_EQ(small.nodes[lattice.index(8, 8, 8)], 0);
+    EXPECT_EQ(solid_of(lattice, clearance, counts, 1, 10).components, 1) << "of as many points as it takes";
     // They are 6 * sqrt(3) apart: balls of radius 5 have adjacent nodes.
     const Solid large = solid_of(lattice, clearance, counts, kLargestRadius * kLargestRadius, 5);
     EXPECT_EQ(large.components, 1);

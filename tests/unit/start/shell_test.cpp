@@ -188,10 +188,7 @@ TEST(Shell, HollowsAreKept) {
     }
 }
 
-TEST(Shell, BodiesInHollowsAreKept) {
-    const StartMesh mesh = shell(spheres({1, 0.8, 0.5}, 50000));
-    expect_topology(mesh, 3, 0);
-}
+TEST(Shell, BodiesInHollowsAreKept) { expect_topology(shell(spheres({1, 0.8, 0.5}, 50000)), 3, 0); }
 
 TEST(Shell, LayersThatDoNotMeetEncloseNoHollow) {
     // Two views of a sphere, shifted by 5 spacings: in front and behind one layer is before the other.
