@@ -22,8 +22,7 @@ TEST(Reconstruct, GivesTheExactCountAsAClosedOutwardSurface) {
             const int vertices = kCounts[(run + run / 4) % 4];
             ++run;
             SCOPED_TRACE(testing::Message() << cloud.first << ", start " << start << ", " << vertices);
-            const Settings settings = with_target(vertices, start);
-            const NeuralMesh mesh = learn_exactly(cloud.second, settings);
+            const NeuralMesh mesh = learn_exactly(cloud.second, with_target(vertices, start));
             EXPECT_GT(enclosed_volume(mesh), 0);
         }
     }

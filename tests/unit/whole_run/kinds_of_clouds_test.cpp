@@ -282,8 +282,7 @@ Point3d on_torus(Random& random) {
 }
 
 TEST(Sampler, LearnsAnImplicitSurface) {
-    const Settings settings = with_target(1500);
-    const NeuralMesh mesh = learn_exactly(TargetSpace::drawn_by(on_torus, 30000), settings);
+    const NeuralMesh mesh = learn_exactly(TargetSpace::drawn_by(on_torus, 30000), with_target(1500));
     EXPECT_EQ(topology_of(mesh), kRing);
     EXPECT_EQ(mesh.report.outliers, 0);
     for (const Point3d& p : mesh.positions) EXPECT_LT(std::abs(distance_from_torus(p)), 0.01);

@@ -48,7 +48,6 @@ TEST(OpenSurface, FacesTheOriginIfThatIsBesideItElseUp) {
 
 TEST(OpenSurface, IsTheStartOfWallsWithGapsAsWideAsTheyAreThick) {
     const Cloud cloud = open_shapes::tube_with_gap(66000);
-
     const NeuralMesh mesh = learn(cloud, settings_with(1500, kAutomatic));
     EXPECT_EQ(topology_of(mesh), kRing);
     EXPECT_LT(mesh.report.rms_error, 0.1);
@@ -141,8 +140,7 @@ TEST(OpenSurface, OfFewVerticesHasABoundaryAsLongAsThatOfTheCloud) {
 }
 
 TEST(OpenSurface, OfALayerWithFacesEndsWhereTheyEnd) {
-    const Settings settings = settings_with(300, kAutomatic);
-    const NeuralMesh mesh = learn_exactly(target_of(shapes::grid(9, 9)), settings);
+    const NeuralMesh mesh = learn_exactly(target_of(shapes::grid(9, 9)), settings_with(300, kAutomatic));
     EXPECT_EQ(mesh.report.boundary_loops, 1);
 }
 
@@ -205,8 +203,7 @@ Cloud joined_sheets(int side, int points) {
 }
 
 TEST(OpenSurface, OfFewVerticesMayHaveManyHandles) {
-    const Settings settings = settings_with(500, kAutomatic);
-    const NeuralMesh mesh = learn_exactly(joined_sheets(4, 60000), settings);
+    const NeuralMesh mesh = learn_exactly(joined_sheets(4, 60000), settings_with(500, kAutomatic));
     EXPECT_EQ(topology_of(mesh), (Topology{1, 15, 2}));
 }
 
@@ -218,8 +215,7 @@ TEST(OpenSurface, ComesDownToTheVerticesThatItsTopologyNeeds) {
             cloud.push_back(p + vcg::Point3d(3.0 * (i % 5), 3.0 * (i / 5), 0.2 * p[0] * p[1]));
     for (const int vertices : {300, 120, 80, 70, 60}) {
         SCOPED_TRACE(vertices);
-        const Settings settings = settings_with(vertices, kOpenSurface);
-        const NeuralMesh mesh = learn_exactly(cloud, settings);
+        const NeuralMesh mesh = learn_exactly(cloud, settings_with(vertices, kOpenSurface));
         EXPECT_EQ(topology_of(mesh), (Topology{20, 0, 20}));
     }
 }

@@ -10,12 +10,6 @@ namespace neuralmesh::raw_scans_test {
 
 using vcg::Point3d;
 
-NeuralMesh learn(const Cloud& cloud, int vertices) {
-    const Settings settings = with_target(vertices);
-    const NeuralMesh mesh = learn_exactly(cloud, settings);
-    return mesh;
-}
-
 /// Of the faces of a mesh.
 struct Figures {
     double median_angle = 0;  ///< to the surface of the scene, in degrees
@@ -36,7 +30,7 @@ Figures figures_of(const NeuralMesh& mesh, const Point3d& camera = {0, 0, 0}) {
 TEST(RawScans, ADepthFrameIsOneLayerThatFacesTheCamera) {
     double least = 90;
     for (const int vertices : {1500, 3000, 6000}) {
-        const NeuralMesh mesh = learn(sensors::depth_frame(200), vertices);
+        const NeuralMesh mesh = learn_exactly(sensors::depth_frame(200), with_target(vertices));
         EXPECT_LE(mesh.report.genus, 1) << vertices;
         EXPECT_GE(mesh.report.boundary_loops, 1) << vertices;
         EXPECT_TRUE(cut_faces(network_of({mesh.positions, mesh.faces})).empty()) << vertices;
@@ -53,13 +47,13 @@ TEST(RawScans, AFrameFacesItsCameraInTheCoordinatesOfARoom) {
     for (const Point3d& camera : {Point3d(10, 40, 5), Point3d(0.2, 0.3, -2)}) {
         Cloud cloud = sensors::depth_frame(200);
         for (Point3d& p : cloud) p += camera;
-        EXPECT_GT(figures_of(learn(cloud, 1500), camera).facing, 0.9) << camera[2];
+        EXPECT_GT(figures_of(learn_exactly(cloud, with_target(1500)), camera).facing, 0.9) << camera[2];
     }
 }
 
 TEST(RawScans, TheStepsOfDepthsAreNoSurface) {
     for (const int vertices : {1500, 6000}) {
-        const NeuralMesh mesh = learn(sensors::frame_of_steps(240), vertices);
+        const NeuralMesh mesh = learn_exactly(sensors::frame_of_steps(240), with_target(vertices));
         EXPECT_EQ(topology_of(mesh), kDisc) << vertices;
         const auto [all, steep] = areas_of(mesh, [](const Point3d& area, const auto&) {
             return std::abs(area * sensors::kNormalOfSteps) < 0.95 * area.Norm();  // 18 degrees
@@ -70,7 +64,7 @@ TEST(RawScans, TheStepsOfDepthsAreNoSurface) {
 
 TEST(RawScans, TreesAreLeftOutAndTheGroundIsOneSheet) {
     const Cloud cloud = sensors::aerial_scan(40000, 30);
-    const NeuralMesh mesh = learn(cloud, 3000);
+    const NeuralMesh mesh = learn_exactly(cloud, with_target(3000));
     EXPECT_EQ(mesh.report.genus, 0);
     EXPECT_TRUE(has_warning(mesh, "show no surface"));
     int above = 0, down = 0;
@@ -93,14 +87,14 @@ TEST(RawScans, PointsAtSeveralHeightsDoNotFoldASheet) {
         cloud.emplace_back(x, y,
                            wood ? kHeight * (std::sin(1.3 * x) * std::sin(1.1 * y) + height) : 0.02 * height);
     }
-    EXPECT_GT(figures_of(learn(cloud, 3000), {0, 0, 1e6}).facing, 0.99);
+    EXPECT_GT(figures_of(learn_exactly(cloud, with_target(3000)), {0, 0, 1e6}).facing, 0.99);
 }
 
 TEST(RawScans, OnePlaneAndCrossingPlanesAreOpen) {
     Cloud crossing = shapes::plane_cloud(20000, 1);
     for (const Point3d& p : shapes::plane_cloud(20000, 2)) crossing.emplace_back(p[0], 0, p[1]);
-    EXPECT_GE(learn(crossing, 1000).report.boundary_loops, 1);
-    EXPECT_EQ(learn(shapes::plane_cloud(20000), 1000).report.boundary_loops, 1);
+    EXPECT_GE(learn_exactly(crossing, with_target(1000)).report.boundary_loops, 1);
+    EXPECT_EQ(learn_exactly(shapes::plane_cloud(20000), with_target(1000)).report.boundary_loops, 1);
 }
 
 TEST(RawScans, LinesDenserAlongThanAcrossAreOneSheet) {
@@ -112,7 +106,7 @@ TEST(RawScans, LinesDenserAlongThanAcrossAreOneSheet) {
             const double x = shapes::unit(random), y = static_cast<double>(i % kLines) / kLines;
             cloud.emplace_back(x, y, 0.3 * x * (1 - x) * (1 + y));
         }
-        const NeuralMesh mesh = learn(cloud, 1000);
+        const NeuralMesh mesh = learn_exactly(cloud, with_target(1000));
         EXPECT_EQ(topology_of(mesh), kDisc) << density;
     }
 }
@@ -120,7 +114,7 @@ TEST(RawScans, LinesDenserAlongThanAcrossAreOneSheet) {
 TEST(RawScans, APointAtTheSensorIsNotLearned) {
     Cloud cloud = sensors::depth_frame(160);
     cloud.emplace_back(0, 0, 0);
-    for (const Point3d& p : learn(cloud, 1500).positions) EXPECT_GT(p[2], 0.5);
+    for (const Point3d& p : learn_exactly(cloud, with_target(1500)).positions) EXPECT_GT(p[2], 0.5);
 }
 
 }  // namespace neuralmesh::raw_scans_test

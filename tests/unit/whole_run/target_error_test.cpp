@@ -32,7 +32,6 @@ double error_of_sphere(const NeuralMesh& mesh) {
 
 TEST(TargetError, IsReachedWithNoise) {
     constexpr double kNoise = 0.01, kError = 0.01;
-
     const NeuralMesh mesh = learn(target_of(shapes::sphere_cloud(20000, kNoise)), settings_for(kError));
     EXPECT_LE(mesh.report.held_out_error, 1.03 * kError);
     EXPECT_GE(mesh.report.held_out_error, 0.8 * kError);

@@ -11,8 +11,7 @@ constexpr double kWall = 0.03;
 
 /// Of exactly that many vertices, whose faces do not go through each other.
 NeuralMesh uncut_mesh(const Cloud& cloud, int vertices) {
-    const Settings settings = with_target(vertices);
-    NeuralMesh mesh = learn_exactly(cloud, settings);
+    NeuralMesh mesh = learn_exactly(cloud, with_target(vertices));
     EXPECT_TRUE(cut_faces(network_of({mesh.positions, mesh.faces})).empty());
     return mesh;
 }
@@ -71,7 +70,6 @@ double distance_from_box(const vcg::Point3d& p, const vcg::Point3d& edges) {
 TEST(ThinWalls, OfNestedBoxesKeepTheirSides) {
     constexpr std::size_t kPoints = 40000;  // four spacings through the wall
     const vcg::Point3d outer(1, 0.8, 0.6), inner(0.92, 0.72, 0.52);
-
     Cloud cloud;
     Random random(4);
     add_box(outer, kPoints, random, cloud);
