@@ -180,7 +180,7 @@ platform() {
 
 demo() {
     need $compile_packages $demo_packages
-    compile filter_neuralmesh_meshlab-2020.09 write_mlx
+    compile filter_neuralmesh_meshlab-2020.09 parameter_table
     local arguments=()
     [ $# -ge 1 ] && arguments+=(--cloud "$(path_of "$1")")
     [ $# -ge 2 ] && arguments+=(--vertices "$2")

@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.."
 command -v gcovr > /dev/null || { echo "gcovr is missing: install it." >&2; exit 2; }
 build=build/coverage
 cmake --preset coverage > /dev/null
-cmake --build --preset coverage --target unit_tests fuzz_network fuzz_settings fuzz_cloud -- --quiet
+cmake --build --preset coverage --target unit_tests fuzz_cloud -- --quiet
 find "$build" -name '*.gcda' -delete
 ctest --preset coverage --label-regex 'unit|whole_run|fuzz' --tests-regex "${1:-.}" --parallel "$(nproc)"
 # Branches that only exceptions take are not counted.

@@ -110,7 +110,7 @@ class Tree:
     def target_of(self, test):
         """What has to be built for a test of ctest."""
         if test.startswith("test_"):
-            return ["plugins", "write_mlx"]
+            return ["plugins", "parameter_table"]
         if test == "Instructions.PerSignal":
             return ["learning_loop"]
         return [] if test in ("include_arrows_test", "portability_test", "names_test") else [test]

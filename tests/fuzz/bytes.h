@@ -23,7 +23,6 @@ public:
     int byte() { return next_ < size_ ? data_[next_++] : 0; }
     /// In [0, n); n from 1 to 256.
     int below(int n) { return byte() % n; }
-    bool flag() { return (byte() & 1) != 0; }
     /// Arbitrary bits, including NaN, infinity and denormal numbers.
     template <class T>
     T raw() {

@@ -7,7 +7,6 @@
 
 #include "bytes.h"
 #include "tests/unit/support/referee.h"
-#include "tests/unit/support/targets.h"
 #include "vcg_core/reconstruct.h"
 
 namespace {
@@ -69,22 +68,22 @@ std::vector<vcg::Point3d> points_of(Bytes& bytes) {
 }
 
 TargetSpace target_of(const std::vector<vcg::Point3d>& points, bool faces) {
-    if (!faces) return targets::target_of(points);
+    if (!faces) return neuralmesh::target_of(points);
     return TargetSpace::triangles(
         points.size() / 3, [&](std::size_t i, int k) { return points[3 * i + static_cast<std::size_t>(k)]; });
 }
 
 void check(const NeuralMesh& mesh, const Settings& settings) {
-    const referee::Census census = referee::census(mesh.faces);
-    if (!census.breach.empty()) fail("the faces are no manifold: " + census.breach);
-    expect(census.vertices == static_cast<int>(mesh.positions.size()), "a vertex without faces");
-    expect(census.loops == mesh.report.boundary_loops, "the boundary is misreported");
-    expect(census.loops == 0 || settings.surface != kClosedSurface, "not closed");
+    const Census found = census(mesh.faces);
+    if (!found.breach.empty()) fail("the faces are no manifold: " + found.breach);
+    expect(found.vertices == static_cast<int>(mesh.positions.size()), "a vertex without faces");
+    expect(found.loops == mesh.report.boundary_loops, "the boundary is misreported");
+    expect(found.loops == 0 || settings.surface != kClosedSurface, "not closed");
     expect(
-        mesh.report.stop_reason != StopReason::target_reached || census.vertices == settings.target_vertices,
+        mesh.report.stop_reason != StopReason::target_reached || found.vertices == settings.target_vertices,
         "not target_vertices vertices");
-    expect(mesh.report.components == census.components &&
-               2 * (mesh.report.components - mesh.report.genus) - census.loops == census.euler(),
+    expect(mesh.report.components == found.components &&
+               2 * (mesh.report.components - mesh.report.genus) - found.loops == found.euler(),
            "the topology is misreported");
     expect(mesh.counters.size() == mesh.positions.size() && mesh.features.size() == mesh.positions.size(),
            "not one counter and one mark for every vertex");

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "bytes.h"
-#include "tests/unit/support/targets.h"
+#include "tests/unit/support/referee.h"
 #include "vcg_core/mesh_counters.h"
 
 namespace {
@@ -15,7 +15,6 @@ namespace {
 using namespace neuralmesh;
 using fuzz::Bytes;
 using fuzz::expect;
-using shapes::Shape;
 
 Shape start_of(Bytes& bytes) {
     switch (bytes.below(6)) {
@@ -80,8 +79,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     while (bytes.left() > 0) change(shape, bytes);
     NoProgress progress;
     try {
-        const TargetSpace target =
-            from_faces ? targets::target_of(shape) : targets::target_of(shape.positions);
+        const TargetSpace target = from_faces ? target_of(shape) : target_of(shape.positions);
         check(mesh_counters(shape, target, settings, progress), shape);
     } catch (const Error& error) {
         fuzz::expect_sentence(error.what());

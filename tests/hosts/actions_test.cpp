@@ -4,13 +4,9 @@
 // Figures, log lines and sentences of the filter, without a host.
 #include "filter_neuralmesh/actions.h"
 
-#include <gtest/gtest.h>
+#include "tests/unit/support/prelude.h"
 
-#include <limits>
-#include <string>
-
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::actions_test {
 
 const Figure& figure(const std::vector<Figure>& all, const std::string& key) {
     for (const Figure& one : all)
@@ -90,5 +86,4 @@ TEST(Actions, StateTheOriginOfTheCoordinates) {
     EXPECT_NE(sentence.find("(10000000, -4999950, 107)"), std::string::npos) << sentence;
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::actions_test

@@ -4,7 +4,6 @@
 """Fixtures of the host tests: the build folder, hosts with our plugin, clouds, and the table of parameters."""
 
 import os
-import subprocess
 import sys
 import warnings
 from pathlib import Path
@@ -24,6 +23,7 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 import input_hosts  # noqa: E402
 import meshlabserver  # noqa: E402
 import models  # noqa: E402
+import programs  # noqa: E402
 import python_site  # noqa: E402
 
 PYTHON_NAME = input_hosts.PYTHON_NAME
@@ -65,10 +65,16 @@ def write_points(path, points, faces=()):
     return Path(path)
 
 
+@pytest.fixture(scope="module")
+def first_of():
+    """What a file keeps of the first host, by input."""
+    return {}
+
+
 @pytest.fixture(scope="session")
 def build():
     folder = Path(os.environ.get("NEURALMESH_BUILD") or ROOT / "build")
-    assert (folder / "tests" / "write_mlx").exists(), f"{folder} is not built; './run.sh test' builds it."
+    assert (folder / "tests" / "parameter_table").exists(), f"{folder} is not built; './run.sh test' builds it."
     return folder
 
 
@@ -88,9 +94,8 @@ def pymeshlab(build):
 
 def make_packages(build, out, **environment):
     """`package.py`, as run.sh calls it, but without libraries for other systems. Returns what it printed."""
-    return subprocess.run(["/usr/bin/python3", str(ROOT / "packaging/package.py"), "--plugins", str(build / "plugins"),
-                           "--libraries", str(out / "none"), "--out", str(out)], check=True, stdout=subprocess.PIPE, text=True,
-                          env=dict(os.environ, **environment)).stdout
+    return programs.output_of("/usr/bin/python3", ROOT / "packaging/package.py", "--plugins", build / "plugins",
+                              "--libraries", out / "none", "--out", out, env=dict(os.environ, **environment))
 
 
 def the_file(folder, pattern):
@@ -111,8 +116,8 @@ def dist(build, tmp_path_factory):
 def installed(dist, tmp_path_factory):
     """The folder into which pip has installed the wheel, to be searched beside this environment's pymeshlab."""
     folder = tmp_path_factory.mktemp("site")
-    subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target",
-                    str(folder), str(the_file(dist, "*.whl"))], check=True)
+    programs.output_of(sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target", folder,
+                       the_file(dist, "*.whl"))
     return folder
 
 

@@ -116,6 +116,17 @@ def ball_mesh():
     return vertices, [tuple(int(v) for v in face) for face in faces]
 
 
+def spoilt_balls():
+    """The corners and faces of a ball, and what the layers of both filters make of them: corners of which one is not finite,
+    the upper half of the faces, corners and faces with two fins."""
+    vertices, faces = ball_mesh()
+    broken = vertices.copy()
+    broken[5, 1] = NAN
+    half = [face for face in faces if vertices[list(face), 2].mean() > 0]
+    finned = np.vstack([vertices, vertices[0] * 1.2, vertices[1] * 1.3])
+    return vertices, faces, broken, half, finned, faces + [(0, 1, len(vertices)), (1, 0, len(vertices) + 1)]
+
+
 def square(count=45):
     u, v = np.meshgrid(np.linspace(0, 1, count), np.linspace(0, 1, count))
     return np.column_stack([u.ravel(), v.ravel(), 0 * u.ravel()])
@@ -171,16 +182,11 @@ def _clouds(random):
 
 
 def _meshes():
-    vertices, faces = ball_mesh()
+    vertices, faces, broken, half, finned, with_fins = spoilt_balls()
     far = np.vstack([vertices, [[50, 50, 50]] * 10])
-    fin = [(0, 1, len(vertices)), (1, 0, len(vertices) + 1)]
-    finned = np.vstack([vertices, vertices[0] * 1.2, vertices[1] * 1.3])
     both = np.vstack([vertices, vertices + [5, 0, 0]])
     shifted = [tuple(v + len(vertices) for v in face) for face in faces]
     ring, ring_faces = quads()
-    half = [face for face in faces if vertices[list(face), 2].mean() > 0]
-    broken = vertices.copy()
-    broken[5, 1] = NAN
     ball_of_faces = functools.partial(Input, rms=.14, far=3)  # its vertices are farther apart than the balls' points
     return {
         "mesh": ball_of_faces(vertices, faces),
@@ -188,7 +194,7 @@ def _meshes():
         "a vertex not finite": Input(broken, faces, refused="1 of the 642 vertices"),
         "unreferenced vertices": ball_of_faces(far, faces),
         "zero-area faces": ball_of_faces(vertices, faces + [(0, 0, 1), (2, 2, 2), (3, 4, 3)]),
-        "non-manifold faces": Input(finned, faces + fin + faces[:20], rms=.25, far=4.6),
+        "non-manifold faces": Input(finned, with_fins + faces[:20], rms=.25, far=4.6),
         "open mesh": Input(vertices, half, volume=None, loops=1, rms=1.2, far=4.8),
         "selected faces": ball_of_faces(both, faces + shifted, parameters={"selected_only": True},
                                         selected_faces=np.arange(2 * len(faces)) >= len(faces)),
@@ -199,7 +205,7 @@ def _meshes():
         "start from an open mesh": Input(vertices, half, volume=None, loops=1, rms=1.2, far=4.8, target=700,
                                          parameters={"start_mesh": 2}),
         "start from too many vertices": Input(vertices, faces, refused="needs 642 vertices", parameters={"start_mesh": 2}),
-        "start from bad faces": Input(finned, faces + fin + faces[:20], refused="faces that repeat others (20)",
+        "start from bad faces": Input(finned, with_fins + faces[:20], refused="faces that repeat others (20)",
                                       target=1000, parameters={"start_mesh": 2}),
         "texture and attributes": ball_of_faces(vertices, faces, textured=True),
     }
@@ -208,12 +214,7 @@ def _meshes():
 def counted_inputs():
     """name -> Input whose counters are asked for. Those with refused = "" get a value at every vertex of a face."""
     count = functools.partial(Input, filter=COUNTERS, parameters={"select_features": True})
-    vertices, faces = ball_mesh()
-    half = [face for face in faces if vertices[list(face), 2].mean() > 0]
-    broken = vertices.copy()
-    broken[5, 1] = NAN
-    fin = [(0, 1, len(vertices)), (1, 0, len(vertices) + 1)]
-    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    vertices, faces, broken, half, finned, with_fins = spoilt_balls()
     far = np.vstack([[[50, 50, 50]] * 10, vertices])
     moved_faces = [tuple(v + 10 for v in face) for face in faces]
     return {
@@ -231,8 +232,7 @@ def counted_inputs():
         "texture and attributes": count(vertices, faces, textured=True),
         "zero-area faces": count(vertices, faces + [(0, 0, 1), (2, 2, 2)], refused="faces with a corner twice (2)"),
         "repeated faces": count(vertices, faces + faces[:20], refused="faces that repeat others (20)"),
-        "fins": count(np.vstack([vertices, vertices[0] * 1.2, vertices[1] * 1.3]), faces + fin,
-                      refused="edges with more than two faces"),
+        "fins": count(finned, with_fins, refused="edges with more than two faces"),
         "georeferenced": count(vertices, faces, matrix=moved(1e7, -1e7, 1e7)),
         "matrix not finite": count(vertices, faces, matrix=np.diag([NAN, 1, 1, 1]), refused="The matrix of the layer"),
     }

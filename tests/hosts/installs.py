@@ -13,7 +13,7 @@ import subprocess
 from pathlib import Path
 
 import library_hosts
-import meshlabserver
+import programs
 from check_mesh import check_mesh
 import pytest
 
@@ -26,10 +26,7 @@ APT = "apt-get -q -q -o Acquire::Check-Valid-Until=false"
 
 
 def run(*command, **options):
-    done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          check=False, errors="replace", **options)
-    assert done.returncode == 0, f"{' '.join(map(str, command))}\n{done.stdout[-4000:]}"
-    return done.stdout
+    return programs.output_of(*command, stderr=subprocess.STDOUT, errors="replace", **options)
 
 
 @pytest.fixture(scope="session")
@@ -49,9 +46,8 @@ def bare_system(suite):
     if not Path(f"{folder}.complete").exists():
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
-        mirror = subprocess.run([str(MIRROR)], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
-        made = subprocess.run(["debootstrap", "--variant=minbase", suite, str(folder), mirror], check=False,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        made = programs.run("debootstrap", "--variant=minbase", suite, folder, programs.output_of(MIRROR).strip(),
+                            stderr=subprocess.STDOUT)
         if made.returncode != 0:
             pytest.skip(f"debootstrap could not make {suite}: {made.stdout.splitlines()[-1]}")
         Path(f"{folder}.complete").touch()

@@ -15,17 +15,31 @@
 #include <common/plugins/plugin_manager.h>
 
 #include <QApplication>
+#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <sstream>
 #include <string>
 
-#include "ball_runs.h"
+#include "tests/memory/allocations.h"
 
 namespace {
 
 namespace allocations = neuralmesh::allocations;
-using ball_runs::truth;
+using allocations::Failure;
+
+/// A thousand points distributed evenly over a sphere.
+void add_ball(CMeshO& mesh) {
+    using Scalar = CMeshO::ScalarType;
+    constexpr int kCount = 1000;
+    for (int i = 0; i < kCount; ++i) {
+        const double z = 1 - (2.0 * i + 1) / kCount, turn = 2.399963229728653 * i, rim = std::sqrt(1 - z * z);
+        vcg::tri::Allocator<CMeshO>::AddVertex(
+            mesh, {Scalar(rim * std::cos(turn)), Scalar(rim * std::sin(turn)), Scalar(z)});
+    }
+}
+
+const char* truth(bool value) { return value ? "true" : "false"; }
 
 /// State of call_back(), which as a plain function can only use globals.
 int calls_until_stop = 1 << 30;
@@ -77,10 +91,10 @@ public:
 
     /// Learns the ball once and prints the outcome. The filter's \p nth allocation fails, counted from 0;
     /// none if -1.
-    void learn(long long nth = -1, ball_runs::Failure failure = ball_runs::Failure::once) {
+    void learn(long long nth = -1, Failure failure = Failure::once) {
         MeshDocument document;
         MeshModel& layer = *document.addNewMesh("", "layer", true);
-        ball_runs::add_ball(layer.cm);
+        add_ball(layer.cm);
         layer.updateBoxAndNormals();
         RichParameterList list = plugin_->initParameterList(action_, document);
         list.setValue("target_vertices", IntValue(100));
@@ -139,6 +153,16 @@ private:
     bool quick_;
 };
 
+/// For every allocation near both ends of a run, which are the adapter's, and for a sample of those during
+/// learning.
+void starve(Host& host) {
+    const long long all = host.allocated;
+    for (long long nth = 0; nth < all; nth += nth < 60 || nth > all - 150 ? 1 : (all - 210) / 20 + 1) {
+        host.learn(nth, Failure::once);
+        host.learn(nth, Failure::from_then_on);
+    }
+}
+
 }  // namespace
 
 extern "C" __attribute__((visibility("default"))) int library_host(int argc, char** argv) {
@@ -147,8 +171,7 @@ extern "C" __attribute__((visibility("default"))) int library_host(int argc, cha
     try {
         Host host(argv[3], argv[4], mode == "memory");
         host.learn();
-        if (mode == "memory")
-            ball_runs::starve(host.allocated, [&](long long nth, auto failure) { host.learn(nth, failure); });
+        if (mode == "memory") starve(host);
         const int all_calls = calls;
         if (mode == "cancel")
             for (calls_until_stop = 1; calls_until_stop <= all_calls; calls_until_stop += 1 + all_calls / 10)

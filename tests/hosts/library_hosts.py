@@ -8,10 +8,9 @@ The libraries are fetched on first use. No root rights are needed: each release'
 import functools
 import json
 import os
-import subprocess
 from pathlib import Path
 
-import meshlabserver
+import programs
 
 CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "neural-mesh"
 SUITES = {"2022.02": "trixie", "2025.07": "sid"}
@@ -23,8 +22,7 @@ def libraries_of(release):
     """The folder of the release's libraries, in the user's cache. RuntimeError says why they cannot be fetched."""
     folder = CACHE / "libraries" / release
     script = Path(__file__).resolve().with_name("fetch_libraries.sh")
-    done = subprocess.run([str(script), release, SUITES[release], str(folder)], stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True, check=False, timeout=900)
+    done = programs.run(script, release, SUITES[release], folder, timeout=900)
     if done.returncode != 0:
         raise RuntimeError(done.stderr.strip())
     return folder / "usr/lib/x86_64-linux-gnu"
@@ -33,20 +31,10 @@ def libraries_of(release):
 def run(build, release, plugin, out, *mode):
     """Starts library_host.cpp; returns the finished process."""
     libraries = libraries_of(release)
-    command = [libraries / "ld-linux-x86-64.so.2", "--library-path", f"{libraries}/meshlab:{libraries}",
-               build / "tests/run_library_host", libraries / "meshlab/libmeshlab-common.so",
-               build / f"tests/liblibrary_host_{release}.so", plugin, out, *mode]
-    return subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          check=False, timeout=300,
-                          env=dict(os.environ, QT_QPA_PLATFORM="offscreen", QT_PLUGIN_PATH=str(libraries / "qt5/plugins")))
-
-
-def run_2020(build, plugin):
-    """Starts library_host_2020.cpp with the libraries of the installed MeshLab 2020.09; returns the finished process."""
-    command = [build / "tests/run_library_host", meshlabserver.LIBRARIES / "libmeshlab-common.so",
-               build / "tests/liblibrary_host_2020.09.so", plugin, "nowhere"]
-    return subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          check=False, timeout=300, env=dict(os.environ, QT_QPA_PLATFORM="offscreen"))
+    return programs.run(libraries / "ld-linux-x86-64.so.2", "--library-path", f"{libraries}/meshlab:{libraries}",
+                        build / "tests/run_library_host", libraries / "meshlab/libmeshlab-common.so",
+                        build / f"tests/liblibrary_host_{release}.so", plugin, out, *mode, timeout=300,
+                        env=dict(os.environ, QT_QPA_PLATFORM="offscreen", QT_PLUGIN_PATH=str(libraries / "qt5/plugins")))
 
 
 def outcomes(done):

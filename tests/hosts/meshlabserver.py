@@ -13,18 +13,20 @@ import shutil
 import subprocess
 from pathlib import Path
 
+import programs
+
 INSTALLED = Path("/usr/bin/meshlabserver")
 LIBRARIES = Path("/usr/lib/x86_64-linux-gnu/meshlab")
 # All file formats of MeshLab, and the filters that tests run before ours.
 NEIGHBOURS = ("libio_*.so", "libfilter_func.so", "libfilter_layer.so", "libfilter_select.so")
-HOST = "meshlab-2020.09"
+HOSTS = ("meshlab-2020.09", "meshlab-2022.02", "meshlab-2025.07", "pymeshlab-2025.7")
 
 
 class ServerError(RuntimeError):
     """meshlabserver failed; the message is its output."""
 
 
-def plugin_path(build, host=HOST):
+def plugin_path(build, host=HOSTS[0]):
     return Path(build) / "plugins" / host / "libfilter_neuralmesh.so"
 
 
@@ -68,8 +70,8 @@ def display():
 def run(folder, *arguments, timeout=600):
     """Runs meshlabserver without a screen. Returns (exit code, all it printed)."""
     variables = dict(environment(folder), DISPLAY=display())
-    done = subprocess.run(["meshlabserver", *map(str, arguments)], env=variables, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, errors="replace", timeout=timeout, check=False)
+    done = programs.run("meshlabserver", *arguments, env=variables, stderr=subprocess.STDOUT, errors="replace",
+                        timeout=timeout)
     return done.returncode, done.stdout
 
 
@@ -98,18 +100,38 @@ def figures(text):
             for key, value in pairs}
 
 
-def parameters(build, filter_name):
-    """The table of a filter's parameters, by its Python name: dictionaries of texts."""
+def parameters(build, filter_name=""):
+    """The table of a filter's parameters, by its Python name or the reconstruction: dictionaries of texts."""
+    return _name_and_parameters(build, filter_name)[1]
+
+
+def _name_and_parameters(build, filter_name):
     keys = ("stage", "advanced", "id", "type", "default", "low", "high", "choices", "label", "help")
-    text = subprocess.run([str(Path(build) / "tests" / "write_mlx"), f"--filter={filter_name}", "--table"], check=True,
-                          stdout=subprocess.PIPE, text=True, encoding="utf-8").stdout
-    return [dict(zip(keys, line.split("\t"))) for line in text.splitlines()]
+    text = programs.output_of(Path(build) / "tests/parameter_table", filter_name, encoding="utf-8")
+    name, *lines = text.splitlines()
+    return name, [dict(zip(keys, line.split("\t"))) for line in lines]
+
+
+def script(build, filter_name="", **values):
+    """The text of a complete script with the defaults of a filter, by its Python name or the reconstruction, and the given values.
+    (meshlabserver aborts on scripts that omit a parameter.)"""
+    name, table = _name_and_parameters(build, filter_name)
+    lines = ["<!DOCTYPE FilterScript>", "<FilterScript>", f' <filter name="{name}">']
+    for row in table:
+        value = values.pop(row["id"], row["default"])
+        attributes = {"type": row["type"], "name": row["id"], "value": str(value).lower() if isinstance(value, bool) else value}
+        if row["type"] == "RichEnum":
+            choices = row["choices"].split("|")
+            attributes["enum_cardinality"] = len(choices)
+            attributes.update((f"enum_val{i}", choice) for i, choice in enumerate(choices))
+        if row["type"] == "RichAbsPerc":
+            attributes.update(min=0, max=1)
+        lines.append("  <Param " + " ".join(f'{key}="{text}"' for key, text in attributes.items()) + "/>")
+    if values:
+        raise ServerError(f"{name} has no parameters {', '.join(values)}.")
+    return "\n".join([*lines, " </filter>", "</FilterScript>", ""])
 
 
 def write_script(build, path, filter_name="", **values):
-    """A complete script with the defaults of a filter, by its Python name or the reconstruction, and the given values."""
-    words = [f"--filter={filter_name}"] if filter_name else []
-    words += [f"{key}={str(value).lower() if isinstance(value, bool) else value}" for key, value in values.items()]
-    done = subprocess.run([str(Path(build) / "tests" / "write_mlx"), *words], check=True, stdout=subprocess.PIPE)
-    Path(path).write_bytes(done.stdout)
+    Path(path).write_text(script(build, filter_name, **values), encoding="utf-8")
     return Path(path)

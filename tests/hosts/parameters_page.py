@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Copyright the Neural Mesh authors
 
-"""Writes filter_neuralmesh/docs/parameters.md from the tables of parameters in vcg_core/settings.cpp.
+"""Writes filter_neuralmesh/docs/parameters.md and the scripts in filter_neuralmesh/scripts/ from the tables of parameters
+in vcg_core/settings.cpp.
 
     tests/hosts/parameters_page.py BUILD_FOLDER
 
@@ -13,7 +14,9 @@ from pathlib import Path
 
 import meshlabserver
 
-PAGE = Path(__file__).resolve().parents[2] / "filter_neuralmesh" / "docs" / "parameters.md"
+FOLDER = Path(__file__).resolve().parents[2] / "filter_neuralmesh"
+PAGE = FOLDER / "docs" / "parameters.md"
+SCRIPTS = FOLDER / "scripts"
 
 HEAD = """# All parameters
 
@@ -41,6 +44,12 @@ STAGES = {
     "output": "Output",
     "run": "The run",
 }
+# Scripts, and their values that differ from the defaults.
+EXAMPLES = {
+    "reconstruct": {},
+    "features": {"target_vertices": 5000, "select_features": True, "vertex_color": 0},
+    "counters_of_a_mesh": {"filter_name": FILTERS[1][1], "select_features": True, "feature_measure": 1},
+}
 LARGEST_INT = 2**31 - 1
 
 
@@ -66,7 +75,7 @@ def cells(row):
     return f"| {mark}`{row['id']}`{mark}<br>{row['label']} | {default} | {values} | {row['help']} |"
 
 
-def text(build):
+def page(build):
     lines = [HEAD]
     for title, filter_name in FILTERS:
         rows = meshlabserver.parameters(build, filter_name)
@@ -79,11 +88,18 @@ def text(build):
     return "\n".join(lines)
 
 
+def texts(build):
+    """{path: what this script writes there}"""
+    scripts = {SCRIPTS / f"{name}.mlx": meshlabserver.script(build, **values) for name, values in EXAMPLES.items()}
+    return {PAGE: page(build), **scripts}
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
-    PAGE.write_text(text(sys.argv[1]), encoding="utf-8")
-    print(PAGE)
+    for path, text in texts(sys.argv[1]).items():
+        path.write_text(text, encoding="utf-8")
+        print(path)
 
 
 if __name__ == "__main__":

@@ -4,15 +4,10 @@
 """A folder to be searched for modules, with the Python package, its plugin and its library, as the wheel installs them,
 without making all packages."""
 
-import os
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "filter_neuralmesh/python/neural_mesh"
-
-
 LIBRARY = "c_api/libneural_mesh.so"  # in the build folder
 
 
@@ -25,9 +20,3 @@ def make(folder, plugin):
     (folder / "neural_mesh-0.dist-info").mkdir(exist_ok=True)
     (folder / "neural_mesh-0.dist-info/METADATA").write_text("Metadata-Version: 2.1\nName: neural-mesh\nVersion: 0\n")
     return folder
-
-
-def run(site, *words, **options):
-    """Runs Python with the modules of `site`."""
-    return subprocess.run([sys.executable, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          check=False, env=dict(os.environ, PYTHONPATH=str(site)), **options)

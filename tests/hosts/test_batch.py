@@ -16,6 +16,7 @@ import time
 from pathlib import Path
 
 import many_clouds
+import programs
 from check_mesh import check_mesh
 import numpy as np
 import psutil
@@ -236,8 +237,7 @@ def alone(batch, few, tmp_path_factory):
 def test_the_same_bytes_with_any_number_of_workers_and_by_the_other_command(installed, batch, few, alone, tmp_path):
     assert batch(few, "--out", tmp_path, "--workers", 3, "--files-per-process", 2, *many_clouds.SETTINGS)[0] == 0
     assert meshes(tmp_path) == alone
-    subprocess.run([sys.executable, "-m", "neural_mesh", str(few / "cloud_0003.ply"), str(tmp_path / "one.ply"),
-                    *many_clouds.SETTINGS], check=True, env=dict(os.environ, PYTHONPATH=str(installed)))
+    programs.python(installed, "-m", "neural_mesh", few / "cloud_0003.ply", tmp_path / "one.ply", *many_clouds.SETTINGS)
     assert (tmp_path / "one.ply").read_bytes() == alone["cloud_0003.ply"]
 
 
@@ -256,16 +256,15 @@ def test_dask_with_two_workers_one_of_them_killed(command, few, alone, tmp_path)
 @FULL
 def test_the_slurm_job_starts_a_cluster(installed, few, alone, tmp_path):
     """With a shell line as a stand-in for Slurm: srun gives a task one core, unless it is told otherwise itself."""
-    programs = tmp_path / "bin"
-    programs.mkdir()
+    folder = tmp_path / "bin"
+    folder.mkdir()
     for name, line in (("srun", '[ "$1" = --cpus-per-task=2 ] && shift && exec "$@"'), ("neural-mesh", f'exec {sys.executable} -m neural_mesh "$@"')):
-        (programs / name).write_text(f"#!/bin/sh\n{line}\n")
-        (programs / name).chmod(0o755)
+        (folder / name).write_text(f"#!/bin/sh\n{line}\n")
+        (folder / name).chmod(0o755)
     environment = dict(os.environ, PYTHONPATH=str(installed), SLURM_CPUS_PER_TASK="2", SLURM_JOB_ID="7",
-                       PATH=f"{programs}:{Path(sys.executable).parent}:{os.environ['PATH']}")
-    job = subprocess.run(["bash", str(ROOT / "filter_neuralmesh/python/batch.slurm"), str(few), str(tmp_path / "out"),
-                           *many_clouds.SETTINGS], env=environment, timeout=TIMEOUT, check=False, cwd=tmp_path,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+                       PATH=f"{folder}:{Path(sys.executable).parent}:{os.environ['PATH']}")
+    job = programs.run("bash", ROOT / "filter_neuralmesh/python/batch.slurm", few, tmp_path / "out", *many_clouds.SETTINGS,
+                       env=environment, timeout=TIMEOUT, cwd=tmp_path, stderr=subprocess.STDOUT)
     assert job.returncode == 0, job.stdout
     assert meshes(tmp_path / "out") == alone
 
@@ -306,8 +305,6 @@ def test_wrong_usage_is_one_sentence_before_any_work(batch, few, tmp_path, words
 def test_what_the_disk_lacks_is_known_before_any_work(installed, few, tmp_path):
     code = ("import shutil, sys\nshutil.disk_usage = lambda path: shutil._ntuple_diskusage(10**9, 10**9, 3000)\n"
             "from neural_mesh.__main__ import main\nsys.exit(main(sys.argv[1:]))")
-    made = subprocess.run([sys.executable, "-c", code, "batch", str(few), "--out", str(tmp_path / "out"),
-                           *many_clouds.SETTINGS], env=dict(os.environ, PYTHONPATH=str(installed)),
-                          stderr=subprocess.PIPE, text=True, check=False)
+    made = programs.python(installed, "-c", code, "batch", few, "--out", tmp_path / "out", *many_clouds.SETTINGS)
     assert made.returncode == 2 and made.stderr.startswith("neural-mesh: The meshes need 1.86e-05 GB"), made.stderr
     assert len(made.stderr.splitlines()) == 1 and not meshes(tmp_path / "out")

@@ -9,8 +9,8 @@ import input_hosts
 import inputs
 import meshlabserver
 import numpy as np
+import programs
 import pytest
-import python_site
 from conftest import FULL, write_points
 from PIL import Image
 
@@ -41,19 +41,13 @@ def result_in(pymeshlab, outcome):
     return mesh.vertex_matrix(), np.round(255 * mesh.vertex_color_matrix()[:, :3]).astype(int)
 
 
-@pytest.fixture(scope="module")
-def first():
-    """The colours in the first host."""
-    return {}
-
-
 @pytest.mark.parametrize("host", input_hosts.HOSTS)
-def test_the_mesh_has_the_colours_of_the_layer(build, server, pymeshlab, first, tmp_path, host):
+def test_the_mesh_has_the_colours_of_the_layer(build, server, pymeshlab, first_of, tmp_path, host):
     outcome = input_hosts.try_out(build, server, pymeshlab, host, painted_ball(), tmp_path)
     assert outcome.unchanged and outcome.report["outliers"] == OUTLIERS
     vertices, colors = result_in(pymeshlab, outcome)
     assert np.abs(colors - waves(vertices)).mean() < 3
-    assert np.array_equal(colors, first.setdefault("colors", colors))
+    assert np.array_equal(colors, first_of.setdefault("colors", colors))
 
 
 def assert_counter_colors(mesh):
@@ -93,7 +87,7 @@ def test_the_example_gives_a_coarse_mesh_the_colours_of_all_points(site, pymeshl
     meshes.add_mesh(pymeshlab.Mesh(points, v_color_matrix=colors))
     meshes.save_current_mesh(str(tmp_path / "cloud.ply"), save_vertex_color=True)
     (tmp_path / "out").mkdir()
-    done = python_site.run(site, EXAMPLE, "cloud.ply", "out/mesh.obj", 300, cwd=tmp_path)
+    done = programs.python(site, EXAMPLE, "cloud.ply", "out/mesh.obj", 300, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     meshes.load_new_mesh(str(tmp_path / "out/mesh.obj"))
     mesh = meshes.current_mesh()

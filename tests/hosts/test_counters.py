@@ -21,12 +21,6 @@ COUNTS = ("vertices", "signals", "outliers", "feature_vertices", "warnings", "st
 MEASURES = ("mean_counter", "seconds")
 
 
-@pytest.fixture(scope="module")
-def first_of():
-    """The result of each input in the first host."""
-    return {}
-
-
 @pytest.mark.parametrize("name, host", in_hosts(COUNTED, ELSEWHERE))
 def test_the_same_values_or_error_message(build, server, pymeshlab, first_of, tmp_path, name, host):
     layer = COUNTED[name]

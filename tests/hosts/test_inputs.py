@@ -20,12 +20,6 @@ ELSEWHERE = ("empty layer", "not finite", "deleted vertices", "selected points",
 COUNTS = ("vertices", "faces", "signals", "splits", "collapses", "genus", "components", "stop_reason")
 
 
-@pytest.fixture(scope="module")
-def first_of():
-    """The result of each input in the first host."""
-    return {}
-
-
 def assert_alike(one, other):
     assert one[0] == other[0], "another result than in the first host"
     if one[1] is not None:

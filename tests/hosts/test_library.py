@@ -5,15 +5,13 @@
 kinds, progress, errors, threads. test_library_files.py has the files of a mesh, test_library_in_c.py has C."""
 
 import functools
-import os
 import re
-import subprocess
-import sys
-import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import inputs
 import library_clouds
 import numpy as np
+import programs
 import pytest
 from conftest import PYTHON_NAME, parameters
 
@@ -244,22 +242,16 @@ except KeyboardInterrupt:
 
 
 def test_ctrl_c_ends_a_run_within_a_second(site):
-    done = subprocess.run([sys.executable, "-c", CTRL_C], env=dict(os.environ, PYTHONPATH=str(site)), check=False,
-                          stderr=subprocess.PIPE, text=True, timeout=30)
+    done = programs.python(site, "-c", CTRL_C, timeout=30)
     assert done.returncode == 0, done.stderr
 
 
 def test_two_threads_at_once_give_the_bytes_of_one(library):
     clouds = [BALL[:1000], library_clouds.box(1000, 1)]
-    alone = [library.reconstruct(points, target_vertices=100) for points in clouds]
-    together = [None, None]
 
-    def learn(index):
-        together[index] = library.reconstruct(clouds[index], target_vertices=100)
+    def learn(points):
+        return library.reconstruct(points, target_vertices=100)
 
-    threads = [threading.Thread(target=learn, args=(index,)) for index in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert all(map(equal, alone, together))
+    alone = [learn(points) for points in clouds]
+    with ThreadPoolExecutor(2) as pool:
+        assert all(map(equal, alone, pool.map(learn, clouds)))

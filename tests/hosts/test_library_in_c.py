@@ -5,9 +5,9 @@
 
 import ctypes
 import re
-import subprocess
 
 import library_clouds
+import programs
 from check_mesh import check_mesh
 from python_site import LIBRARY
 
@@ -16,8 +16,7 @@ BALL = library_clouds.directions(2000, 1)
 
 def example_in_c(build, *words, points):
     text = "".join(" ".join(map(repr, map(float, point))) + "\n" for point in points)
-    return subprocess.run([str(build / "tests/c_example"), *words], input=text, capture_output=True, text=True,
-                          check=False)
+    return programs.run(build / "tests/c_example", *words, input=text)
 
 
 def test_the_example_in_c_makes_a_mesh(build, tmp_path):
@@ -58,8 +57,7 @@ def test_wrong_calls_have_a_status_and_a_sentence(library):
 
 
 def test_only_functions_of_the_header_are_exported(build):
-    names = subprocess.run(["nm", "-D", "--defined-only", str(build / LIBRARY)], check=True, stdout=subprocess.PIPE,
-                           text=True).stdout
+    names = programs.output_of("nm", "-D", "--defined-only", build / LIBRARY)
     exported = set(re.findall(r" T (\w+)@@NEURAL_MESH_1$", names, re.MULTILINE))
     header = (library_clouds.RECORD.parents[2] / "vcg_core/c_api/neural_mesh.h").read_text()
     assert exported == set(re.findall(r"^NEURAL_MESH_API .*?\b(neural_mesh_\w+)\(", header, re.MULTILINE))

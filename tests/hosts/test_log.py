@@ -5,8 +5,8 @@
 
 import inputs
 import meshlabserver
+import programs
 import pytest
-import python_site
 from conftest import PYTHON_NAME, write_points
 
 
@@ -25,7 +25,7 @@ def ball(tmp_path_factory):
 def run(site, tmp_path, script, *words):
     """The standard output of a script."""
     (tmp_path / "script.py").write_text(script)
-    done = python_site.run(site, tmp_path / "script.py", *words)
+    done = programs.python(site, tmp_path / "script.py", *words)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -98,7 +98,7 @@ print(neural_mesh.log(), file=open(sys.argv[2], "w"))
 
 def test_the_messages_are_those_that_a_verbose_mesh_set_prints(site, sheet, tmp_path):
     (tmp_path / "script.py").write_text(AS_PRINTED)
-    done = python_site.run(site, tmp_path / "script.py", sheet, tmp_path / "log")
+    done = programs.python(site, tmp_path / "script.py", sheet, tmp_path / "log")
     printed = done.stdout + done.stderr
     messages = [line.split(": ", 1) for line in (tmp_path / "log").read_text().splitlines()]
     assert done.returncode == 0 and "NeuralMeshWarning" not in printed
@@ -110,7 +110,8 @@ def test_the_messages_are_those_that_a_verbose_mesh_set_prints(site, sheet, tmp_
 
 
 IN_THREADS = BEGIN + """
-from threading import Thread, Barrier
+from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier
 together, found = Barrier(2, timeout=60), {}
 
 def learn(meshes, vertices):
@@ -123,11 +124,9 @@ def learn(meshes, vertices):
 
 warnings.simplefilter("ignore", neural_mesh.NeuralMeshWarning)
 # MeshLab opens a file from the current folder, which it changes for the whole process: not in two threads at once.
-threads = [Thread(target=learn, args=(meshes_with(cloud), vertices)) for cloud, vertices in zip(sys.argv[1:], (100, 110))]
-for thread in threads:
-    thread.start()
-for thread in threads:
-    thread.join()
+sets = [meshes_with(cloud) for cloud in sys.argv[1:]]
+with ThreadPoolExecutor(2) as pool:
+    list(pool.map(learn, sets, (100, 110)))
 for vertices, runs in found.items():
     assert len(runs) == 3 and all((warned > 0) == (vertices == 100) for warned, log in runs)
     assert all(len(log.warnings) == warned and f" {vertices} vertices" in log.notes[0] for warned, log in runs)
@@ -164,7 +163,7 @@ def test_it_reads_a_plugin_that_was_loaded_before(build, site, sheet, tmp_path):
 
 
 def test_the_command_says_warnings_as_sentences(site, sheet, tmp_path):
-    done = python_site.run(site, "-m", "neural_mesh", sheet, tmp_path / "mesh.ply", "target_vertices=100")
+    done = programs.python(site, "-m", "neural_mesh", sheet, tmp_path / "mesh.ply", "target_vertices=100")
     said = done.stderr.splitlines()
     assert done.returncode == 0 and said and all(line.startswith("neural-mesh: ") and line.endswith(".") for line in said)
     assert done.stdout.endswith(f" warnings={len(said)}\n")

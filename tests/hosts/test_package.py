@@ -4,14 +4,13 @@
 """The plugin files: hardened, with no exported symbols but entry points for Qt and Python, and dependent on their host, Qt
 and the compiler's libraries only."""
 
-import subprocess
 from pathlib import Path
 
 import library_hosts
 import meshlabserver
 import pytest
+from programs import output_of
 
-HOSTS = ("meshlab-2020.09", "meshlab-2022.02", "meshlab-2025.07", "pymeshlab-2025.7")
 # The classes that the adapters use; any other undefined symbol without a version would be a missing one of ours.
 MESHLAB_CLASSES = ("FilterPlugin", "GLLogStream", "MeshDocument", "MeshLabApplication", "MeshLabPluginLogger",
                    "MeshModel", "RichBool", "RichEnum", "RichFloat", "RichInt", "RichMesh", "RichParameterList",
@@ -21,11 +20,7 @@ LIBRARIES = ("libmeshlab-common.so", "libQt5Core.so.5", "libQt5Widgets.so.5", "l
 VERSIONS = ("Qt_5", "GLIBCXX_", "CXXABI_", "GCC_", "GLIBC_")
 
 
-def output_of(*command):
-    return subprocess.run([str(word) for word in command], check=True, stdout=subprocess.PIPE, text=True).stdout
-
-
-@pytest.fixture(params=HOSTS)
+@pytest.fixture(params=meshlabserver.HOSTS)
 def host(request):
     return request.param
 
@@ -58,22 +53,6 @@ def test_all_undefined_symbols_are_of_the_host_or_of_libraries(plugin):
             assert symbol.removeprefix("typeinfo for ").split("::")[0] in MESHLAB_CLASSES, symbol
 
 
-def library_of(host):
-    if host == "pymeshlab-2025.7":
-        import pymeshlab
-        return Path(pymeshlab.__file__).parent / "lib" / "libmeshlab-common.so"
-    return meshlabserver.LIBRARIES / "libmeshlab-common.so"
-
-
-@pytest.mark.parametrize("host", ["meshlab-2020.09", "pymeshlab-2025.7"], indirect=True)
-def test_the_hosts_library_has_what_is_missing(plugin, host):
-    """The other hosts are not installed; test_library_hosts.py loads their plugins with immediate binding."""
-    offered = {line.split()[-1].split("@")[0] for line in
-               output_of("nm", "-D", "--defined-only", library_of(host)).splitlines()}
-    missing = {symbol for kind, symbol in undefined(plugin) if kind == "U" and "@" not in symbol} - offered
-    assert not missing
-
-
 def test_it_needs_no_other_library_and_searches_no_folder(plugin, host):
     dynamic = output_of("readelf", "-dW", plugin)
     needed = [line.split("[")[1].rstrip("]") for line in dynamic.splitlines() if "(NEEDED)" in line]
@@ -84,6 +63,7 @@ def test_it_needs_no_other_library_and_searches_no_folder(plugin, host):
 
 
 def test_it_is_hardened(plugin):
+    """Bound at once, so a host that lacks one of its symbols cannot load it."""
     dynamic, segments = output_of("readelf", "-dW", plugin), output_of("readelf", "-lW", plugin)
     assert "BIND_NOW" in dynamic and "TEXTREL" not in dynamic
     assert "GNU_RELRO" in segments

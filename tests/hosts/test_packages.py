@@ -8,7 +8,6 @@ import hashlib
 import io
 import os
 import re
-import subprocess
 import sys
 import tarfile
 import zipfile
@@ -18,6 +17,7 @@ import meshlabserver
 from check_mesh import check_mesh
 import pytest
 from conftest import FULL, make_packages, the_file
+from programs import output_of, python, run
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "packaging"))
@@ -98,13 +98,12 @@ def test_what_the_debian_packages_contain(dist):
     scripts = {f"usr/share/doc/{NAME}/examples/{path.name}" for path in (ROOT / "filter_neuralmesh/scripts").iterdir()}
     for suffix, meshlab, files in (("deb12u1", "2020.09", common | scripts), ("deb13u1", "2022.02", common)):
         path = the_file(dist, f"*{suffix}_amd64.deb")
-        content = subprocess.run(["dpkg-deb", "--fsys-tarfile", str(path)], check=True, stdout=subprocess.PIPE).stdout
+        content = output_of("dpkg-deb", "--fsys-tarfile", path, text=False)
         with tarfile.open(fileobj=io.BytesIO(content)) as archive:
             found = [entry for entry in archive if entry.isfile()]
         assert {entry.name.removeprefix("./") for entry in found} == files
         assert all((entry.uid, entry.gid, entry.mode) == (0, 0, 0o644) for entry in found)
-        control = subprocess.run(["dpkg-deb", "--info", str(path), "control"], check=True, stdout=subprocess.PIPE,
-                                 text=True).stdout
+        control = output_of("dpkg-deb", "--info", path, "control")
         assert f"meshlab (>= {meshlab})" in control and f"Version: {packaging.project_version()}-1~{suffix}" in control
 
 
@@ -122,11 +121,6 @@ def test_what_the_wheel_contains(dist):
     assert {line.split()[1] for line in metadata.splitlines() if line.startswith("Provides-Extra: ")} == {
         "pymeshlab", "dask", "las", "e57"}
     assert f"Version: {version}" in metadata and 'Requires-Dist: pymeshlab ==2025.7.*; extra == "pymeshlab"' in metadata
-
-
-def python(installed, *arguments):
-    return subprocess.run([sys.executable, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                          text=True, check=False, env=dict(os.environ, PYTHONPATH=str(installed)))
 
 
 USE = """
@@ -202,8 +196,7 @@ def test_beside_another_pymeshlab_or_none_there_is_no_filter_but_the_library(ins
         (tmp_path / f"pymeshlab-{other}.dist-info/METADATA").write_text(f"Name: pymeshlab\nVersion: {other}\n")
 
     def done_by(*command):
-        return subprocess.run(["/usr/bin/python3", *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                              check=False, env=dict(os.environ, PYTHONPATH=f"{tmp_path}:{installed}"))
+        return run("/usr/bin/python3", *command, env=dict(os.environ, PYTHONPATH=f"{tmp_path}:{installed}"))
 
     imported = done_by("-c", "import neural_mesh, numpy\n"
                        "points = numpy.random.default_rng(1).normal(size=(500, 3))\n"

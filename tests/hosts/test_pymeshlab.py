@@ -4,12 +4,12 @@
 """pymeshlab: results as a dictionary, errors as exceptions that leave the MeshSet unchanged, and the same mesh as in
 meshlabserver, bit by bit."""
 
-import subprocess
 import sys
 
 import inputs
 import meshlabserver
 import numpy as np
+import programs
 import pytest
 import shapes
 from conftest import CORNERS, PYTHON_NAME, out_of_range, parameters
@@ -90,8 +90,7 @@ pymeshlab.print_filter_parameter_list(sys.argv[2])
 @pytest.mark.parametrize("filter_name", [PYTHON_NAME, inputs.COUNTERS])
 def test_parameters_and_defaults_are_those_of_the_table(build, filter_name):
     plugin = meshlabserver.plugin_path(build, "pymeshlab-2025.7")
-    text = subprocess.run([sys.executable, "-c", LIST_PARAMETERS, str(plugin), filter_name], check=True,
-                          stdout=subprocess.PIPE, text=True).stdout
+    text = programs.output_of(sys.executable, "-c", LIST_PARAMETERS, plugin, filter_name)
     listed = dict(line.strip().split(" : ") for line in text.splitlines() if " : " in line)
     for name, kind, _, _, default in parameters(build, filter_name):
         python_type, python_default = listed.pop(name).split(" = ")

@@ -12,6 +12,7 @@ import subprocess
 import sys
 
 import numpy as np
+import programs
 import pytest
 from conftest import FULL, write_points
 from stream_clouds import FILES, ORIGIN, POINTS, ascii_ply, bench, e57, las, ply
@@ -20,10 +21,7 @@ from stream_clouds import FILES, ORIGIN, POINTS, ascii_ply, bench, e57, las, ply
 @pytest.fixture(scope="module")
 def stream(site):
     """stream(word...) -> the finished process of the command."""
-    def run(*words, **options):
-        return subprocess.run([sys.executable, "-m", "neural_mesh", "stream", *map(str, words)], text=True, check=False,
-                              capture_output=True, env=dict(os.environ, PYTHONPATH=str(site)), **options)
-    return run
+    return lambda *words, **options: programs.python(site, "-m", "neural_mesh", "stream", *words, **options)
 
 
 def last_line(output):

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import library_hosts
 import meshlabserver
+import programs
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -22,10 +23,7 @@ OPTIONS = ("-DMESHLAB_PLUGINS=meshlabplugins/filter_neuralmesh", "-DMESHLAB_BUIL
 
 
 def run(*command):
-    done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          check=False)
-    assert done.returncode == 0, done.stdout[-4000:]
-    return done.stdout
+    return programs.output_of(*command, stderr=subprocess.STDOUT)
 
 
 @pytest.fixture(scope="module")

@@ -8,13 +8,13 @@ arm64 by Debian's Python under qemu, and the mesh of the example in C on Windows
 import os
 import re
 import shutil
-import subprocess
 import sys
 import zipfile
 from pathlib import Path
 
 import library_clouds
 import lief
+import programs
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -60,9 +60,7 @@ def test_there_is_a_wheel_for_each_system():
 
 def test_names_and_metadata_are_those_of_the_standards():
     for tool in (["twine", "check", "--strict"], ["check_wheel_contents"]):
-        done = subprocess.run([sys.executable, "-m", *tool, *map(str, WHEELS)], check=False, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, text=True)
-        assert done.returncode == 0, done.stdout
+        programs.output_of(sys.executable, "-m", *tool, *WHEELS)
 
 
 @pytest.mark.parametrize("words, machine, needed", [("manylinux.*x86_64", "X86_64", WITH_LIBSTDCXX),
@@ -98,20 +96,18 @@ def test_macos(library, words, machine):
 
 def test_arm64_gives_the_recorded_bytes(tmp_path):
     """Python and numpy of Debian for arm64, unpacked without being installed."""
-    mirror = subprocess.run([str(ROOT / "filter_neuralmesh/sources/debian_mirror.sh")], stdout=subprocess.PIPE, text=True,
-                            check=True).stdout.strip()
+    mirror = programs.output_of(ROOT / "filter_neuralmesh/sources/debian_mirror.sh").strip()
     root = tmp_path / "root"
-    subprocess.run(["debootstrap", "--foreign", "--arch=arm64", "--variant=minbase", "--include=python3,python3-numpy",
-                    "bookworm", str(root), mirror], check=True, stdout=subprocess.DEVNULL)
+    programs.output_of("debootstrap", "--foreign", "--arch=arm64", "--variant=minbase", "--include=python3,python3-numpy",
+                       "bookworm", root, mirror)
     for package in (root / "var/cache/apt/archives").glob("*.deb"):
-        subprocess.run(["dpkg", "-x", str(package), str(root)], check=True)
+        programs.output_of("dpkg", "-x", package, root)
     with zipfile.ZipFile(wheel_for("aarch64")) as archive:
         archive.extractall(tmp_path / "site")
     libraries_of_numpy = "/usr/lib/aarch64-linux-gnu/blas:/usr/lib/aarch64-linux-gnu/lapack"  # as installing would link
-    done = subprocess.run(["qemu-aarch64", "-L", str(root), "-E", f"LD_LIBRARY_PATH={libraries_of_numpy}",
-                           str(root / "usr/bin/python3.11"), library_clouds.__file__],
-                          env=dict(os.environ, PYTHONPATH=str(tmp_path / "site")), stdout=subprocess.PIPE, text=True,
-                          check=False, timeout=TIMEOUT)
+    done = programs.run("qemu-aarch64", "-L", root, "-E", f"LD_LIBRARY_PATH={libraries_of_numpy}",
+                        root / "usr/bin/python3.11", library_clouds.__file__, timeout=TIMEOUT,
+                        env=dict(os.environ, PYTHONPATH=str(tmp_path / "site")))
     assert done.stdout == "6 clouds, other bytes than recorded: none\n"
 
 
@@ -119,12 +115,11 @@ def test_windows_gives_the_mesh_of_this_system(tmp_path):
     """By the example in C."""
     with zipfile.ZipFile(wheel_for("win_amd64")) as archive:
         shutil.copyfileobj(archive.open("neural_mesh/neural_mesh.dll"), (tmp_path / "neural_mesh.dll").open("wb"))
-    subprocess.run([str(libraries.program_of(BUILD / "zig")), "cc", "-target", libraries.TARGETS["win_amd64"].zig, "-std=c89",
-                    "-pedantic-errors", "-I", str(ROOT / "vcg_core/c_api"), str(ROOT / "vcg_core/c_api/example.c"),
-                    "neural_mesh.dll", "-o", "example.exe"], check=True, cwd=tmp_path)
+    programs.output_of(libraries.program_of(BUILD / "zig"), "cc", "-target", libraries.TARGETS["win_amd64"].zig, "-std=c89",
+                       "-pedantic-errors", "-I", ROOT / "vcg_core/c_api", ROOT / "vcg_core/c_api/example.c",
+                       "neural_mesh.dll", "-o", "example.exe", cwd=tmp_path)
     points = "".join(" ".join(map(repr, map(float, point))) + "\n" for point in library_clouds.directions(2000, 1))
-    here, there = (subprocess.run([*command, "150"], input=points, check=True, cwd=tmp_path, stdout=subprocess.PIPE, text=True,
-                                  env=dict(os.environ, WINEDEBUG="-all", WINEPREFIX=str(tmp_path / "wine")),
-                                  timeout=TIMEOUT).stdout.splitlines()
-                   for command in ([str(BUILD / "tests/c_example")], ["/usr/lib/wine/wine64", "example.exe"]))
+    here, there = (programs.output_of(*command, "150", input=points, cwd=tmp_path, timeout=TIMEOUT,
+                                      env=dict(os.environ, WINEDEBUG="-all", WINEPREFIX=str(tmp_path / "wine"))).splitlines()
+                   for command in ([BUILD / "tests/c_example"], ["/usr/lib/wine/wine64", "example.exe"]))
     assert len(here) > 400 and here == there

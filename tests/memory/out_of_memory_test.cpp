@@ -4,27 +4,16 @@
 // Allocations of a run that fail: the caller gets the message about memory, the input is unchanged, nothing
 // leaks, and the next run gives its usual bytes. Only a sample of the allocations is tried;
 // NEURALMESH_MEMORY_TRIES=1000 enlarges it.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
 #include <atomic>
-#include <cstdint>
 #include <new>
-#include <numeric>
-#include <string>
-#include <vector>
 
 #include "allocations.h"
 #include "filter_neuralmesh/actions.h"
-#include "tests/unit/support/environment.h"
 #include "tests/unit/support/layer_mesh.h"
-#include "tests/unit/support/shapes.h"
+#include "tests/unit/support/referee.h"
 #include "vcg_core/base/parallel_for.h"
-#include "vcg_core/base/random.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::out_of_memory_test {
 
 using allocations::Failure;
 using layer_mesh::Mesh;
@@ -104,7 +93,7 @@ void expect_the_sentence_where_it_fails(const Settings& settings, Failure failur
     ASSERT_GT(all, 200);
     int refused = 0;
     constexpr int kFirst = 10;
-    const int tries = environment::number_of("NEURALMESH_MEMORY_TRIES", 5, 1);
+    const int tries = number_from("NEURALMESH_MEMORY_TRIES", 5, 1);
     for (const long long nth : sampled(all, kFirst, tries, salt)) {
         SCOPED_TRACE(testing::Message() << "allocation " << nth << " of " << all);
         const long long living = allocations::living();
@@ -174,5 +163,58 @@ TEST(OutOfMemory, ALoopRunsOnTheThreadsThereAre) {
     EXPECT_GE(carried_on, 3);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+// Operations that run out of memory leave the network unchanged.
+
+/// Tries \p change on \p network with the first, the second, ... allocation failing, until it succeeds.
+/// \return the number of failures
+template <class Change>
+int failures_before(Network& network, const Change& change) {
+    const int vertices = network.vertex_count();
+    const std::vector<Triangle> faces = network.faces();
+    for (int nth = 0;; ++nth) {
+        allocations::fail_at(nth);
+        try {
+            change();
+            allocations::fail_at(-1);
+            return nth;
+        } catch (const std::bad_alloc&) {
+            allocations::fail_at(-1);
+        }
+        EXPECT_EQ(network.validate(), "") << nth;
+        EXPECT_EQ(network.vertex_count(), vertices);
+        EXPECT_EQ(network.faces(), faces);
+    }
+}
+
+TEST(OutOfMemory, AFailedSplitChangesNothing) {
+    Network network = network_of(shapes::icosphere(1));
+    int failures = 0;
+    for (VertexId v = 0; v < 12; ++v) {
+        ASSERT_TRUE(network.can_split(v, 0, 3));
+        failures += failures_before(network, [&] { network.split(v, 0, 3, network.position(v)); });
+        ASSERT_EQ(network.validate(), "");
+        EXPECT_EQ(network.position(network.slot_count() - 1), network.position(v));
+    }
+    EXPECT_GE(failures, 2);
+    EXPECT_EQ(network.vertex_count(), 54);
+}
+
+TEST(OutOfMemory, AFailedCollapseChangesNothing) {
+    for (const bool with_gaps : {false, true}) {
+        Network network = network_of(shapes::icosphere(1));
+        if (with_gaps) {
+            std::vector<VertexId> order = morton_order(network);
+            order.insert(order.begin(), -1);
+            network.renumber(order);
+        }
+        int failures = 0;
+        for (const VertexId v : network.vertices()) {
+            if (!network.can_collapse(v, network.ring(v)[0])) continue;
+            failures += failures_before(network, [&] { network.collapse(v, network.ring(v)[0]); });
+            ASSERT_EQ(network.validate(), "");
+        }
+        EXPECT_EQ(failures > 0, !with_gaps) << "one word holds all these gaps";
+    }
+}
+
+}  // namespace neuralmesh::out_of_memory_test

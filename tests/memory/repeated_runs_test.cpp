@@ -2,25 +2,14 @@
 // Copyright the Neural Mesh authors
 
 // Many runs in one process: no block leaks, and the process does not grow.
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "tests/memory/allocations.h"
-#include "tests/unit/support/soundness.h"
+#include "tests/unit/support/runs.h"
 
-namespace neuralmesh {
-namespace {
-
-void learn(const shapes::Cloud& cloud, const Settings& settings) {
-    NoProgress progress;
-    reconstruct(soundness::target_of(cloud), settings, progress);
-}
+namespace neuralmesh::repeated_runs_test {
 
 TEST(RepeatedRuns, LeakNothing) {
-    const shapes::Cloud cloud = shapes::torus_cloud(500);
-    Settings settings;
-    settings.target_vertices = 100;
+    const Cloud cloud = shapes::torus_cloud(500);
+    Settings settings = with_target(100);
     settings.settling_signals_per_vertex = 0;
     long long before = 0;
     long long living = 0;
@@ -44,5 +33,4 @@ TEST(RepeatedRuns, LeakNothing) {
     EXPECT_LT(grown, kRuns * ((1 << 20) / 100)) << "bytes";
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::repeated_runs_test

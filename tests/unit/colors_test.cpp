@@ -2,24 +2,10 @@
 // Copyright the Neural Mesh authors
 
 // Vertex colours: from those of a cloud, by the plain slow computation, and from counters.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numeric>
-#include <string>
-#include <vector>
-
-#include "tests/unit/support/referee.h"
 #include "tests/unit/support/runs.h"
-#include "tests/unit/support/shapes.h"
-#include "tests/unit/support/soundness.h"
-#include "vcg_core/mesh/surface.h"
 #include "vcg_core/output/vertex_colors.h"
 
-namespace neuralmesh {
-namespace {
-
-using shapes::Cloud;
+namespace neuralmesh::colors_test {
 
 // Vertex colours from those of a cloud: the plain slow computation, and places without points.
 
@@ -39,7 +25,7 @@ Color wavy(const vcg::Point3d& p, double period) {
 
 template <class ColorAt>
 TargetSpace colored(const Cloud& cloud, const ColorAt& color_at) {
-    TargetSpace target = targets::target_of(cloud);
+    TargetSpace target = target_of(cloud);
     std::vector<Color> colors;
     for (const vcg::Point3d& p : cloud) colors.push_back(color_at(p));
     target.set_colors(colors);
@@ -47,16 +33,15 @@ TargetSpace colored(const Cloud& cloud, const ColorAt& color_at) {
 }
 
 PerVertex<Color> colors_of(const TargetSpace& target, const Network& network, int threads = 2) {
-    NoProgress progress;
     Random random(1);
-    return cloud_colors(target, network, threads, random, progress);
+    return cloud_colors(target, network, threads, random, unwatched());
 }
 
 TEST(CloudColors, DoNotDependOnTheThreads) {
-    const shapes::Shape sphere = shapes::icosphere(3);
+    const Shape sphere = shapes::icosphere(3);
     const TargetSpace target =
         colored(shapes::sphere_cloud(50000), [](const vcg::Point3d& p) { return wavy(p, 1); });
-    const Network network = targets::network_in_frame(target, sphere);
+    const Network network = network_in_frame(target, sphere);
     EXPECT_EQ(colors_of(target, network, 1), colors_of(target, network, 3));
 }
 
@@ -70,8 +55,7 @@ struct Attached {
 std::vector<Attached> attached(const TargetSpace& target, const Surface& surface) {
     std::vector<Attached> result;
     for (std::size_t i = 0; i < target.positions().size(); ++i) {
-        const Hit hit =
-            referee::nearest_face(to_eigen(target.positions()[i]), surface.positions, surface.faces);
+        const Hit hit = nearest_face(to_eigen(target.positions()[i]), surface.positions, surface.faces);
         result.push_back({surface.faces[hit.face], hit.foot.weights, target.colors()[i]});
     }
     return result;
@@ -95,10 +79,10 @@ std::vector<double> improved(const std::vector<double>& values, const std::vecto
 }
 
 TEST(CloudColors, AreThoseOfThePlainComputation) {
-    const shapes::Shape sphere = shapes::icosphere(1);
+    const Shape sphere = shapes::icosphere(1);
     const TargetSpace target =
         colored(shapes::sphere_cloud(1000, 0.05), [](const vcg::Point3d& p) { return wavy(p, 1); });
-    const Network network = targets::network_in_frame(target, sphere);
+    const Network network = network_in_frame(target, sphere);
     const auto found = colors_of(target, network);
     const std::vector<Attached> points = attached(target, Surface(network));
     for (std::size_t channel = 0; channel < 3; ++channel) {
@@ -115,10 +99,10 @@ TEST(CloudColors, SpreadToVerticesWithoutPoints) {
     for (const vcg::Point3d& p : shapes::sphere_cloud(20000))
         if (p[2] < 0) cloud.push_back(p);
     const TargetSpace target = colored(cloud, [](const vcg::Point3d& p) { return p[0] < 0 ? kRed : kBlue; });
-    shapes::Shape both = shapes::icosphere(3);
+    Shape both = shapes::icosphere(3);
     const int vertices = static_cast<int>(both.positions.size());
     shapes::append(both, shapes::icosphere(1), {9, 0, 0});
-    const auto found = colors_of(target, targets::network_in_frame(target, both));
+    const auto found = colors_of(target, network_in_frame(target, both));
     for (int v = 0; v < found.size(); ++v) {
         const double x = both.positions[static_cast<std::size_t>(v)][0];
         if (v >= vertices) {
@@ -130,8 +114,8 @@ TEST(CloudColors, SpreadToVerticesWithoutPoints) {
 }
 
 TEST(CloudColors, OfFacesAreInterpolatedBetweenTheirCorners) {
-    const shapes::Shape box = shapes::cube();
-    TargetSpace target = targets::target_of(box);
+    const Shape box = shapes::cube();
+    TargetSpace target = target_of(box);
     std::vector<Color> colors;
     const auto shade = [](double x) { return code(128 + 100 * x); };
     for (const auto& face : box.faces)
@@ -140,10 +124,10 @@ TEST(CloudColors, OfFacesAreInterpolatedBetweenTheirCorners) {
             colors.push_back({shade(p[0]), shade(p[1]), shade(p[2])});
         }
     target.set_colors(colors);
-    shapes::Shape finer = shapes::icosphere(4);
+    Shape finer = shapes::icosphere(4);
     for (vcg::Point3d& p : finer.positions)
         p /= 2 * std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
-    const auto found = colors_of(target, targets::network_in_frame(target, finer));
+    const auto found = colors_of(target, network_in_frame(target, finer));
     for (int v = 0; v < found.size(); ++v)
         for (int k = 0; k < 3; ++k)
             EXPECT_NEAR(found[v][static_cast<std::size_t>(k)],
@@ -151,11 +135,11 @@ TEST(CloudColors, OfFacesAreInterpolatedBetweenTheirCorners) {
 }
 
 TEST(CloudColors, AreWholeIfStopped) {
-    const shapes::Shape sphere = shapes::icosphere(3);
+    const Shape sphere = shapes::icosphere(3);
     const TargetSpace target = colored(shapes::sphere_cloud(70000), [](const auto&) { return kBlue; });
-    runs::Watch stop(0);
+    Watch stop(0);
     Random random(1);
-    const auto found = cloud_colors(target, targets::network_in_frame(target, sphere), 1, random, stop);
+    const auto found = cloud_colors(target, network_in_frame(target, sphere), 1, random, stop);
     for (const Color& color : found) EXPECT_EQ(color, kBlue);
 }
 
@@ -200,5 +184,4 @@ TEST(CounterColors, AreLightIfAllCountersAreEqual) {
     EXPECT_EQ(colors, std::vector<Color>(3, counter_colors(hundred_and_one()).front()));
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::colors_test

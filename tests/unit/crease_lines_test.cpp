@@ -4,21 +4,12 @@
 // Crease lines of cubes, whose creases are known, and of surfaces without any.
 #include "vcg_core/output/crease_lines.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <map>
-#include <set>
-
+#include "tests/unit/support/prelude.h"
 #include "tests/unit/support/referee.h"
-#include "tests/unit/support/shapes.h"
 #include "vcg_core/learning/two_planes.h"
 #include "vcg_core/mesh/face_tree.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::crease_lines_test {
 
 /// Of a point near the cube's surface from the nearest edge of the cube.
 double distance_from_edge(const vcg::Point3f& p) {
@@ -32,7 +23,7 @@ double distance_from_edge(const vcg::Point3f& p) {
 constexpr int kPieces = 8;  ///< edges of the mesh along an edge of the cube
 
 /// The cube [-1, 1]^3, each side a grid of kPieces x kPieces squares.
-shapes::Shape cube_of_pieces() { return shapes::scaled(shapes::fine_cube(3), 2); }
+Shape cube_of_pieces() { return shapes::scaled(shapes::fine_cube(3), 2); }
 
 PerVertex<float> everywhere(const Network& network, float measure) {
     return PerVertex<float>(network.slot_count(), measure);
@@ -58,7 +49,7 @@ void expect_consistent(const CreaseGraph& graph) {
 }
 
 TEST(CreaseLines, ACubeHasTwelve) {
-    const Network cube = referee::network_of(cube_of_pieces());
+    const Network cube = network_of(cube_of_pieces());
     const CreaseGraph graph = crease_lines(cube, everywhere(cube, 2));
     expect_consistent(graph);
     EXPECT_EQ(graph.lines, 12);
@@ -69,7 +60,7 @@ TEST(CreaseLines, ACubeHasTwelve) {
 
 TEST(CreaseLines, StayNearTheMesh) {
     // Rough sides: two planes near a vertex may meet far from both.
-    const Network cube = referee::network_of(cube_of_pieces(), 0.08);
+    const Network cube = network_of(cube_of_pieces(), 0.08);
     const Surface surface(cube);
     const FaceTree tree(surface);
     const CreaseGraph graph = crease_lines(cube, everywhere(cube, 2));
@@ -81,7 +72,7 @@ TEST(CreaseLines, StayNearTheMesh) {
 }
 
 TEST(CreaseLines, NoiseMovesThemLessThanTheVertices) {
-    const Network cube = referee::network_of(cube_of_pieces(), 0.02);
+    const Network cube = network_of(cube_of_pieces(), 0.02);
     const CreaseGraph graph = crease_lines(cube, everywhere(cube, 2));
     expect_consistent(graph);
     EXPECT_EQ(graph.lines, 12);
@@ -95,14 +86,14 @@ TEST(CreaseLines, NoiseMovesThemLessThanTheVertices) {
 }
 
 TEST(CreaseLines, VerticesOfALowMeasureAreOnNone) {
-    const Network cube = referee::network_of(cube_of_pieces());
+    const Network cube = network_of(cube_of_pieces());
     const CreaseGraph graph = crease_lines(cube, everywhere(cube, 0.3F));
     EXPECT_TRUE(graph.vertices.empty());
     EXPECT_EQ(graph.lines, 0);
 }
 
 TEST(CreaseLines, AGapOfTwoEdgesIsBridged) {
-    const Network cube = referee::network_of(cube_of_pieces());
+    const Network cube = network_of(cube_of_pieces());
     PerVertex<float> measure = everywhere(cube, 2);
     for (const VertexId v : cube.vertices()) {
         const vcg::Point3f p = cube.position(v);
@@ -115,8 +106,8 @@ TEST(CreaseLines, AGapOfTwoEdgesIsBridged) {
 
 TEST(CreaseLines, RimsOfATubeAreTwoClosedOnesIfItHasLids) {
     constexpr int kAround = 14;
-    shapes::Shape tube = shapes::tube(kAround, 6);
-    const Network open = referee::network_of(tube);
+    Shape tube = shapes::tube(kAround, 6);
+    const Network open = network_of(tube);
     EXPECT_EQ(crease_lines(open, everywhere(open, 2)).lines, 0);
 
     const auto last = static_cast<int>(tube.positions.size());
@@ -131,7 +122,7 @@ TEST(CreaseLines, RimsOfATubeAreTwoClosedOnesIfItHasLids) {
         tube.faces.push_back({last, next, i});
         tube.faces.push_back({last + 1, last - kAround + i, last - kAround + next});
     }
-    const Network closed = referee::network_of(tube);
+    const Network closed = network_of(tube);
     ASSERT_EQ(closed.validate(), "");
     const CreaseGraph graph = crease_lines(closed, everywhere(closed, 2));
     expect_consistent(graph);
@@ -140,5 +131,4 @@ TEST(CreaseLines, RimsOfATubeAreTwoClosedOnesIfItHasLids) {
     EXPECT_EQ(graph.edges.size(), 2u * kAround);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::crease_lines_test

@@ -2,19 +2,13 @@
 // Copyright the Neural Mesh authors
 
 // Decisions of a run: its plan, open or closed, and how many vertices an error needs.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
-#include "tests/unit/support/shapes.h"
-#include "tests/unit/support/targets.h"
+#include "tests/unit/support/prelude.h"
+#include "tests/unit/support/referee.h"
 #include "vcg_core/error_search.h"
 #include "vcg_core/open_or_closed.h"
 #include "vcg_core/plan.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::decisions_test {
 
 using ErrorOf = std::function<double(int vertices)>;
 
@@ -116,7 +110,7 @@ OpenStart start_that_leaves_out(double share) {
 }
 
 TEST(OpenOrClosed, WideOpeningsAndSheetsMayBeOpen) {
-    const TargetSpace target = targets::target_of(shapes::sphere_cloud(1000));
+    const TargetSpace target = target_of(shapes::sphere_cloud(1000));
     const auto may_be = [&](const Enclosure& shell, double radius) {
         return may_be_open(shell, target, Settings(), radius);
     };
@@ -169,25 +163,19 @@ ErrorOf power(double at_1000, double exponent) {
     return [=](int n) { return at_1000 * std::pow(n / 1000.0, -exponent); };
 }
 
-struct Law {
-    double wanted, exponent;
-};
-
-class ErrorsThatFall : public testing::TestWithParam<Law> {};
-
-TEST_P(ErrorsThatFall, AreReachedWithFewVerticesAndTrials) {
-    const auto [wanted, exponent] = GetParam();
-    const double needed = 1000 * std::pow(1 / wanted, 1 / exponent);
-    ErrorSearch search(wanted, 4, 10000000);
-    EXPECT_LE(run(search, power(1, exponent)), 6);
-    EXPECT_TRUE(search.reached());
-    EXPECT_LE(search.best().error, 1.05 * wanted);
-    EXPECT_LE(search.best().vertices, 1.25 * needed);
+TEST(ErrorSearch, ReachesErrorsThatFallWithFewVerticesAndTrials) {
+    using WantedAndExponent = std::pair<double, double>;
+    for (const auto& [wanted, exponent] : std::vector<WantedAndExponent>{
+             {1, 1}, {0.05, 1}, {20, 1}, {0.2, 0.5}, {5, 0.5}, {0.1, 1.4}, {3, 1.4}, {0.97, 1}, {1.08, 1}}) {
+        SCOPED_TRACE(testing::Message() << wanted << " by the exponent " << exponent);
+        const double needed = 1000 * std::pow(1 / wanted, 1 / exponent);
+        ErrorSearch search(wanted, 4, 10000000);
+        EXPECT_LE(run(search, power(1, exponent)), 6);
+        EXPECT_TRUE(search.reached());
+        EXPECT_LE(search.best().error, 1.05 * wanted);
+        EXPECT_LE(search.best().vertices, 1.25 * needed);
+    }
 }
-
-INSTANTIATE_TEST_SUITE_P(Laws, ErrorsThatFall,
-                         testing::Values(Law{1, 1}, Law{0.05, 1}, Law{20, 1}, Law{0.2, 0.5}, Law{5, 0.5},
-                                         Law{0.1, 1.4}, Law{3, 1.4}, Law{0.97, 1}, Law{1.08, 1}));
 
 TEST(ErrorSearch, TakesTheMostVerticesIfTheyDoNotSuffice) {
     ErrorSearch search(0.01, 4, 10000);
@@ -239,5 +227,4 @@ TEST(ErrorSearch, StandsErrorsThatJumpAndThoseOfZero) {
     EXPECT_LE(exact.best().vertices, 8);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::decisions_test

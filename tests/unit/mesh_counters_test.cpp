@@ -4,24 +4,10 @@
 // Counters of given meshes: they find the creases of the mesh whatever its order, its kind and the threads.
 #include "vcg_core/mesh_counters.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <map>
-#include <string>
-
 #include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/runs.h"
-#include "tests/unit/support/sentences.h"
-#include "tests/unit/support/targets.h"
-#include "vcg_core/base/error.h"
 
-namespace neuralmesh {
-namespace {
-
-using shapes::Shape;
+namespace neuralmesh::mesh_counters_test {
 
 /// Lattice steps of \p p from the planes of the cube's sides, ascending: the second is the distance from the
 /// nearest edge, the third that along it from the corner.
@@ -33,8 +19,7 @@ std::array<double, 3> steps_inside(const vcg::Point3d& p, int n) {
 }
 
 MeshCounters count(const Shape& mesh, const TargetSpace& target, const Settings& settings = {}) {
-    NoProgress progress;
-    return mesh_counters(mesh, target, settings, progress);
+    return mesh_counters(mesh, target, settings, unwatched());
 }
 
 /// Every vertex on an edge of the cube is a feature, no vertex two steps away is one. Three planes meet at a
@@ -62,7 +47,7 @@ TEST(MeshCounters, FindTheEdgesOfACube) {
         SCOPED_TRACE(n);
         const Shape cube = shapes::fine_cube(halvings);
         for (const TargetSpace& target :
-             {targets::target_of(cube), targets::target_of(shapes::box_cloud(20000, {1, 1, 1}, 0.003))}) {
+             {target_of(cube), target_of(shapes::box_cloud(20000, {1, 1, 1}, 0.003))}) {
             Settings settings;
             const MeshCounters found = count(cube, target, settings);
             expect_edges(found, cube, n);
@@ -84,20 +69,20 @@ TEST(MeshCounters, FindNothingOnAPlane) {
         p[0] += 0.3 / 25 * shapes::signed_unit(random);
         p[1] += 0.3 / 25 * shapes::signed_unit(random);
     }
-    shapes::Cloud cloud;
+    Cloud cloud;
     vcg::Box3d box;
     for (const vcg::Point3d& p : plane.positions) box.Add(p);
     for (int i = 0; i < 20000; ++i)
         cloud.emplace_back(box.min[0] + box.DimX() * double(random.unit()),
                            box.min[1] + box.DimY() * double(random.unit()),
                            0.002 * box.Diag() * shapes::signed_unit(random));
-    const MeshCounters found = count(plane, targets::target_of(cloud));
+    const MeshCounters found = count(plane, target_of(cloud));
     EXPECT_EQ(found.report.feature_vertices, 0);
 }
 
 TEST(MeshCounters, AreTheSameWithAnyNumberOfThreads) {
     const Shape mesh = shapes::torus_grid(70, 40);
-    const TargetSpace target = targets::target_of(shapes::torus_cloud(20000, 0.005));
+    const TargetSpace target = target_of(shapes::torus_cloud(20000, 0.005));
     Settings settings;
     settings.threads = 1;
     const MeshCounters alone = count(mesh, target, settings);
@@ -113,7 +98,7 @@ TEST(MeshCounters, AreTheSameWithAnyNumberOfThreads) {
 
 TEST(MeshCounters, AreZeroWhereNoFaceIs) {
     const Shape cube = shapes::fine_cube(3);
-    const TargetSpace target = targets::target_of(shapes::box_cloud(20000));
+    const TargetSpace target = target_of(shapes::box_cloud(20000));
     const MeshCounters expected = count(cube, target);
     // Unused vertices before, between and behind the others.
     Shape sparse;
@@ -149,7 +134,7 @@ TEST(MeshCounters, HoldForEveryManifold) {
     shapes::append(two, shapes::grid(6, 6), {3, 0, 0});
     shapes::append(two, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {0, 3, 0});
     const Shape triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
-    const TargetSpace ball = targets::target_of(shapes::sphere_cloud(4000));
+    const TargetSpace ball = target_of(shapes::sphere_cloud(4000));
     for (const Shape& mesh : {shapes::tetrahedron(), triangle, shapes::bipyramid(100), shapes::fan(60), two,
                               shapes::tube(9, 5), shapes::cube()}) {
         const MeshCounters found = count(mesh, ball);
@@ -162,18 +147,17 @@ TEST(MeshCounters, HoldForEveryManifold) {
 /// The outliers of a cloud would pull single vertices out of the surface.
 TEST(MeshCounters, LeaveOutliersOut) {
     const Shape ball = shapes::icosphere(3);
-    shapes::Cloud cloud = shapes::sphere_cloud(20000);
+    Cloud cloud = shapes::sphere_cloud(20000);
     Random random(3);
     for (int i = 0; i < 100; ++i) cloud.push_back(shapes::in_cube(random) * 3);
-    const MeshCounters found = count(ball, targets::target_of(cloud));
+    const MeshCounters found = count(ball, target_of(cloud));
     EXPECT_GT(found.report.outliers, 50);
     EXPECT_EQ(found.report.warnings.size(), 1U);
     EXPECT_EQ(found.report.feature_vertices, 0);
 }
 
 std::string complaint(const Shape& mesh, const Settings& settings = {}) {
-    return sentences::complaint_of(
-        [&] { count(mesh, targets::target_of(shapes::sphere_cloud(4000)), settings); });
+    return complaint_of([&] { count(mesh, target_of(shapes::sphere_cloud(4000)), settings); });
 }
 
 /// open_start_test.cpp has all breaches; here it matters that the sentences speak of this filter.
@@ -200,9 +184,9 @@ TEST(MeshCounters, RefuseWhatIsNoManifold) {
 
 TEST(MeshCounters, GiveTheValuesSoFarWhenCancelled) {
     const Shape mesh = shapes::icosphere(3);
-    const TargetSpace target = targets::target_of(shapes::sphere_cloud(4000));
+    const TargetSpace target = target_of(shapes::sphere_cloud(4000));
     for (const int at : {1, 20, 1000}) {
-        runs::Watch progress(at - 1);
+        Watch progress(at - 1);
         const MeshCounters found = mesh_counters(mesh, target, {}, progress);
         const bool stopped = at < 1000;
         EXPECT_EQ(found.report.stop_reason == StopReason::cancelled, stopped);
@@ -213,5 +197,4 @@ TEST(MeshCounters, GiveTheValuesSoFarWhenCancelled) {
     }
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::mesh_counters_test

@@ -5,48 +5,15 @@
 // that the result's coordinates are relative to.
 #include "vcg_core/mesh_io.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <string>
-
 #include "tests/unit/support/layer_mesh.h"
-#include "tests/unit/support/sentences.h"
-#include "tests/unit/support/shapes.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::mesh_io_test {
 
 using layer_mesh::fill;
 using layer_mesh::Mesh;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-TEST(MeshIo, CountersChangeQualityAndSelectionOnly) {
-    Mesh mesh;
-    fill(mesh, shapes::cube(), true);
-    for (auto& vertex : mesh.vert) vertex.Q() = 9;
-    vcg::tri::Allocator<Mesh>::AddVertices(mesh, 2);
-    vcg::tri::Allocator<Mesh>::DeleteVertex(mesh, mesh.vert[8]);
-    mesh.vert[8].Q() = 5;
-    mesh.vert[1].SetS();
-    MeshCounters counters;
-    counters.counters = {0, 1, 2, 3, 4, 5, 6, 7, 8, 0};
-    counters.features = {0, 0, 1, 0, 0, 0, 0, 0, 1, 0};
-    Settings settings;
-    write_counters(counters, settings, mesh);
-    EXPECT_TRUE(mesh.vert[1].IsS() && !mesh.vert[2].IsS()) << "the selection has changed without being asked";
-    settings.select_features = true;
-    write_counters(counters, settings, mesh);
-    for (int i = 0; i < 10; ++i) {
-        const auto& vertex = mesh.vert[static_cast<std::size_t>(i)];
-        EXPECT_EQ(vertex.Q(), i == 8 ? 5.0F : counters.counters[static_cast<std::size_t>(i)]) << i;
-        EXPECT_EQ(vertex.IsS(), i == 2) << i;
-    }
-    EXPECT_TRUE(mesh.vert[8].IsD());
-    EXPECT_EQ(mesh.vert[3].P(), vcg::Point3f::Construct(shapes::cube().positions[3]));
-}
 
 vcg::Matrix44f moved(float x, float y, float z) {
     vcg::Matrix44f matrix;
@@ -55,7 +22,7 @@ vcg::Matrix44f moved(float x, float y, float z) {
 }
 
 std::string complaint(const Mesh& mesh, const vcg::Matrix44f& matrix, const Settings& settings = {}) {
-    return sentences::complaint_of([&] { target_space_of(mesh, matrix, settings); });
+    return complaint_of([&] { target_space_of(mesh, matrix, settings); });
 }
 
 class OfFaces : public testing::TestWithParam<bool> {};
@@ -101,20 +68,13 @@ NeuralMesh cube_at(const vcg::Point3d& place) {
 
 constexpr Coordinates kWorld{};
 
-TEST(MeshIo, UsesTheWorldsOriginIfPreciseEnough) {
+TEST(MeshIo, UsesTheLayersOriginIfRoundingWouldBeVisibleAndItHelps) {
     EXPECT_EQ(origin_of<Mesh>(cube_at({0, 0, 0}), moved(0, 0, 0)), kWorld);
     EXPECT_EQ(origin_of<Mesh>(cube_at({100, -50, 7}), moved(100, -50, 7)), kWorld);
-}
-
-TEST(MeshIo, UsesTheLayersOriginIfRoundingWouldBeVisible) {
     const Coordinates there{1e7, -1e7, 5e6};
     EXPECT_EQ(origin_of<Mesh>(cube_at({1e7, -1e7, 5e6}), moved(1e7F, -1e7F, 5e6F)), there);
-}
-
-TEST(MeshIo, UsesTheLayersOriginOnlyIfItHelps) {
-    EXPECT_EQ(origin_of<Mesh>(cube_at({1e7, 0, 0}), moved(0, 0, 0)), kWorld);
-    EXPECT_EQ(origin_of<Mesh>(cube_at({1e7, 0, 0}), moved(1000, 0, 0)), kWorld);
-    EXPECT_EQ(origin_of<Mesh>(cube_at({1e7, 0, 0}), moved(-1e7F, 0, 0)), kWorld);
+    for (const float x : {0.0F, 1000.0F, -1e7F})
+        EXPECT_EQ(origin_of<Mesh>(cube_at({1e7, 0, 0}), moved(x, 0, 0)), kWorld) << x;
 }
 
 TEST(MeshIo, KeepsTheGeometryRelativeToAnOrigin) {
@@ -215,16 +175,4 @@ TEST(MeshIo, TakesTheNormalsOfWhatIsSelected) {
     EXPECT_NE(target.normals()[1], kNoNormal);
 }
 
-TEST(MeshIo, WritesTheColoursOfTheResult) {
-    NeuralMesh result = cube_at({0, 0, 0});
-    Mesh plain;
-    write_mesh(result, Settings(), plain);
-    EXPECT_EQ(plain.vert[3].cC(), Mesh::VertexType().cC());
-    result.colors.assign(result.positions.size(), Color{1, 2, 3});
-    Mesh out;
-    write_mesh(result, Settings(), out);
-    for (const auto& v : out.vert) EXPECT_EQ(v.cC(), vcg::Color4b(1, 2, 3, 255));
-}
-
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::mesh_io_test

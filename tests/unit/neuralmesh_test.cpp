@@ -5,20 +5,12 @@
 // there, does what it says.
 #include "vcg_core/neuralmesh.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cstddef>
 #include <iostream>
-#include <sstream>
-#include <string>
-#include <vector>
 
-#include "tests/unit/support/sentences.h"
+#include "tests/unit/support/prelude.h"
 #include "tests/unit/support/shapes.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::neuralmesh_test {
 
 #include "example_of_manual.inc"
 
@@ -51,7 +43,7 @@ TEST(Manual, ItsExampleWritesAMeshOfTheSphere) {
 TEST(Manual, EveryErrorIsASentence) {
     std::istringstream nothing;
     std::ostringstream out;
-    EXPECT_NE(sentences::complaint_of([&] { mesh_of_points(nothing, out); }), "");
+    EXPECT_NE(complaint_of([&] { mesh_of_points(nothing, out); }), "");
     EXPECT_TRUE(out.str().empty());
 }
 
@@ -78,5 +70,4 @@ TEST(Manual, OneIncludeDeclaresAll) {
     EXPECT_THROW(settings.check(counter_table()), SettingError);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::neuralmesh_test

@@ -4,30 +4,17 @@
 // Clouds far from the origin, which single precision rounds, and clouds on grids, which it does not.
 #include "vcg_core/rounded_coordinates.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-#include <tuple>
-
 #include "tests/unit/support/layer_mesh.h"
 #include "tests/unit/support/runs.h"
-#include "tests/unit/support/sentences.h"
-#include "tests/unit/support/shapes.h"
-#include "vcg_core/base/error.h"
 #include "vcg_core/learning_task.h"
 #include "vcg_core/mesh_io.h"
-#include "vcg_core/reconstruct.h"
 
-namespace neuralmesh {
-namespace {
-
-using shapes::Cloud;
+namespace neuralmesh::rounded_coordinates_test {
 
 /// A layer in single precision with the cloud at \p offset, and a matrix.
 TargetSpace target_at(const Cloud& cloud, const vcg::Point3d& offset,
                       const vcg::Matrix44d& matrix = vcg::Matrix44d::Identity()) {
-    shapes::Shape shape;
+    Shape shape;
     for (const vcg::Point3d& p : cloud) shape.positions.push_back(p + offset);
     layer_mesh::Mesh mesh;
     layer_mesh::fill(mesh, shape, false);
@@ -133,7 +120,7 @@ TEST(RoundedCoordinates, AreThoseOfTheLayerNotOfTheWorld) {
 
 TEST(RoundedCoordinates, AreToldOnceWithTheStepAndWhatToDo) {
     const TargetSpace target = target_at(box(5000, 0.4, 0.4), {1e7, 1e7, 1e7});
-    const NeuralMesh mesh = runs::learn(target, runs::with_target(300));
+    const NeuralMesh mesh = learn(target, with_target(300));
     int told = 0;
     for (const std::string& warning : mesh.report.warnings) {
         told += warning.find("Single precision has rounded the coordinates to steps of 1,") == 0 ? 1 : 0;
@@ -144,14 +131,12 @@ TEST(RoundedCoordinates, AreToldOnceWithTheStepAndWhatToDo) {
 
 TEST(RoundedCoordinates, AreRefusedIfTheMeshWouldShowTheStepsOnly) {
     const TargetSpace target = target_at(box(5000, 0.1, 0.4), {1e7, 1e7, 1e7});
-    Settings settings;
-    settings.target_vertices = 2000;
-    const std::string sentence = sentences::complaint_of([&] { runs::learn(target, settings); });
+    Settings settings = with_target(2000);
+    const std::string sentence = complaint_of([&] { learn(target, settings); });
     for (const char* words : {"steps of 1,", "Subtract an offset", "double precision", "no more than"})
         EXPECT_NE(sentence.find(words), std::string::npos) << sentence;
     settings.target_vertices = 40;
-    EXPECT_EQ(runs::learn(target, settings).report.vertices, 40);
+    EXPECT_EQ(learn(target, settings).report.vertices, 40);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::rounded_coordinates_test

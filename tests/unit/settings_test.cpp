@@ -4,25 +4,17 @@
 // The tables of parameters are complete and consistent, and values beyond either end of a range are refused.
 #include "vcg_core/settings.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cctype>
-#include <cmath>
-#include <limits>
-#include <set>
-#include <vector>
 
-#include "tests/unit/support/sentences.h"
+#include "tests/unit/support/prelude.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::settings_test {
 
 using Kind = SettingInfo::Kind;
 
 /// The message that check() throws, or nothing.
 std::string complaint(const Settings& settings, const std::vector<SettingInfo>& table = setting_table()) {
-    return sentences::complaint_of([&] { settings.check(table); });
+    return complaint_of([&] { settings.check(table); });
 }
 
 using TableOf = const std::vector<SettingInfo>& (*)();
@@ -142,5 +134,4 @@ TEST(Settings, TheMessageNamesParameterValueAndRange) {
     EXPECT_NE(complaint(settings).find("2147483647"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::settings_test

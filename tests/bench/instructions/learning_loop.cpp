@@ -6,18 +6,17 @@
 // signals.
 #include <iostream>
 
-#include "tests/unit/support/shapes.h"
-#include "tests/unit/support/targets.h"
+#include "tests/unit/support/referee.h"
 #include "vcg_core/learning/learner.h"
 
 int main() {
     using namespace neuralmesh;
-    const TargetSpace target = targets::target_of(shapes::sphere_cloud(20000, 0.01));
+    const TargetSpace target = target_of(shapes::sphere_cloud(20000, 0.01));
     LearnerOptions options;
     options.grow_to = 2800;
     options.settling_signals_per_vertex = 1;
     options.threads = 1;  // waiting for each other costs instructions, too
-    Learner learner(target, options, targets::network_in_frame(target, shapes::icosphere(4)));
+    Learner learner(target, options, network_in_frame(target, shapes::icosphere(4)));
     NoProgress progress;
     learner.run(0, progress);
     std::cout << learner.signals() << '\n';

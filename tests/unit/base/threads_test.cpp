@@ -2,21 +2,16 @@
 // Copyright the Neural Mesh authors
 
 // Threads that share chunks, and loops over all cores that give what the plain loop gives.
-#include <gtest/gtest.h>
-
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <stdexcept>
 #include <thread>
-#include <vector>
 
+#include "tests/unit/support/prelude.h"
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
-#include "vcg_core/base/thread_team.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::threads_test {
 
 TEST(ThreadTeam, DoesEveryChunkOnce) {
     for (const int members : {1, 2, 5}) {
@@ -129,5 +124,4 @@ TEST(ParallelCollect, KeepsTheOrderOfTheIndices) {
     }
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::threads_test

@@ -2,22 +2,11 @@
 // Copyright the Neural Mesh authors
 
 // Small runs give the recorded bytes, with any compiler and on any machine.
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstdlib>
 #include <fstream>
-#include <sstream>
-#include <string>
-#include <utility>
 
 #include "tests/unit/support/runs.h"
 
-namespace neuralmesh {
-namespace {
-
-using runs::learn;
-using runs::variants;
+namespace neuralmesh::recorded_bytes_test {
 
 /// Adds \p values to \p hash by FNV-1a.
 template <class T>
@@ -40,15 +29,14 @@ std::string line_for(const std::string& run, const NeuralMesh& mesh) {
 
 /// An open surface, and a closed one with stray points.
 std::string runs_on_scans() {
-    Settings settings;
-    settings.target_vertices = 200;
+    Settings settings = with_target(200);
     settings.select_by = kFeatureCounter;
-    shapes::Cloud bowl;
+    Cloud bowl;
     for (const vcg::Point3d& p : shapes::sphere_cloud(4000, 0.01))
         if (p[2] < 0.25) bowl.push_back(p);
     const NeuralMesh open = learn(bowl, settings);
     EXPECT_EQ(open.report.boundary_loops, 1);
-    shapes::Cloud dusty = shapes::sphere_cloud(3000, 0.01);
+    Cloud dusty = shapes::sphere_cloud(3000, 0.01);
     Random random(2);
     for (int i = 0; i < 60; ++i) dusty.push_back(shapes::in_cube(random) * 2);
     const NeuralMesh cleaned = learn(dusty, settings);
@@ -60,9 +48,9 @@ std::string runs_on_scans() {
 /// clouds need no function of the mathematics library, whose results may differ between machines.
 std::string recorded_runs() {
     std::string lines;
-    const std::pair<const char*, shapes::Cloud> clouds[] = {{"sphere", shapes::sphere_cloud(1500, 0.01)},
-                                                            {"box", shapes::box_cloud(1500, {1, 0.7, 0.3})},
-                                                            {"sheet", shapes::plane_cloud(1500)}};
+    const std::pair<const char*, Cloud> clouds[] = {{"sphere", shapes::sphere_cloud(1500, 0.01)},
+                                                    {"box", shapes::box_cloud(1500, {1, 0.7, 0.3})},
+                                                    {"sheet", shapes::plane_cloud(1500)}};
     for (const auto& [name, cloud] : clouds) {
         int variant = 0;
         for (Settings settings : variants()) {
@@ -85,5 +73,4 @@ TEST(Determinism, SameBytesAsRecorded) {
         << "After an intended change of results, record them: see tests/README.md.";
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::recorded_bytes_test

@@ -2,20 +2,11 @@
 // Copyright the Neural Mesh authors
 
 // Neighbours of points, and steps of their depth.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "tests/unit/support/depth_camera.h"
-#include "tests/unit/support/shapes.h"
-#include "vcg_core/base/random.h"
 #include "vcg_core/cloud/depth_steps.h"
 #include "vcg_core/cloud/nearest_points.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::neighbours_test {
 
 using FloatCloud = std::vector<vcg::Point3f>;
 using Neighbours = std::vector<NearestPoints::Neighbour>;
@@ -191,5 +182,4 @@ TEST(DepthSteps, AreNoneOnTheRingsOfALathe) {
     EXPECT_LE(places_with_steps(ball, 0.03F, true), 2);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::neighbours_test

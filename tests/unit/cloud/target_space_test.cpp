@@ -4,29 +4,18 @@
 // Accepted and refused inputs, the frame, and the distribution of the samples.
 #include "vcg_core/cloud/target_space.h"
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <limits>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "tests/unit/support/sentences.h"
-#include "tests/unit/support/targets.h"
+#include "tests/unit/support/prelude.h"
+#include "tests/unit/support/referee.h"
 #include "vcg_core/cloud/cloud_survey.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::target_space_test {
 
-using shapes::Cloud;
-using targets::target_of;
 using vcg::Point3d;
 
 /// The message of the error that the cloud causes, empty if it causes none.
 template <class Given>
 std::string complaint(const Given& given) {
-    return sentences::complaint_of([&] { target_of(given); });
+    return complaint_of([&] { target_of(given); });
 }
 
 void expect_complaint(const Cloud& cloud, const std::string& part) {
@@ -153,7 +142,7 @@ TEST(TargetSpace, DrawsEveryPointEquallyOften) {
 
 TEST(TargetSpace, DrawsFromFacesInProportionToArea) {
     // Triangles side by side in a strip, of areas 1 to 60 and, every third, 0.
-    shapes::Shape strip;
+    Shape strip;
     std::vector<double> area;
     for (int i = 0; i < 60; ++i) {
         const int a = 3 * i;
@@ -185,7 +174,7 @@ TEST(TargetSpace, DrawsFromFacesInProportionToArea) {
 }
 
 TEST(TargetSpace, DrawsUniformlyWithinATriangle) {
-    const shapes::Shape triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}}};
+    const Shape triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}}};
     const TargetSpace target = target_of(triangle);
     const int cells = 10;
     std::vector<int> seen(std::size_t{cells} * cells, 0);
@@ -237,21 +226,8 @@ TEST(TargetSpace, MovesItsPointsInBatches) {
 }
 
 TEST(TargetSpace, RefusesFacesWithoutArea) {
-    shapes::Shape flat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 1}, {2, 3, 3}}};
+    Shape flat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 1}, {2, 3, 3}}};
     EXPECT_NE(complaint(flat).find("no area"), std::string::npos);
-}
-
-TEST(TargetSpace, LeavesPointsOut) {
-    const Cloud cloud = shapes::sphere_cloud(100);
-    std::vector<std::uint8_t> left_out(100, 0);
-    left_out[0] = left_out[7] = left_out[99] = 1;
-    const std::optional<TargetSpace> rest = target_of(cloud).without(left_out);
-    ASSERT_TRUE(rest.has_value());
-    ASSERT_EQ(rest->positions().size(), 97U);
-    const auto outside = [&](std::size_t i) { return rest->frame().outside(rest->positions()[i]); };
-    EXPECT_LT((outside(0) - cloud[1]).Norm(), 1e-6);
-    EXPECT_LT((outside(6) - cloud[8]).Norm(), 1e-6);
-    EXPECT_LT((outside(96) - cloud[98]).Norm(), 1e-6);
 }
 
 /// The new frame equals that of the cloud without the far point.
@@ -347,7 +323,8 @@ TEST(TargetSpace, CarriesNormalsThroughWhatLeavesOutAndReorders) {
     for (std::size_t i = 0; i < out.size(); i += 3) out[i] = 1;
     const std::optional<TargetSpace> rest = target.without(out);
     ASSERT_TRUE(rest);
-    EXPECT_LT(rest->positions().size(), cloud.size());
+    EXPECT_EQ(rest->positions().size(), cloud.size() * 2 / 3);
+    for (const PackedNormal& n : rest->normals()) EXPECT_NE(number_of(n) % 3, 0U);
     expect_carried(*rest, cloud);
     const std::optional<TargetSpace> even = target.evenly(CloudSurvey(target.positions(), 1));
     ASSERT_TRUE(even);
@@ -384,5 +361,4 @@ TEST(TargetSpace, DrawsManyPointsAsOneByOne) {
     for (const vcg::Point3f& p : samples) EXPECT_EQ(p, target.sample(one));
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::target_space_test

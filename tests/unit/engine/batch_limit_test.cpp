@@ -4,21 +4,10 @@
 // Clouds in which few vertices win most signals: some scanners write all missed rays as one point.
 #include "vcg_core/engine/batch_limit.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <utility>
-
-#include "tests/unit/support/shapes.h"
-#include "tests/unit/support/soundness.h"
-#include "tests/unit/support/targets.h"
+#include "tests/unit/support/runs.h"
 #include "vcg_core/learning/learner.h"
-#include "vcg_core/reconstruct.h"
 
-namespace neuralmesh {
-namespace {
-
-using shapes::Cloud;
+namespace neuralmesh::batch_limit_test {
 
 /// The cloud, and 20,000 points within \p radius of \p place.
 Cloud crowded(Cloud cloud, const vcg::Point3d& place, double radius) {
@@ -29,20 +18,6 @@ Cloud crowded(Cloud cloud, const vcg::Point3d& place, double radius) {
 Cloud crowded_sphere(double radius) {
     const Cloud sphere = shapes::sphere_cloud(2000);
     return crowded(sphere, sphere.front(), radius);
-}
-
-TEST(BatchLimit, KeepsVerticesInPlaceWhereManySignalsCrowd) {
-    for (const auto& [radius, counter] : {std::pair(0.0, kNormalVariation), std::pair(0.01, kSignalCount)}) {
-        SCOPED_TRACE(testing::Message() << "radius " << radius << ", counter " << counter);
-        Settings settings;
-        settings.target_vertices = 800;
-        settings.utility_counter = counter;
-        settings.fit_to_points = false;
-        NoProgress progress;
-        const NeuralMesh mesh = reconstruct(soundness::target_of(crowded_sphere(radius)), settings, progress);
-        soundness::expect_exact(mesh, settings);
-        for (const vcg::Point3d& p : mesh.positions) ASSERT_LT(p.Norm(), 1.1);
-    }
 }
 
 void take_batch(BatchLimit& limit, int count, int vertices, int wins) {
@@ -97,15 +72,11 @@ TEST(BatchLimit, ShortensTheLearnersBatches) {
         LearnerOptions options;
         options.grow_to = 700;
         const Cloud cloud = crowded ? crowded_sphere(0) : shapes::sphere_cloud(2000);
-        const TargetSpace target = soundness::target_of(cloud);
-        const shapes::Shape start = shapes::icosphere(3);
-        std::vector<vcg::Point3f> positions;
-        for (const vcg::Point3d& p : start.positions) positions.push_back(target.frame().inside(p));
-        Learner learner(target, options, Network(positions, start.faces));
+        const TargetSpace target = target_of(cloud);
+        Learner learner(target, options, network_in_frame(target, shapes::icosphere(3)));
         const int most = learner.batch_size();
         EXPECT_EQ(most, 642 / Learner::kVerticesPerSignal);
-        NoProgress progress;
-        EXPECT_TRUE(learner.settle(10, progress));
+        EXPECT_TRUE(learner.settle(10, unwatched()));
         if (crowded) {
             EXPECT_LE(learner.batch_size(), most / 2);
         } else {
@@ -115,8 +86,8 @@ TEST(BatchLimit, ShortensTheLearnersBatches) {
 }
 
 /// Learns \p cloud by \p start with weak and strong smoothing.
-void expect_in_place(const Cloud& cloud, const shapes::Shape& start) {
-    const TargetSpace target = targets::target_of(cloud);
+void expect_in_place(const Cloud& cloud, const Shape& start) {
+    const TargetSpace target = target_of(cloud);
     for (const auto& [rate, steps] :
          {std::pair(0.05, 2), std::pair(0.05, 5), std::pair(0.05, 10), std::pair(0.05, 30), std::pair(0.6, 1),
           std::pair(1.0, 2), std::pair(1.0, 100)}) {
@@ -125,10 +96,9 @@ void expect_in_place(const Cloud& cloud, const shapes::Shape& start) {
         options.smoothing_rate = rate;
         options.smoothing_steps = steps;
         options.grow_to = 700;
-        Learner learner(target, options, targets::network_in_frame(target, start));
-        NoProgress progress;
+        Learner learner(target, options, network_in_frame(target, start));
         for (int part = 0; part < 20; ++part) {
-            EXPECT_TRUE(learner.learn_at_rest(1000, progress, false));
+            EXPECT_TRUE(learner.learn_at_rest(1000, unwatched(), false));
             for (const VertexId v : learner.network().vertices()) {
                 ASSERT_LT(learner.network().position(v).Norm(), 0.6F) << "vertex " << v << ", part " << part;
             }
@@ -141,7 +111,7 @@ void expect_in_place(const Cloud& cloud, const shapes::Shape& start) {
 /// distance of a vertex from the centre, at any time
 float farthest_beside_a_patch(double share, double wins) {
     constexpr int kPoints = 50000, kParts = 600;
-    const shapes::Shape sphere = shapes::icosphere(5);
+    const Shape sphere = shapes::icosphere(5);
     const double rim = 1 - 2 * share / (wins * Learner::kVerticesPerSignal);  // height of a cap of that area
     Random random(1);
     Cloud cloud;
@@ -150,14 +120,13 @@ float farthest_beside_a_patch(double share, double wins) {
         p.Normalize();
         if (p[2] > rim || static_cast<double>(cloud.size()) >= share * kPoints) cloud.push_back(p);
     }
-    const TargetSpace target = targets::target_of(cloud);
+    const TargetSpace target = target_of(cloud);
     LearnerOptions options;
     options.grow_to = static_cast<int>(sphere.positions.size());
-    Learner learner(target, options, targets::network_in_frame(target, sphere));
-    NoProgress progress;
+    Learner learner(target, options, network_in_frame(target, sphere));
     float farthest = 0;
     for (int part = 0; part < kParts; ++part) {
-        EXPECT_TRUE(learner.learn_at_rest(1000, progress, false));
+        EXPECT_TRUE(learner.learn_at_rest(1000, unwatched(), false));
         for (const VertexId v : learner.network().vertices())
             farthest = std::max(farthest, learner.network().position(v).Norm());
     }
@@ -182,5 +151,4 @@ TEST(BatchLimit, KeepsBoundariesInPlaceWhateverTheRates) {
     expect_in_place(crowded(shapes::plane_cloud(2000), {-0.5, 0.05, 0}, 0.015), shapes::grid(25, 25));
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::batch_limit_test

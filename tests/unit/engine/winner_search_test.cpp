@@ -4,16 +4,10 @@
 // The winner search against a linear search, while vertices move, are added and are removed.
 #include "vcg_core/engine/winner_search.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <limits>
-
+#include "tests/unit/support/prelude.h"
 #include "tests/unit/support/referee.h"
-#include "tests/unit/support/shapes.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::winner_search_test {
 
 /// Linear search: the nearest vertex, the smaller id among equally near ones.
 VertexId nearest_by_linear_search(const Network& network, const vcg::Point3f& s) {
@@ -31,9 +25,7 @@ VertexId nearest_by_linear_search(const Network& network, const vcg::Point3f& s)
 }
 
 /// The shape as a network inside the core's frame, with a bounding-box diagonal of about 1.
-Network in_frame(const shapes::Shape& shape, double scale = 0.28) {
-    return referee::network_of(shapes::scaled(shape, scale));
-}
+Network in_frame(const Shape& shape, double scale = 0.28) { return network_of(shapes::scaled(shape, scale)); }
 
 vcg::Point3f random_point(Random& random, float reach) {
     const float x = 2 * random.unit() - 1;
@@ -43,7 +35,7 @@ vcg::Point3f random_point(Random& random, float reach) {
 
 VertexId random_vertex(const Network& network, Random& random) {
     for (;;) {
-        const auto v = static_cast<VertexId>(random.below(static_cast<std::uint32_t>(network.slot_count())));
+        const auto v = any_slot(network, random);
         if (network.alive(v)) return v;
     }
 }
@@ -211,5 +203,4 @@ TEST(WinnerSearch, IsExactForVerticesAndSignalsOutsideTheFrame) {
     }
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::winner_search_test

@@ -2,23 +2,11 @@
 // Copyright the Neural Mesh authors
 
 // Stray points, and the error at the points.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
 #include "tests/unit/fit/fit_scene.h"
-#include "tests/unit/support/shapes.h"
-#include "tests/unit/support/targets.h"
 #include "vcg_core/fit/noise.h"
 #include "vcg_core/fit/point_errors.h"
 
-namespace neuralmesh {
-namespace {
-
-using shapes::Cloud;
+namespace neuralmesh::errors_test {
 
 // Which points are astray, on a sphere with points above it.
 
@@ -47,7 +35,7 @@ int count_above(const std::vector<Vector3>& points, double radius) {
 FitScene sphere_with(const Cloud& more, double noise = 0.003) {
     Cloud cloud = shapes::sphere_cloud(20000, noise);
     cloud.insert(cloud.end(), more.begin(), more.end());
-    return {referee::network_of(shapes::icosphere(3)), cloud};
+    return {network_of(shapes::icosphere(3)), cloud};
 }
 
 TEST(StrayPoints, OfASphereAloneAreNextToNone) {
@@ -77,8 +65,8 @@ TEST(StrayPoints, AreNotThoseOfATipThatTheMeshHasNotReached) {
     for (const int count : {50, 400}) {
         Cloud cone;  // of height .2 on a sphere, which the mesh leaves out
         for (int i = 0; i < count; ++i) {
-            const double down = std::sqrt(static_cast<double>(random.unit()));
-            const double turn = 2 * shapes::kPi * static_cast<double>(random.unit());
+            const double down = std::sqrt(shapes::unit(random));
+            const double turn = 2 * shapes::kPi * shapes::unit(random);
             cone.emplace_back(0.1 * down * std::cos(turn), 0.1 * down * std::sin(turn), 1.2 - 0.2 * down);
         }
         EXPECT_LE(count_above(strays_of(sphere_with(cone)), kSurface), count / 20) << count;
@@ -91,18 +79,18 @@ TEST(StrayPoints, DoNotHideWherePointsAreFew) {
     for (const vcg::Point3d& p : shapes::sphere_cloud(20000, 0.003))
         if (p[2] < 0.97) cloud.push_back(p);
     cloud.emplace_back(0.0, 0.0, 1.06);
-    const FitScene scene(referee::network_of(shapes::icosphere(3)), cloud);
+    const FitScene scene(network_of(shapes::icosphere(3)), cloud);
     EXPECT_EQ(count_above(strays_of(scene), kSurface), 1);
 }
 
 TEST(StrayPoints, AreNotThoseBeyondABoundary) {
     Random random(7);
-    const auto along = [&random] { return static_cast<double>(random.unit()) - 0.5; };
+    const auto along = [&random] { return shapes::unit(random) - 0.5; };
     Cloud cloud;  // wider than the mesh by a strip with few points, and one point above the middle
     for (int i = 0; i < 5000; ++i) cloud.emplace_back(along(), along(), 0.0);
     for (int i = 0; i < 100; ++i) cloud.emplace_back(0.55 + 0.1 * along(), along(), 0.0);
     cloud.emplace_back(0.0, 0.0, 0.03);
-    const FitScene scene(referee::network_of(shapes::grid(10, 10)), cloud);
+    const FitScene scene(network_of(shapes::grid(10, 10)), cloud);
     const std::vector<Vector3> strays = strays_of(scene);
     ASSERT_EQ(strays.size(), 1U);
     EXPECT_EQ(strays[0], Vector3(0, 0, 0.03F));
@@ -112,10 +100,10 @@ TEST(StrayPoints, AreNotThoseBeyondABoundary) {
 
 // One of 100 points lies 2 away from the sphere: random points would count it 0, 1, 2 times or more.
 TEST(RmsError, IsThatOfAllPointsOfASmallCloud) {
-    shapes::Cloud cloud = shapes::sphere_cloud(100);
+    Cloud cloud = shapes::sphere_cloud(100);
     cloud[50] = cloud[50] * 3;
-    const TargetSpace target = targets::target_of(cloud);
-    const Network sphere = targets::network_in_frame(target, shapes::icosphere(5));
+    const TargetSpace target = target_of(cloud);
+    const Network sphere = network_in_frame(target, shapes::icosphere(5));
     const double unit = 1 / target.frame().diagonal;
     ThreadTeam team(1), three(3);
     for (const std::uint32_t seed : {1U, 2U, 3U}) {
@@ -128,5 +116,4 @@ TEST(RmsError, IsThatOfAllPointsOfASmallCloud) {
     EXPECT_EQ(rms_distance(target, sphere, 99, again, team), rms_distance(target, sphere, 99, same, three));
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::errors_test

@@ -2,26 +2,16 @@
 // Copyright the Neural Mesh authors
 
 // Predicted gains of flips and splits and costs of collapses, against those measured after the operation.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-
 #include "tests/unit/fit/fit_scene.h"
-#include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/edge_flips.h"
 #include "vcg_core/fit/face_rules.h"
 #include "vcg_core/fit/redistribute.h"
 #include "vcg_core/fit/split_gains.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::fit_costs_test {
 
 /// A rough torus in a dense cloud: about 60 points per face, so no face lacks any.
-FitScene torus_scene() {
-    return {referee::network_of(shapes::torus_grid(20, 10), 0.03), shapes::torus_cloud(24000)};
-}
+FitScene torus_scene() { return {network_of(shapes::torus_grid(20, 10), 0.03), shapes::torus_cloud(24000)}; }
 
 std::vector<int> faces_with_edge(const Surface& surface, VertexId a, VertexId b) {
     std::vector<int> result;
@@ -64,10 +54,9 @@ bool flip_harms(const FitScene& scene, VertexId a, VertexId b) {
 
 TEST(FindFlips, GainIsTheMeasuredDrop) {
     const FitScene scene = torus_scene();
-    ThreadTeam team(1);
     constexpr float kLeastGain = 1e-4F;
     const std::vector<EdgeFlip> flips =
-        find_flips(scene.network, scene.surface, scene.points, kLeastGain, team);
+        find_flips(scene.network, scene.surface, scene.points, kLeastGain, one_thread());
     PerVertex<char> found(scene.network.slot_count() * scene.network.slot_count(), 0);
     int with_gain = 0;
     float last = std::numeric_limits<float>::max();
@@ -108,8 +97,7 @@ TEST(FlipEdges, FlipsApartAndLeavesBarredVerticesAlone) {
 
 TEST(FindCollapses, CostIsTheMeasuredRise) {
     const FitScene scene = torus_scene();
-    ThreadTeam team(1);
-    const std::vector<Collapse> collapses = find_collapses(scene.network, scene.surface, scene.points, team);
+    const std::vector<Collapse> collapses = collapses_of(scene);
     ASSERT_EQ(static_cast<int>(collapses.size()), scene.network.slot_count());
     int measured = 0;
     int small_stars = 0;
@@ -144,21 +132,15 @@ TEST(FindCollapses, CostIsTheMeasuredRise) {
 
 /// A flat grid, and points on a gentle wave above it.
 FitScene wave_scene() {
-    shapes::Shape grid = shapes::grid(12, 12);
-    double low = 1e9, high = -1e9;
-    for (const vcg::Point3d& p : grid.positions) {
-        low = std::min(low, p[0]);
-        high = std::max(high, p[0]);
-    }
+    constexpr double kTurns = 6 * shapes::kPi;
     Random random(7);
-    shapes::Cloud cloud;
+    Cloud cloud;
     for (int i = 0; i < 40000; ++i) {
-        const double x = low + (high - low) * static_cast<double>(random.unit());
-        const double y = low + (high - low) * static_cast<double>(random.unit());
-        const double turns = 6 * shapes::kPi / (high - low);
-        cloud.emplace_back(x, y, 0.01 * (high - low) * std::sin(turns * x) * std::cos(turns * y));
+        const double x = shapes::unit(random) - 0.5;
+        const double y = shapes::unit(random) - 0.5;
+        cloud.emplace_back(x, y, 0.01 * std::sin(kTurns * x) * std::cos(kTurns * y));
     }
-    return {referee::network_of(grid), cloud};
+    return {network_of(shapes::grid(12, 12)), cloud};
 }
 
 /// A collapse that costs nothing, away from the edge to be split.
@@ -173,11 +155,10 @@ Collapse free_collapse(const Network& network, const EdgeSplit& split) {
 
 TEST(FindSplits, GainIsTheMeasuredDrop) {
     const FitScene scene = wave_scene();
-    ThreadTeam team(1);
     const double edge = static_cast<double>(mean_edge_length(scene.surface));
     const auto least = static_cast<float>(1e-3 * edge * edge);
     const std::vector<EdgeSplit> splits =
-        find_splits(scene.network, scene.surface, scene.points, least, team);
+        find_splits(scene.network, scene.surface, scene.points, least, one_thread());
     ASSERT_GT(splits.size(), 50U);
     int measured = 0;
     float last = std::numeric_limits<float>::max();
@@ -211,9 +192,8 @@ TEST(FindSplits, GainIsTheMeasuredDrop) {
 FitScene weighted_torus_scene(float upper, float lower) {
     FitScene scene = torus_scene();
     for (const Vector3& p : scene.tracked.points) scene.tracked.weights.push_back(p[2] > 0 ? upper : lower);
-    ThreadTeam team(1);
     scene.points = group_by_face(scene.surface, scene.tracked,
-                                 nearest_by_tree(scene.surface, scene.tracked, team), team);
+                                 nearest_by_tree(scene.surface, scene.tracked, one_thread()), one_thread());
     return scene;
 }
 
@@ -226,9 +206,8 @@ bool is_above(const FitScene& scene, VertexId v) {
 TEST(Weights, ScaleCostsAndGainsWhereTheyAre) {
     const FitScene even = weighted_torus_scene(1, 1);
     const FitScene uneven = weighted_torus_scene(4, 0.5F);
-    ThreadTeam team(1);
     const auto splits = [&](const FitScene& scene, float least) {
-        return find_splits(scene.network, scene.surface, scene.points, least, team);
+        return find_splits(scene.network, scene.surface, scene.points, least, one_thread());
     };
     const std::vector<EdgeSplit> unweighted = splits(even, 0.002F);
     const std::vector<EdgeSplit> weighted = splits(uneven, 0.002F);
@@ -244,11 +223,8 @@ TEST(Weights, ScaleCostsAndGainsWhereTheyAre) {
         }
     EXPECT_GT(compared, 10);
     compared = 0;
-    const auto collapses = [&](const FitScene& scene) {
-        return find_collapses(scene.network, scene.surface, scene.points, team);
-    };
-    for (const Collapse& collapse : collapses(uneven))
-        for (const Collapse& other : collapses(even)) {
+    for (const Collapse& collapse : collapses_of(uneven))
+        for (const Collapse& other : collapses_of(even)) {
             if (collapse.gone != other.gone || collapse.into < 0 || collapse.into != other.into ||
                 !is_above(even, other.gone) || other.cost <= 0)
                 continue;
@@ -258,5 +234,4 @@ TEST(Weights, ScaleCostsAndGainsWhereTheyAre) {
     EXPECT_GT(compared, 3);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::fit_costs_test

@@ -4,14 +4,11 @@
 // Networks with points around them: the input of the steps of the fit.
 #pragma once
 
-#include <algorithm>
 #include <iterator>
-#include <limits>
-#include <utility>
-#include <vector>
 
+#include "tests/unit/support/prelude.h"
 #include "tests/unit/support/referee.h"
-#include "tests/unit/support/shapes.h"
+#include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/points_by_face.h"
 
 namespace neuralmesh {
@@ -38,7 +35,7 @@ PointsByFace points_on(const Surface& surface, int per_face, const Height& heigh
     return PointsByFace(surface, points, hits);
 }
 
-inline TrackedPoints tracked_points(const shapes::Cloud& cloud) {
+inline TrackedPoints tracked_points(const Cloud& cloud) {
     TrackedPoints points;
     for (const vcg::Point3d& p : cloud) points.points.push_back(to_eigen(vcg::Point3f::Construct(p)));
     return points;
@@ -46,10 +43,10 @@ inline TrackedPoints tracked_points(const shapes::Cloud& cloud) {
 
 /// A network, and the points of a cloud with their nearest faces.
 struct FitScene {
-    FitScene(Network given, const shapes::Cloud& cloud)
+    FitScene(Network given, const Cloud& cloud)
         : network(std::move(given)), surface(network), tracked(tracked_points(cloud)) {
-        ThreadTeam team(1);
-        points = group_by_face(surface, tracked, nearest_by_tree(surface, tracked, team), team);
+        points =
+            group_by_face(surface, tracked, nearest_by_tree(surface, tracked, one_thread()), one_thread());
     }
 
     Network network;
@@ -57,6 +54,10 @@ struct FitScene {
     TrackedPoints tracked;
     PointsByFace points{surface, {}, {}};
 };
+
+inline std::vector<Collapse> collapses_of(const FitScene& scene) {
+    return find_collapses(scene.network, scene.surface, scene.points, one_thread());
+}
 
 /// Sum of the squared distances of \p points from the nearest of \p faces.
 inline double squared_distances(const std::vector<Vector3>& points, const std::vector<Triangle>& faces,

@@ -4,20 +4,16 @@
 // The normal equations against their definition, and their solution against Eigen's direct solvers.
 #include "vcg_core/fit/least_squares.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <cmath>
 
 #include "tests/unit/fit/fit_scene.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::least_squares_test {
 
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-double sine(Random& random) { return 0.02 * std::sin(50 * static_cast<double>(random.unit())); }
+double sine(Random& random) { return 0.02 * std::sin(50 * shapes::unit(random)); }
 
 Vector flat(const PerVertex<Vector3>& values) {
     Vector result(3 * values.size());
@@ -27,14 +23,13 @@ Vector flat(const PerVertex<Vector3>& values) {
 
 /// The matrix of the system, column by column.
 Matrix matrix_of(const PointToPlaneSystem& system, int slots, float lambda) {
-    ThreadTeam team(1);
     Matrix matrix(3 * slots, 3 * slots);
     PerVertex<Vector3> unit(slots, Vector3::Zero());
     PerVertex<Vector3> column(slots, Vector3::Zero());
     for (VertexId v = 0; v < slots; ++v)
         for (Eigen::Index axis = 0; axis < 3; ++axis) {
             unit[v][axis] = 1;
-            system.multiply(lambda, unit, team, column);
+            system.multiply(lambda, unit, one_thread(), column);
             unit[v][axis] = 0;
             matrix.col(3 * v + axis) = flat(column);
         }
@@ -42,7 +37,7 @@ Matrix matrix_of(const PointToPlaneSystem& system, int slots, float lambda) {
 }
 
 struct LeastSquares : testing::Test {
-    Network network = referee::network_of(shapes::icosphere(2), 0.02);
+    Network network = network_of(shapes::icosphere(2), 0.02);
     Surface surface{network};
     PointsByFace points = points_on(surface, 12, sine);
     ThreadTeam team{2};
@@ -65,7 +60,7 @@ TEST_F(LeastSquares, IsSolvedAsByDirectSolvers) {
 }
 
 TEST(BendingWeights, HaveTheirBitsWhereThereIsABoundary) {
-    const Network network = referee::network_of(shapes::grid(32, 32), 0.02);
+    const Network network = network_of(shapes::grid(32, 32), 0.02);
     const Surface surface(network);
     ThreadTeam team(2);
     const PerVertex<float> stiffness(network.slot_count(), 0.5F);
@@ -122,21 +117,19 @@ TEST_F(LeastSquares, TakesStiffnessForBendingWeight) {
     EXPECT_LT((flat(stiff.right_side(0.5F)) - flat(system.right_side(0.5F + kStiffness))).norm(),
               1e-4 * flat(system.right_side(0.5F + kStiffness)).norm());
     const PointToPlaneSystem::Accuracy exact{1e-6, 1000};
-    EXPECT_LT(
-        (flat(stiff.solve({0.5F}, team, exact)[0]) - flat(system.solve({0.5F + kStiffness}, team, exact)[0]))
-            .norm(),
-        1e-3 * flat(stiff.solve({0.5F}, team, exact)[0]).norm());
+    const Vector solved = flat(stiff.solve({0.5F}, team, exact)[0]);
+    EXPECT_LT((solved - flat(system.solve({0.5F + kStiffness}, team, exact)[0])).norm(),
+              1e-3 * solved.norm());
 }
 
 // A plane has no bending energy, whatever the shapes of its triangles, and none after it is tilted.
 TEST(BendingTerms, AreZeroOnAPlane) {
-    shapes::Shape grid = shapes::grid(8, 8);
+    Shape grid = shapes::grid(8, 8);
     Random random(9);
     for (vcg::Point3d& p : grid.positions) p += vcg::Point3d(0.02, 0.01, 0) * shapes::signed_unit(random);
-    const Network network = referee::network_of(grid);
+    const Network network = network_of(grid);
     const Surface surface(network);
-    ThreadTeam team(1);
-    const PointToPlaneSystem system(network, surface, points_on(surface, 10, sine), team);
+    const PointToPlaneSystem system(network, surface, points_on(surface, 10, sine), one_thread());
     const Vector without = flat(system.right_side(0));
     EXPECT_LT((flat(system.right_side(100)) - without).norm(), 1e-3 * without.norm());
     PerVertex<Vector3> tilt(network.slot_count(), Vector3::Zero());
@@ -144,15 +137,14 @@ TEST(BendingTerms, AreZeroOnAPlane) {
         tilt[v][2] = 0.3F * surface.positions[v][0] - surface.positions[v][1] + 2;
     PerVertex<Vector3> bent = tilt;
     PerVertex<Vector3> plain = tilt;
-    system.multiply(100, tilt, team, bent);
-    system.multiply(0, tilt, team, plain);
+    system.multiply(100, tilt, one_thread(), bent);
+    system.multiply(0, tilt, one_thread(), plain);
     EXPECT_LT((flat(bent) - flat(plain)).norm(), 1e-3 * flat(plain).norm());
     // A bump has bending energy.
     tilt[40][2] += 1;
-    system.multiply(100, tilt, team, bent);
-    system.multiply(0, tilt, team, plain);
+    system.multiply(100, tilt, one_thread(), bent);
+    system.multiply(0, tilt, one_thread(), plain);
     EXPECT_GT((flat(bent) - flat(plain)).norm(), flat(plain).norm());
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::least_squares_test

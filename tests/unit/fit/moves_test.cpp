@@ -2,24 +2,14 @@
 // Copyright the Neural Mesh authors
 
 // Moves of the fit: within limits, to creases, and long ones that keep the surface sound.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "tests/unit/fit/fit_scene.h"
 #include "tests/unit/support/crumpled.h"
-#include "tests/unit/support/referee.h"
-#include "tests/unit/support/shapes.h"
 #include "vcg_core/fit/crease_moves.h"
 #include "vcg_core/fit/face_rules.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/sound_meshes.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::moves_test {
 
 // Displacements within the limits are kept; larger ones are shortened until every face obeys the face rules.
 
@@ -51,7 +41,7 @@ void expect_within_rules(const Surface& before, const Surface& after) {
 
 TEST(MoveLimits, LeavesSmallDisplacementsAlone) {
     ThreadTeam team(2);
-    const Network network = referee::network_of(shapes::icosphere(3));
+    const Network network = network_of(shapes::icosphere(3));
     const Surface surface(network);
     const PerVertex<Vector3> u = random_displacements(network.slot_count(), 0.01F, 1);
     const PerVertex<Vector3> moved = MoveLimits(network, surface, team).bounded(u);
@@ -60,7 +50,7 @@ TEST(MoveLimits, LeavesSmallDisplacementsAlone) {
 
 TEST(MoveLimits, BoundsLargeDisplacements) {
     ThreadTeam team(2);
-    const Network network = referee::network_of(shapes::icosphere(3), 0.01);
+    const Network network = network_of(shapes::icosphere(3), 0.01);
     const Surface surface(network);
     const MoveLimits limits(network, surface, team);
     for (float size : {0.1F, 1.0F, 100.0F}) {
@@ -82,7 +72,7 @@ TEST(MoveLimits, BoundsLargeDisplacements) {
 
 TEST(MoveLimits, DoesNotMoveAVertexByNaN) {
     ThreadTeam team(2);
-    const Network network = referee::network_of(shapes::icosphere(2));
+    const Network network = network_of(shapes::icosphere(2));
     const Surface surface(network);
     PerVertex<Vector3> u(network.slot_count(), Vector3(0.01F, 0, 0));
     u[3][1] = std::numeric_limits<float>::quiet_NaN();
@@ -96,9 +86,9 @@ TEST(MoveLimits, DoesNotMoveAVertexByNaN) {
 
 // A flat box whose lid would move through its floor.
 TEST(MoveLimits, ShortensUntilTheGuardAccepts) {
-    shapes::Shape box = shapes::icosphere(3);
+    Shape box = shapes::icosphere(3);
     for (vcg::Point3d& p : box.positions) p[2] *= 0.02;
-    const Network network = referee::network_of(box);
+    const Network network = network_of(box);
     const Surface surface(network);
     ThreadTeam team(2);
     ASSERT_TRUE(self_crossings(surface, team).empty());
@@ -141,14 +131,14 @@ double roof(double x) { return -std::abs(x - kRidge); }
 
 /// A mesh whose vertices lie on the roof, with points on it that \p noise moves up or down.
 FitScene roof_scene(double noise = 0) {
-    shapes::Shape mesh = shapes::grid(kColumns, kColumns);
+    Shape mesh = shapes::grid(kColumns, kColumns);
     for (vcg::Point3d& p : mesh.positions) p[2] = roof(p[0]);
-    shapes::Cloud cloud = shapes::plane_cloud(20000);
+    Cloud cloud = shapes::plane_cloud(20000);
     Random random(5);
     for (vcg::Point3d& p : cloud) {
         p[2] = roof(p[0]) + noise * shapes::signed_unit(random);
     }
-    return {referee::network_of(mesh), cloud};
+    return {network_of(mesh), cloud};
 }
 
 PerVertex<Vector3> moves_of(const FitScene& scene, double noise = 0, int threads = 1) {
@@ -195,16 +185,16 @@ TEST(CreaseMoves, NoiseBelowTheCreaseDoesNotMatter) {
 }
 
 TEST(CreaseMoves, NothingMovesOnASmoothSurface) {
-    const FitScene scene(referee::network_of(shapes::icosphere(3)), shapes::sphere_cloud(20000));
+    const FitScene scene(network_of(shapes::icosphere(3)), shapes::sphere_cloud(20000));
     EXPECT_EQ(count_moved(moves_of(scene)), 0);
 }
 
 TEST(CreaseMoves, NoiseIsNoCrease) {
     const double noise = 0.3 * kStep;
-    shapes::Cloud cloud = shapes::plane_cloud(20000);
+    Cloud cloud = shapes::plane_cloud(20000);
     Random random(6);
     for (vcg::Point3d& p : cloud) p += vcg::Point3d(0, 0, noise * shapes::signed_unit(random));
-    const FitScene scene(referee::network_of(shapes::grid(kColumns, kColumns), noise), cloud);
+    const FitScene scene(network_of(shapes::grid(kColumns, kColumns), noise), cloud);
     EXPECT_EQ(count_moved(moves_of(scene, noise)), 0);
 }
 
@@ -218,11 +208,11 @@ TEST(CreaseMoves, NothingMovesWithMuchNoise) {
 
 /// A ball with a concentric hollow: the two sides of a wall from \p inner to 1.
 Network hollow_ball(double inner) {
-    shapes::Shape ball = shapes::icosphere(3);
-    shapes::Shape hollow = shapes::scaled(shapes::icosphere(3), inner);
+    Shape ball = shapes::icosphere(3);
+    Shape hollow = shapes::scaled(shapes::icosphere(3), inner);
     for (auto& face : hollow.faces) std::swap(face[1], face[2]);
     shapes::append(ball, hollow, {0, 0, 0});
-    return referee::network_of(ball);
+    return network_of(ball);
 }
 
 /// Moves of all vertices to the spheres of radius \p outer and \p inner.
@@ -237,8 +227,7 @@ PerVertex<Vector3> moves_to(const Network& network, float middle, float outer, f
 
 TEST(SoundMoves, MakeAWallThinnerThanItsEdgesAreLong) {
     Network network = hollow_ball(0.6);
-    ThreadTeam team(1);
-    move_soundly(network, moves_to(network, 0.8F, 0.82F, 0.78F), team);
+    move_soundly(network, moves_to(network, 0.8F, 0.82F, 0.78F), one_thread());
     EXPECT_EQ(network.validate(), "");
     EXPECT_TRUE(cut_faces(network).empty());
     int arrived = 0;
@@ -255,8 +244,7 @@ TEST(SoundMoves, StopBeforeTheSidesCross) {
     PerVertex<Vector3> moves(network.slot_count(), Vector3::Zero());
     for (const VertexId v : network.vertices())
         if (to_eigen(network.position(v)).norm() < 0.8F) moves[v] = Vector3(0.7F, 0, 0);
-    ThreadTeam team(1);
-    move_soundly(network, moves, team);
+    move_soundly(network, moves, one_thread());
     EXPECT_EQ(network.validate(), "");
     EXPECT_EQ(network.faces(), faces);
     EXPECT_TRUE(cut_faces(network).empty());
@@ -267,5 +255,4 @@ TEST(SoundMoves, StopBeforeTheSidesCross) {
     EXPECT_LT(farthest, 1);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::moves_test

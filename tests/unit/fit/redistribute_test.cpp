@@ -2,27 +2,13 @@
 // Copyright the Neural Mesh authors
 
 // Moving, removing and adding vertices: counts, topology, and operations that must not touch each other.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <set>
-#include <utility>
-#include <vector>
-
+#include "vcg_core/fit/redistribute.h"
 #include "tests/unit/fit/fit_scene.h"
 #include "tests/unit/support/open_shapes.h"
-#include "tests/unit/support/referee.h"
 #include "tests/unit/support/runs.h"
-#include "tests/unit/support/shapes.h"
-#include "tests/unit/support/soundness.h"
-#include "vcg_core/fit/redistribute.h"
 #include "vcg_core/mesh/self_crossings.h"
-#include "vcg_core/reconstruct.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::redistribute_test {
 
 /// Points of a cube, around a network whose faces cut its edges: vertices are missing there and superfluous
 /// on the sides.
@@ -37,16 +23,14 @@ protected:
     }
 
     static Network network_inside() {
-        shapes::Shape shape = shapes::icosphere(3);
+        Shape shape = shapes::icosphere(3);
         for (vcg::Point3d& p : shape.positions)
             p /= 2 * std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
-        return referee::network_of(shape, 0.001);
+        return network_of(shape, 0.001);
     }
 
     void expect_sound(std::size_t removed) const {
-        EXPECT_EQ(network.validate(), "");
-        EXPECT_EQ(network.genus(), 0);
-        EXPECT_EQ(network.component_count(), 1);
+        EXPECT_EQ(topology_of(network), kBall);
         EXPECT_EQ(network.vertex_count(), scene.network.vertex_count() - static_cast<int>(removed));
     }
 
@@ -92,7 +76,7 @@ TEST_F(OnACube, BarredVerticesAreLeftAlone) {
 
 // Edges that end on the boundary are split in their middle; the boundary keeps its vertices.
 TEST(Redistribute, LeavesTheBoundaryAlone) {
-    const Network grid = referee::network_of(shapes::grid(8, 8));
+    const Network grid = network_of(shapes::grid(8, 8));
     const auto boundary = [](const Network& network) {
         PerVertex<char> result(network.slot_count(), 0);
         for (VertexId v : network.vertices()) result[v] = static_cast<char>(network.ring(v).open);
@@ -122,7 +106,7 @@ TEST(Redistribute, LeavesTheBoundaryAlone) {
 }
 
 TEST(Redistribute, SplitsBoundaryEdgesOnTheBoundary) {
-    const Network grid = referee::network_of(shapes::grid(8, 8));
+    const Network grid = network_of(shapes::grid(8, 8));
     int splits = 0;
     for (VertexId a : grid.vertices()) {
         if (grid.ring(a).open == 0 || grid.adjacent(a, 27)) continue;
@@ -192,16 +176,12 @@ TEST_F(OnACube, ReduceDenselyRemovesOnlyWhatIsAsMeasured) {
     }
 }
 
-void expect_refined(const shapes::Shape& shape, int vertices) {
-    const Network before = referee::network_of(shape);
+void expect_refined(const Shape& shape, int vertices) {
+    const Network before = network_of(shape);
     Network network = before;
-    NoProgress progress;
-    EXPECT_EQ(refine(network, vertices, NewVertices::curved, progress), vertices - before.vertex_count());
+    EXPECT_EQ(refine(network, vertices, NewVertices::curved, unwatched()), vertices - before.vertex_count());
     EXPECT_EQ(network.vertex_count(), vertices);
-    EXPECT_EQ(network.validate(), "");
-    EXPECT_EQ(network.genus(), before.genus());
-    EXPECT_EQ(network.component_count(), before.component_count());
-    EXPECT_EQ(network.boundary_loop_count(), before.boundary_loop_count());
+    EXPECT_EQ(topology_of(network), topology_of(before));
     const PerVertex<VertexId> sources = nearest_vertices(VertexPlaces(before), network);
     for (const VertexId v : before.vertices()) {
         EXPECT_EQ(network.position(v), before.position(v));
@@ -230,16 +210,15 @@ TEST(Refine, ReachesTheNumberAndKeepsTopologyAndVertices) {
 TEST(Refine, SplitsBoundaryEdgesToo) {
     expect_refined(shapes::grid(5, 5), 2000);
     expect_refined(shapes::tube(8, 3), 1000);
-    Network network = referee::network_of(shapes::grid(5, 5));
-    NoProgress progress;
-    refine(network, 2000, NewVertices::curved, progress);
+    Network network = network_of(shapes::grid(5, 5));
+    refine(network, 2000, NewVertices::curved, unwatched());
     // A boundary edge was .25 or more; edges of an even mesh are about .024.
     EXPECT_LT(edge_lengths(network).second, 0.06);
 }
 
 TEST(Refine, EndsWhenProgressAsksToStop) {
-    runs::Watch once(1);
-    Network network = referee::network_of(shapes::icosphere(2));
+    Watch once(1);
+    Network network = network_of(shapes::icosphere(2));
     EXPECT_GT(refine(network, 5000, NewVertices::curved, once), 0);
     EXPECT_EQ(once.calls, 2);
     EXPECT_LT(network.vertex_count(), 5000);
@@ -247,15 +226,13 @@ TEST(Refine, EndsWhenProgressAsksToStop) {
 }
 
 TEST(Refine, CurvesTheSurfaceAndEvensTheEdges) {
-    Network network = referee::network_of(shapes::icosphere(1));
-    NoProgress progress;
-    refine(network, 500, NewVertices::curved, progress);
+    Network network = network_of(shapes::icosphere(1));
+    refine(network, 500, NewVertices::curved, unwatched());
     for (const VertexId v : network.vertices())
         EXPECT_NEAR(network.position(v).Norm(), 1, 0.02) << "middles of edges are up to .05 inside";
-    refine(network, 1000, NewVertices::curved, progress);
+    refine(network, 1000, NewVertices::curved, unwatched());
     const auto [shortest, longest] = edge_lengths(network);
     EXPECT_LT(longest, 4 * shortest);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::redistribute_test

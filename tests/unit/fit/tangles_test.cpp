@@ -2,34 +2,21 @@
 // Copyright the Neural Mesh authors
 
 // Surfaces that cut or fold over themselves.
-#include <gtest/gtest.h>
-
-#include <set>
-#include <utility>
-#include <vector>
-
 #include "tests/unit/support/crumpled.h"
-#include "tests/unit/support/referee.h"
-#include "tests/unit/support/targets.h"
 #include "vcg_core/fit/cut_faces.h"
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/redistribute.h"
 #include "vcg_core/fit/sound_meshes.h"
-#include "vcg_core/mesh/self_crossings.h"
 
-namespace neuralmesh {
-namespace {
-
-using shapes::Shape;
+namespace neuralmesh::tangles_test {
 
 // Self-crossings are smoothed out before the fit, and the fit makes none.
 
 /// The crossings that untangle() leaves.
 std::vector<SelfCrossing> smoothed_out(Network& network, int threads) {
     ThreadTeam team(threads);
-    NoProgress progress;
-    return *untangle(network, team, progress);
+    return *untangle(network, team, unwatched());
 }
 
 TEST(CrossingGuard, ObjectsToNewCrossingsIfMoreFacesCross) {
@@ -70,13 +57,13 @@ TEST(Untangle, MovesVerticesAsFarAsTheirOwnEdgesAreLong) {
         if (shape.positions[v][2] > 8)
             shape.positions[v] = vcg::Point3d::Construct(crumpled.position(static_cast<VertexId>(v)));
     shapes::append(shape, shapes::scaled(shapes::icosphere(5), 0.5), {20, 0, 0});
-    Network network = referee::network_of(shape);
+    Network network = network_of(shape);
     ASSERT_FALSE(cut_faces(network).empty());
     EXPECT_TRUE(smoothed_out(network, 1).empty());
 }
 
 TEST(Untangle, SmoothsOutARimThatCutsItself) {
-    Network network = referee::network_of(shapes::grid(8, 8));
+    Network network = network_of(shapes::grid(8, 8));
     // A boundary edge is drawn inwards, one end above the sheet and the other below.
     VertexId a = 0;
     while (network.ring(a).open == 0 || network.ring(a).valence < 4) ++a;
@@ -113,15 +100,13 @@ TEST(Untangle, GivesUpIfEveryFaceIsNearManyOthers) {
     for (VertexId v = 0; v < network.slot_count(); ++v)
         network.set_position(v, vcg::Point3f::Construct(shapes::in_ball(random)));
     const Network before = network;
-    ThreadTeam team(1);
-    NoProgress progress;
-    EXPECT_EQ(*untangle(network, team, progress), crossings(Surface(before), 1));
+    EXPECT_EQ(*untangle(network, one_thread(), unwatched()), crossings(Surface(before), 1));
     EXPECT_TRUE(same_positions(network, before));
 }
 
 /// A plate 1 x 1 x \p thickness.
-shapes::Cloud plate_cloud(int count, double thickness) {
-    shapes::Cloud cloud = shapes::box_cloud(count);
+Cloud plate_cloud(int count, double thickness) {
+    Cloud cloud = shapes::box_cloud(count);
     for (vcg::Point3d& p : cloud) p[2] *= thickness;
     return cloud;
 }
@@ -129,14 +114,13 @@ shapes::Cloud plate_cloud(int count, double thickness) {
 // Faces much larger than the plate is thick: points of either side are next to faces of the other.
 TEST(Fit, DoesNotMakeAPlateCutItself) {
     for (const double thickness : {0.02, 0.05, 0.1}) {
-        const shapes::Cloud cloud = plate_cloud(20000, thickness);
-        const TargetSpace target = targets::target_of(cloud);
+        const Cloud cloud = plate_cloud(20000, thickness);
+        const TargetSpace target = target_of(cloud);
         Shape flattened = shapes::icosphere(2);
         for (vcg::Point3d& p : flattened.positions) p = {0.7 * p[0], 0.7 * p[1], 0.8 * thickness * p[2]};
-        Network network = targets::network_in_frame(target, flattened);
+        Network network = network_in_frame(target, flattened);
         ASSERT_TRUE(cut_faces(network).empty());
-        NoProgress progress;
-        const FitReport report = fit_to_points(network, target, {}, 1, 1, progress);
+        const FitReport report = fit_to_points(network, target, {}, 1, 1, unwatched());
         EXPECT_TRUE(report.improved);
         EXPECT_TRUE(cut_faces(network).empty()) << thickness;
         EXPECT_EQ(network.validate(), "");
@@ -144,8 +128,8 @@ TEST(Fit, DoesNotMakeAPlateCutItself) {
 }
 
 TEST(Fit, LeavesNoMoreCrossingsThanThereWere) {
-    const shapes::Cloud cloud = plate_cloud(20000, 0.03);
-    const TargetSpace target = targets::target_of(cloud);
+    const Cloud cloud = plate_cloud(20000, 0.03);
+    const TargetSpace target = target_of(cloud);
     Network network = crumpled_sphere(0.12);
     for (VertexId v = 0; v < network.slot_count(); ++v) {
         vcg::Point3f p = network.position(v) * 0.05F;
@@ -154,8 +138,7 @@ TEST(Fit, LeavesNoMoreCrossingsThanThereWere) {
     }
     const std::size_t before = cut_faces(network).size();
     ASSERT_GT(before, 0U);
-    NoProgress progress;
-    fit_to_points(network, target, {}, 1, 1, progress);
+    fit_to_points(network, target, {}, 1, 1, unwatched());
     EXPECT_LE(cut_faces(network).size(), before);
     EXPECT_EQ(network.validate(), "");
 }
@@ -169,7 +152,7 @@ constexpr VertexId kMiddle = kSide * kSide / 2;
 
 /// A square whose middle vertex has passed its neighbour, and lies above it.
 Network folded_square() {
-    Network network = referee::network_of(shapes::grid(kSide, kSide));
+    Network network = network_of(shapes::grid(kSide, kSide));
     network.set_position(kMiddle, network.position(kMiddle) + vcg::Point3f(1.6F * kEdge, 0, kEdge));
     return network;
 }
@@ -207,7 +190,7 @@ TEST(Unfold, LeavesASurfaceThatNobodyHasSeenAlone) {
 
 TEST(Unfold, KeepsAnOverhang) {
     // Half of a square turned over and laid on top of the other: a sheet folded in its middle.
-    Network network = referee::network_of(shapes::grid(kSide, kSide));
+    Network network = network_of(shapes::grid(kSide, kSide));
     for (const VertexId v : network.vertices()) {
         const vcg::Point3f p = network.position(v);
         if (p[0] > 0) network.set_position(v, {-p[0], p[1], 0.2F * std::min(p[0], 0.2F)});
@@ -222,9 +205,8 @@ TEST(Unfold, KeepsAnOverhang) {
 }
 
 TEST(Unfold, IsNotUndoneByMoves) {
-    ThreadTeam team(1);
     Random random(1);
-    Network network = referee::network_of(shapes::grid(kSide, kSide));
+    Network network = network_of(shapes::grid(kSide, kSide));
     for (const VertexId v : network.vertices()) {  // steep, where little turns a face away
         const vcg::Point3f p = network.position(v);
         network.set_position(v, {0.05F * p[0], p[1], p[0]});
@@ -236,7 +218,7 @@ TEST(Unfold, IsNotUndoneByMoves) {
         for (Vector3& move : moves)
             move = 0.1F * kEdge * to_eigen(vcg::Point3f::Construct(shapes::in_ball(random)));
         Surface moved = surface;
-        moved.positions = MoveLimits(network, surface, team).bounded(moves);
+        moved.positions = MoveLimits(network, surface, one_thread()).bounded(moves);
         ASSERT_EQ(turned_away(surface, kAbove), 0);
         EXPECT_EQ(turned_away(moved, kAbove) == 0, seen);
     }
@@ -253,7 +235,7 @@ Network standing_on_sheet(const Shape& standing, double depth) {
         shape.positions.emplace_back(0.013 + 0.6 * p[0], 0.021 + 0.1 * p[0], 0.5 + p[1] - depth);
     for (const Triangle& f : standing.faces)
         shape.faces.push_back({f[0] + offset, f[1] + offset, f[2] + offset});
-    return referee::network_of(shape);
+    return network_of(shape);
 }
 
 std::vector<SelfCrossing> removed_from(Network& network, int threads = 1) {
@@ -271,9 +253,7 @@ TEST(CutFaces, ABoundaryThatPiercesASheetDrawsBack) {
     Network network = standing_on_sheet(shapes::grid(8, 8), 0.05);
     ASSERT_FALSE(crossings(Surface(network), 1).empty());
     EXPECT_TRUE(removed_from(network).empty());
-    EXPECT_EQ(network.component_count(), 2);
-    EXPECT_EQ(network.boundary_loop_count(), 2);
-    EXPECT_EQ(network.genus(), 0);
+    EXPECT_EQ(topology_of(network), (Topology{2, 0, 2}));
     const int sheet_faces = 2 * 11 * 11, row = 2 * 7;
     EXPECT_GE(network.face_count(), sheet_faces + 6 * row) << "only the lowest row of the standing part goes";
     for (VertexId v = 0; v < 144; ++v) EXPECT_TRUE(network.alive(v)) << "the sheet stays";
@@ -282,25 +262,23 @@ TEST(CutFaces, ABoundaryThatPiercesASheetDrawsBack) {
 TEST(CutFaces, AStrandIsBroken) {
     Network network = standing_on_sheet(shapes::grid(2, 12), 0.5);
     EXPECT_TRUE(removed_from(network).empty());
-    EXPECT_EQ(network.component_count(), 3);
-    EXPECT_EQ(network.genus(), 0);
+    EXPECT_EQ(topology_of(network), (Topology{3, 0, 3}));
     for (VertexId v = 0; v < 144; ++v) EXPECT_TRUE(network.alive(v)) << "the sheet stays";
 }
 
 TEST(CutFaces, AFoldInsideIsCollapsedAndKeepsTheTopology) {
-    Network network = referee::network_of(shapes::grid(9, 9), 0.005);
+    Network network = network_of(shapes::grid(9, 9), 0.005);
     const VertexId middle = 40;
     network.set_position(middle, network.position(middle) + vcg::Point3f(0.3F, 0.02F, 0));
     ASSERT_FALSE(crossings(Surface(network), 1).empty());
     EXPECT_TRUE(removed_from(network).empty());
-    EXPECT_EQ(network.boundary_loop_count(), 1);
-    EXPECT_EQ(network.genus(), 0);
+    EXPECT_EQ(topology_of(network), kDisc);
     EXPECT_GT(network.vertex_count(), 81 - 10);
 }
 
 TEST(CutFaces, ATangleLosesATenthOfItsFacesAtMost) {
     for (const double noise : {0.3, 1.0}) {
-        Network network = referee::network_of(shapes::grid(15, 15), noise);
+        Network network = network_of(shapes::grid(15, 15), noise);
         const int faces = network.face_count();
         EXPECT_FALSE(removed_from(network).empty());
         EXPECT_GE(network.face_count(), faces - faces / 10 - 12);
@@ -311,9 +289,7 @@ TEST(SoundStart, KeepsTheNumberOfVertices) {
     for (const double depth : {0.05, 0.12}) {
         Network network = standing_on_sheet(shapes::grid(8, 8), depth);
         const Network before = network;
-        ThreadTeam team(1);
-        NoProgress progress;
-        const std::vector<SelfCrossing> left = *make_sound(network, team, progress);
+        const std::vector<SelfCrossing> left = *make_sound(network, one_thread(), unwatched());
         EXPECT_EQ(left, crossings(Surface(network), 1));
         EXPECT_TRUE(crossings(Surface(network), 1).empty());
         EXPECT_EQ(network.validate(), "");
@@ -325,11 +301,8 @@ TEST(SoundStart, KeepsTheNumberOfVertices) {
 TEST(SoundStart, OfAClosedSurfaceLosesNoFace) {
     Network network = crumpled_sphere(1.5);
     const std::vector<Triangle> faces = network.faces();
-    ThreadTeam team(1);
-    NoProgress progress;
-    EXPECT_FALSE(make_sound(network, team, progress)->empty());
+    EXPECT_FALSE(make_sound(network, one_thread(), unwatched())->empty());
     EXPECT_EQ(network.faces(), faces);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::tangles_test

@@ -4,18 +4,10 @@
 // Flattened and folded faces along a boundary, and its notches.
 #include "vcg_core/learning/boundary_faces.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <map>
-#include <utility>
-#include <vector>
-
+#include "tests/unit/support/prelude.h"
 #include "vcg_core/mesh/triangle.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::boundary_faces_test {
 
 using vcg::Point3f;
 
@@ -197,5 +189,4 @@ TEST(BoundaryFaces, DoNotTakeASpikeForANotch) {
     EXPECT_EQ(mend(spike, true), 0);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::boundary_faces_test

@@ -2,85 +2,49 @@
 // Copyright the Neural Mesh authors
 
 // Counters, the turn of normals, and saturation.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <vector>
-
+#include "tests/unit/support/prelude.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/learning/growth_schedule.h"
 #include "vcg_core/learning/normal_turn.h"
 #include "vcg_core/learning/utility_counter.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::counters_test {
+
+constexpr long double kLogOfZero = -std::numeric_limits<long double>::infinity();
 
 // The counters with a common scale against eager ones, which are multiplied one by one after every signal.
-
-/// A number with a separate exponent, so that eager decay does not leave its range.
-struct Wide {
-    long double mantissa = 0;
-    long long exponent = 0;
-
-    void normalise() {
-        int shift = 0;
-        mantissa = std::frexp(mantissa, &shift);
-        exponent = mantissa == 0 ? 0 : exponent + shift;
-    }
-    void multiply(long double factor) {
-        mantissa *= factor;
-        normalise();
-    }
-    void add(long double amount) {
-        const long double here = exponent < -16000 ? 0 : std::ldexp(mantissa, static_cast<int>(exponent));
-        if (amount == 0) return;
-        mantissa = here + amount;
-        exponent = 0;
-        normalise();
-    }
-    /// log2, to compare numbers of any size.
-    long double log() const {
-        return mantissa == 0 ? -std::numeric_limits<long double>::infinity()
-                             : std::log2(mantissa) + static_cast<long double>(exponent);
-    }
-    double value() const {
-        return exponent < -1000 ? 0 : static_cast<double>(std::ldexp(mantissa, static_cast<int>(exponent)));
-    }
-};
 
 /// Section 3 of the paper to the letter: decays all counters at every win.
 struct EagerCounters {
     double decay;
     int maturity;
-    std::vector<Wide> values;
+    std::vector<long double> logs;  ///< log2 of each counter, as its decay leaves the range of numbers
     std::vector<int> wins;
 
     void resize(std::size_t n) {
-        values.resize(n);
+        logs.resize(n, kLogOfZero);
         wins.resize(n);
     }
     void win(std::size_t v, double amount) {
-        values[v].add(static_cast<long double>(amount));
+        if (amount > 0) logs[v] = std::log2(std::exp2(logs[v]) + amount);
         ++wins[v];
-        for (Wide& value : values) value.multiply(static_cast<long double>(decay));
+        for (long double& log : logs) log += std::log2(static_cast<long double>(decay));
     }
     void share(std::size_t v, std::size_t u, double of_v, double of_u) {
-        values[u] = values[v];
-        values[v].multiply(static_cast<long double>(of_v) / static_cast<long double>(of_v + of_u));
-        values[u].multiply(static_cast<long double>(of_u) / static_cast<long double>(of_v + of_u));
+        const long double sum = static_cast<long double>(of_v) + of_u;
+        logs[u] = logs[v] + std::log2(of_u / sum);
+        logs[v] += std::log2(of_v / sum);
         wins[v] = wins[u] = 0;
     }
     void remove(std::size_t v) {
-        values[v] = {};
+        logs[v] = kLogOfZero;
         wins[v] = 0;
     }
     /// log2 of the highest counter among the mature; minus infinity if there is none.
     long double highest() const {
-        long double most = -std::numeric_limits<long double>::infinity();
-        for (std::size_t v = 0; v < values.size(); ++v)
-            if (wins[v] >= maturity) most = std::max(most, values[v].log());
+        long double most = kLogOfZero;
+        for (std::size_t v = 0; v < logs.size(); ++v)
+            if (wins[v] >= maturity) most = std::max(most, logs[v]);
         return most;
     }
 };
@@ -93,8 +57,8 @@ double tolerance(double decay, int wins) {
 }
 
 void compare(const UtilityCounters& lazy, const EagerCounters& eager, double relative) {
-    for (std::size_t v = 0; v < eager.values.size(); ++v) {
-        const double expected = eager.values[v].value();
+    for (std::size_t v = 0; v < eager.logs.size(); ++v) {
+        const double expected = static_cast<double>(std::exp2(eager.logs[v]));
         ASSERT_NEAR(lazy.value(static_cast<VertexId>(v)), expected, relative * expected + 1e-290)
             << "vertex " << v;
         ASSERT_EQ(lazy.wins(static_cast<VertexId>(v)), eager.wins[v]) << "vertex " << v;
@@ -104,8 +68,7 @@ void compare(const UtilityCounters& lazy, const EagerCounters& eager, double rel
     if (std::isinf(most)) return;
     ASSERT_GE(top, 0);
     ASSERT_GE(eager.wins[static_cast<std::size_t>(top)], eager.maturity);
-    ASSERT_NEAR(static_cast<double>(eager.values[static_cast<std::size_t>(top)].log() - most), 0,
-                2 * relative);
+    ASSERT_NEAR(static_cast<double>(eager.logs[static_cast<std::size_t>(top)] - most), 0, 2 * relative);
 }
 
 struct Run {
@@ -122,7 +85,7 @@ void compare_over_a_run(const Run& run) {
     lazy.resize(run.vertices);
     eager.resize(static_cast<std::size_t>(run.vertices));
     const double relative = tolerance(run.decay, run.wins);
-    const auto any = [&] { return random.below(static_cast<std::uint32_t>(eager.values.size())); };
+    const auto any = [&] { return random.below(static_cast<std::uint32_t>(eager.logs.size())); };
     for (int i = 0; i < run.wins; ++i) {
         // A few favourites, so that counters of very different size exist.
         const std::uint32_t v = random.below(3) == 0 ? any() : any() / 8;
@@ -130,7 +93,7 @@ void compare_over_a_run(const Run& run) {
         lazy.win(static_cast<VertexId>(v), amount);
         eager.win(v, amount);
         if (i % 100 == 99) {
-            const std::size_t u = eager.values.size();
+            const std::size_t u = eager.logs.size();
             if (u < 300) {
                 lazy.resize(static_cast<int>(u) + 1);
                 eager.resize(u + 1);
@@ -299,5 +262,4 @@ TEST(Saturation, IsNotReachedWhileTheStartMeshIsThinnedOut) {
     EXPECT_TRUE(period(40));
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::counters_test

@@ -4,48 +4,28 @@
 // The crease measure on shapes whose creases are known.
 #include "vcg_core/learning/crease_measure.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
+#include "tests/unit/support/prelude.h"
 #include "tests/unit/support/referee.h"
-#include "tests/unit/support/shapes.h"
-#include "tests/unit/support/targets.h"
 #include "vcg_core/learning/learner.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::crease_measure_test {
 
 /// A network that has learned a cloud, with its crease values.
 struct Learned {
-    Learned(const shapes::Cloud& cloud, int vertices) : target(targets::target_of(cloud)) {
+    Learned(const Cloud& cloud, int vertices) : target(target_of(cloud)) {
         options.grow_to = vertices;
         options.utility_increment = UtilityIncrement::one;
         options.settling_signals_per_vertex = 0;
-        Learner learner(target, options, referee::network_of(shapes::scaled(shapes::icosphere(1), 0.3)));
-        NoProgress progress;
-        learner.run(100, progress);
+        Learner learner(target, options, network_of(shapes::scaled(shapes::icosphere(1), 0.3)));
+        learner.run(100, unwatched());
         CreaseMeasure measure;
-        ThreadTeam team(1);
         Random random(7);
         for (int sweep = 0; sweep < 30; ++sweep) {
             for (int i = 0; i < vertices; ++i) learner.basic_step(target.sample(random));
-            if (sweep >= 6) measure.observe(learner.network(), team);
+            if (sweep >= 6) measure.observe(learner.network(), one_thread());
         }
         network = learner.network();
-        values = measure.values(network, team);
-    }
-
-    double mean_edge() const {
-        double sum = 0;
-        int count = 0;
-        for (const VertexId v : network.vertices())
-            for (const VertexId u : network.ring(v)) {
-                sum += static_cast<double>((network.position(u) - network.position(v)).Norm());
-                ++count;
-            }
-        return sum / count;
+        values = measure.values(network, one_thread());
     }
 
     TargetSpace target;
@@ -71,7 +51,7 @@ struct Hits {
 /// must be below. Between lies the transition.
 Hits hits_on_cube(const Learned& run, double half) {
     Hits hits;
-    const double edge = run.mean_edge();
+    const auto edge = static_cast<double>(mean_edge_length(Surface(run.network)));
     for (const VertexId v : run.network.vertices()) {
         const double d = distance_from_cube_edge(run.network.position(v), half) / edge;
         const bool above = run.values[v] > 1;
@@ -113,11 +93,10 @@ TEST(CreaseMeasure, FindsNothingOnASphere) {
 }
 
 TEST(CreaseMeasure, FindsNothingOnAPlane) {
-    const Network network = referee::network_of(shapes::grid(12, 9));
+    const Network network = network_of(shapes::grid(12, 9));
     CreaseMeasure measure;
-    ThreadTeam team(1);
-    measure.observe(network, team);
-    for (const float value : measure.values(network, team)) EXPECT_LT(value, 1e-3F);
+    measure.observe(network, one_thread());
+    for (const float value : measure.values(network, one_thread())) EXPECT_LT(value, 1e-3F);
 }
 
 TEST(CreaseMeasure, IsIndifferentToScale) {
@@ -126,25 +105,23 @@ TEST(CreaseMeasure, IsIndifferentToScale) {
     for (const VertexId v : run.network.vertices()) large.set_position(v, run.network.position(v) * 8);
     CreaseMeasure of_small;
     CreaseMeasure of_large;
-    ThreadTeam team(1);
-    of_small.observe(run.network, team);
-    of_large.observe(large, team);
+    of_small.observe(run.network, one_thread());
+    of_large.observe(large, one_thread());
     EXPECT_EQ(of_small.moments(), 1);
-    const PerVertex<float> a = of_small.values(run.network, team);
-    const PerVertex<float> b = of_large.values(large, team);
+    const PerVertex<float> a = of_small.values(run.network, one_thread());
+    const PerVertex<float> b = of_large.values(large, one_thread());
     EXPECT_GT(*std::max_element(a.begin(), a.end()), 1.0F);
     for (VertexId v = 0; v < a.size(); ++v) EXPECT_NEAR(a[v], b[v], 1e-4F);
 }
 
 /// Of a round that somebody has stopped before its first moment.
 TEST(CreaseMeasure, IsTheSameWithOneOfNoMoments) {
-    const Network network = referee::network_of(shapes::icosphere(2));
+    const Network network = network_of(shapes::icosphere(2));
     CreaseMeasure moments;
-    ThreadTeam team(1);
-    moments.observe(network, team);
-    const PerVertex<float> before = moments.values(network, team);
+    moments.observe(network, one_thread());
+    const PerVertex<float> before = moments.values(network, one_thread());
     moments.add(CreaseMeasure());
-    const PerVertex<float> after = moments.values(network, team);
+    const PerVertex<float> after = moments.values(network, one_thread());
     EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin(), after.end()));
 }
 
@@ -174,14 +151,12 @@ TEST(CreaseMeasure, MeasuresAMovedVertexWhereItLies) {
     }
     ASSERT_GE(nearest, 0);
     Network moved = run.network;
-    const vcg::Point3f p = moved.position(nearest);
-    const auto edge = static_cast<float>(run.mean_edge());
-    moved.set_position(nearest, p - vcg::Point3f(0, edge, 0));
+    moved.set_position(nearest,
+                       moved.position(nearest) - vcg::Point3f(0, mean_edge_length(Surface(moved)), 0));
     const float there = one.values(run.network, team)[nearest];
     const float aside = one.values(run.network, moved, source, team)[nearest];
     EXPECT_GT(there, 1.0F);
     EXPECT_LT(aside, 0.5F * there);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::crease_measure_test

@@ -4,25 +4,12 @@
 // The learner against the reference, step by step, and properties of whole runs.
 #include "vcg_core/learning/learner.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
 #include "tests/unit/reference/reference_learner.h"
-#include "tests/unit/support/referee.h"
 #include "tests/unit/support/runs.h"
-#include "tests/unit/support/targets.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::learner_test {
 
-using targets::target_of;
-
-Network start_of(const shapes::Shape& shape, double scale) {
-    return referee::network_of(shapes::scaled(shape, scale));
-}
+Network start_of(const Shape& shape, double scale) { return network_of(shapes::scaled(shape, scale)); }
 
 /// Equal connectivity and wins, positions within \p tolerance, counters within 1 %: delta is a difference of
 /// nearly equal normals, of which float leaves few digits.
@@ -42,7 +29,7 @@ void expect_same_state(const Learner& learner, const reference::ReferenceLearner
 }
 
 /// Runs are short: once a crumpled star has nearly no area, float and double learn different meshes.
-void compare_runs(const shapes::Cloud& cloud, const Network& start, LearnerOptions options, int signals,
+void compare_runs(const Cloud& cloud, const Network& start, LearnerOptions options, int signals,
                   int batch = 1) {
     options.grow_to = 100000;
     const TargetSpace target = target_of(cloud);
@@ -123,14 +110,13 @@ TEST(Learner, IsTheReferenceInBatchesOnOneThreadAndOnThree) {
 /// For the thread sanitizer, too, which takes no whole runs.
 TEST(Learner, SettlesAlikeOnOneThreadAndOnTwo) {
     const TargetSpace target = target_of(shapes::torus_cloud(5000));
-    NoProgress progress;
     LearnerOptions options;
     options.threads = 1;
     Learner alone(target, options, start_of(shapes::torus_grid(70, 50), 0.3));
-    ASSERT_TRUE(alone.settle(1, progress));
+    ASSERT_TRUE(alone.settle(1, unwatched()));
     options.threads = 2;
     Learner together(target, options, start_of(shapes::torus_grid(70, 50), 0.3));
-    ASSERT_TRUE(together.settle(1, progress));
+    ASSERT_TRUE(together.settle(1, unwatched()));
     EXPECT_EQ(together.signals(), alone.signals());
     for (VertexId v = 0; v < alone.network().slot_count(); ++v) {
         ASSERT_EQ(together.network().position(v), alone.network().position(v)) << v;
@@ -157,47 +143,8 @@ TEST(Learner, RefusesAStartLargerThanTheTarget) {
     EXPECT_NO_THROW(Learner(target, options, start_of(shapes::icosphere(1), 0.2)));
 }
 
-TEST(Learner, StaysSoundThroughEveryStepOfARun) {
-    for (const int min_wins : {0, 30}) {
-        for (const shapes::Shape& shape : {shapes::tetrahedron(), shapes::torus_grid(8, 5)}) {
-            LearnerOptions options;
-            options.min_wins_per_split = min_wins;
-            options.signals_per_split = 20;
-            options.signals_per_collapse = 3;
-            const TargetSpace target = target_of(shapes::torus_cloud(3000, 0.01));
-            const Network start = start_of(shape, 0.2);
-            Learner learner(target, options, start);
-            Random random(4);
-            for (int i = 1; i <= 12000; ++i) {
-                learner.basic_step(target.sample(random));
-                if (i % 20 == 0) learner.vertex_split();
-                if (i % 300 == 0) learner.half_edge_collapse();
-                if (i % 20 != 0) continue;
-                ASSERT_EQ(learner.network().validate(), "") << i;
-                ASSERT_EQ(learner.network().genus(), start.genus()) << i;
-            }
-            EXPECT_GT(learner.collapses(), 0);
-        }
-    }
-}
-
-TEST(Learner, ReachesItsTargetOnAnOpenMeshToo) {
-    LearnerOptions options;
-    options.grow_to = 300;
-    const TargetSpace target = target_of(shapes::plane_cloud(3000));
-    NoProgress progress;
-    for (const shapes::Shape& shape : {shapes::grid(2, 2), shapes::grid(5, 5), shapes::tube(5, 3)}) {
-        const Network start = start_of(shape, 0.5);
-        Learner learner(target, options, start);
-        EXPECT_EQ(learner.run(0, progress), StopReason::target_reached);
-        EXPECT_EQ(learner.network().vertex_count(), 300);
-        EXPECT_EQ(learner.network().validate(), "");
-        EXPECT_EQ(learner.network().boundary_loop_count(), start.boundary_loop_count());
-    }
-}
-
 /// Watches the fractions while the learner settles.
-class Fractions : public runs::Watch {
+class Fractions : public Watch {
 public:
     bool operator()(double fraction, const char* text) override {
         largest_step = std::max(largest_step, fraction - last);
@@ -232,9 +179,8 @@ TEST(Learner, LearnsFromPlacesThatItReturnsTo) {
     const Network start = start_of(shapes::torus_grid(20, 12), 0.3);
     PerVertex<vcg::Point3f> places(start.slot_count());
     for (const VertexId v : start.vertices()) places[v] = start.position(v);
-    NoProgress progress;
     Learner learner(target, LearnerOptions(), start);
-    ASSERT_TRUE(learner.learn_at_rest(5000, progress));
+    ASSERT_TRUE(learner.learn_at_rest(5000, unwatched()));
     EXPECT_EQ(learner.signals(), 5000);
     learner.move_to(places);
     for (const VertexId v : start.vertices()) ASSERT_EQ(learner.network().position(v), places[v]);
@@ -257,14 +203,12 @@ TEST(Learner, DoesNotObserveTheStartMesh) {
     options.grow_to = 643;
     options.settling_signals_per_vertex = 0;
     Learner learner(target, options, start_of(shapes::icosphere(3), 0.25));
-    NoProgress progress;
-    ASSERT_TRUE(learner.settle(1, progress, false));
+    ASSERT_TRUE(learner.settle(1, unwatched(), false));
     EXPECT_EQ(learner.crease_measure().moments(), 0);
-    ASSERT_TRUE(learner.settle(1, progress));
+    ASSERT_TRUE(learner.settle(1, unwatched()));
     EXPECT_GT(learner.crease_measure().moments(), 0);
-    EXPECT_EQ(learner.run(1, progress), StopReason::target_reached);
+    EXPECT_EQ(learner.run(1, unwatched()), StopReason::target_reached);
     EXPECT_EQ(learner.crease_measure().moments(), 0);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::learner_test

@@ -2,41 +2,10 @@
 // Copyright the Neural Mesh authors
 
 // Construction, counts, numbering, order and validation of a network.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <limits>
-#include <numeric>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "tests/unit/support/network_starts.h"
-#include "tests/unit/support/referee.h"
-#include "tests/unit/support/shapes.h"
-#include "vcg_core/base/random.h"
 #include "vcg_core/mesh/free_ids.h"
-#include "vcg_core/mesh/network.h"
 
-namespace neuralmesh {
-namespace {
-
-using network_starts::expect_sound;
-using network_starts::random_operation;
-using network_starts::Start;
-using network_starts::starts;
-using network_starts::together;
-using referee::canonical;
-using referee::census;
-using referee::network_of;
-using shapes::Shape;
-
-// Construction, counts, numbering and validation.
+namespace neuralmesh::network_test {
 
 TEST(Network, HasTheCountsOfItsFaces) {
     for (const Start& start : starts()) {
@@ -45,9 +14,7 @@ TEST(Network, HasTheCountsOfItsFaces) {
         EXPECT_EQ(canonical(network.faces()), canonical(start.shape.faces));
         EXPECT_EQ(network.vertex_count(), static_cast<int>(start.shape.positions.size()));
         EXPECT_EQ(network.euler_characteristic(), start.euler);
-        EXPECT_EQ(network.boundary_loop_count(), start.loops);
-        EXPECT_EQ(network.component_count(), start.components);
-        EXPECT_EQ(network.genus(), start.genus);
+        EXPECT_EQ(topology_of(network), (Topology{start.components, start.genus, start.loops}));
         expect_sound(network, census(start.shape.faces));
     }
 }
@@ -112,45 +79,36 @@ void expect_refused(const Shape& shape, const char* why) {
     EXPECT_THROW(network_of(shape), TopologyError) << why;
 }
 
+/// Of \p shape after \p change.
+template <class Change>
+void expect_refused_after(Shape shape, const char* why, const Change& change) {
+    change(shape);
+    expect_refused(shape, why);
+}
+
 TEST(Network, RefusesNonManifolds) {
-    Shape s = shapes::tetrahedron();
-    std::swap(s.faces[0][0], s.faces[0][1]);
-    expect_refused(s, "one face turned over");
-
-    s = shapes::tetrahedron();
-    s.faces.push_back(s.faces[0]);
-    expect_refused(s, "a face twice");
-
-    s = shapes::grid(3, 3);
-    s.positions.emplace_back(0.0, 0.0, 1.0);
-    s.faces.push_back({0, 4, 9});
-    expect_refused(s, "three faces at an edge");
-
-    s = shapes::tetrahedron();
-    s.positions.emplace_back(3.0, 0.0, 0.0);
-    expect_refused(s, "a vertex without faces");
-
-    s = shapes::tetrahedron();
-    s.faces[0][0] = 4;
-    expect_refused(s, "a face naming a vertex that does not exist");
-    s.faces[0][0] = -1;
-    expect_refused(s, "a face naming a negative vertex");
-
-    s = shapes::tetrahedron();
-    s.faces[0][1] = s.faces[0][0];
-    expect_refused(s, "a face with a corner twice");
-
+    const Shape whole = shapes::tetrahedron();
+    expect_refused_after(whole, "one face turned over",
+                         [](Shape& s) { std::swap(s.faces[0][0], s.faces[0][1]); });
+    expect_refused_after(whole, "a face twice", [](Shape& s) { s.faces.push_back(s.faces[0]); });
+    expect_refused_after(shapes::grid(3, 3), "three faces at an edge", [](Shape& s) {
+        s.positions.emplace_back(0.0, 0.0, 1.0);
+        s.faces.push_back({0, 4, 9});
+    });
+    expect_refused_after(whole, "a vertex without faces",
+                         [](Shape& s) { s.positions.emplace_back(3.0, 0.0, 0.0); });
+    for (const VertexId v : {4, -1})
+        expect_refused_after(whole, "a vertex that does not exist", [v](Shape& s) { s.faces[0][0] = v; });
+    expect_refused_after(whole, "a face with a corner twice",
+                         [](Shape& s) { s.faces[0][1] = s.faces[0][0]; });
     expect_refused(shapes::bipyramid(16), "a closed valence of 16");
     expect_refused(shapes::fan(15), "an open valence of 16");
     expect_refused(shapes::fan(40), "an open valence of 41");
     expect_refused({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}}, "a closed valence of 2");
-
     for (const double bad :
-         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-        s = shapes::tetrahedron();
-        s.positions[2][1] = bad;
-        expect_refused(s, "a position that is not finite");
-    }
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+        expect_refused_after(whole, "a position that is not finite",
+                             [bad](Shape& s) { s.positions[2][1] = bad; });
 }
 
 TEST(Network, RefusesTwoFansThatMeetInOneVertex) {
@@ -180,10 +138,10 @@ std::uint64_t slow_morton_code(const vcg::Point3f& p) {
 
 /// A torus with free slots; its coordinates reach 1.4.
 Network torus_with_free_slots() {
-    Network network = referee::network_of(shapes::torus_grid(30, 20));
+    Network network = network_of(shapes::torus_grid(30, 20));
     Random random(5);
-    for (int step = 0; step < 3000; ++step) network_starts::random_operation(network, random, 400, 700);
-    for (int step = 0; step < 300; ++step) network_starts::random_operation(network, random, 1, 1);
+    for (int step = 0; step < 3000; ++step) random_operation(network, random, 400, 700);
+    for (int step = 0; step < 300; ++step) random_operation(network, random, 1, 1);
     return network;
 }
 
@@ -243,5 +201,4 @@ TEST(FreeIds, TakeReturnsEachIdOnce) {
     }
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::network_test

@@ -4,19 +4,14 @@
 // Self-crossings against vcglib's, and their update after changes against a new search.
 #include "vcg_core/mesh/self_crossings.h"
 
-#include <gtest/gtest.h>
 #include <vcg/complex/algorithms/clean.h>
 #include <vcg/complex/algorithms/update/bounding.h>
 #include <vcg/complex/algorithms/update/normal.h>
 #include <vcg/complex/complex.h>
 
-#include <algorithm>
-#include <set>
-
 #include "tests/unit/support/crumpled.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::self_crossings_test {
 
 class CutVertex;
 class CutFace;
@@ -67,9 +62,9 @@ TEST(Crossings, AreThoseThatVcglibFinds) {
 
 TEST(Crossings, FacesApartInATiltedPlaneHaveNone) {
     for (const double tilt : {0.01, 0.1, 0.3, 0.7}) {
-        shapes::Shape sheet = shapes::grid(12, 12);
+        Shape sheet = shapes::grid(12, 12);
         for (vcg::Point3d& p : sheet.positions) p += vcg::Point3d(0.013, tilt * p[0] + 0.021, 0.3 * p[1]);
-        EXPECT_TRUE(crossings(Surface(referee::network_of(sheet)), 1).empty()) << tilt;
+        EXPECT_TRUE(crossings(Surface(network_of(sheet)), 1).empty()) << tilt;
     }
 }
 
@@ -99,10 +94,9 @@ TEST(Crossings, FacesWithoutAreaHaveNoneAndCostNothing) {
     Network network = crumpled_sphere(0.1);
     for (VertexId v = 0; v < network.slot_count(); ++v)
         if (network.position(v)[2] > 0) network.set_position(v, {0, 0, 5});
-    ThreadTeam team(1);
     std::int64_t pairs = 0;
     const Surface surface(network);
-    for (const SelfCrossing& c : self_crossings(surface, team, &pairs))
+    for (const SelfCrossing& c : self_crossings(surface, one_thread(), &pairs))
         for (const std::size_t face : {0U, 3U}) {
             const Vector3& a = surface.positions[c[face]];
             const Vector3& b = surface.positions[c[face + 1]];
@@ -115,9 +109,7 @@ TEST(Crossings, FacesWithoutAreaHaveNoneAndCostNothing) {
 TEST(Crossings, AreKnownAfterAChangeFromThoseBefore) {
     Network network = crumpled_sphere(0.2);
     Random random(3);
-    const auto some = [&] {
-        return static_cast<VertexId>(random.below(static_cast<std::uint32_t>(network.slot_count())));
-    };
+    const auto some = [&] { return any_slot(network, random); };
     for (int change = 0; change < 30; ++change) {
         const Surface before(network);
         const std::vector<SelfCrossing> known = crossings(before, 1);
@@ -145,5 +137,4 @@ TEST(Crossings, AreKnownAfterAChangeFromThoseBefore) {
     }
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::self_crossings_test

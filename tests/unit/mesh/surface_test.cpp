@@ -3,27 +3,14 @@
 
 // The copy of a network's geometry; nearest points of triangles and faces, against samples and a look at
 // every face.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <set>
-#include <utility>
-
+#include "tests/unit/support/prelude.h"
 #include "tests/unit/support/referee.h"
-#include "tests/unit/support/shapes.h"
 #include "vcg_core/mesh/face_tree.h"
 #include "vcg_core/mesh/face_walk.h"
-#include "vcg_core/mesh/surface.h"
 #include "vcg_core/mesh/triangle.h"
 #include "vcg_core/mesh/triangle_lanes.h"
 
-namespace neuralmesh {
-namespace {
-
-using referee::network_of;
+namespace neuralmesh::surface_test {
 
 // The nearest point of a triangle against a dense sampling of the triangle.
 
@@ -133,8 +120,7 @@ Network network_with_free_slots() {
     Network network = network_of(shapes::icosphere(2), 0.02);
     Random random(4);
     for (int i = 0; i < 40; ++i) {
-        const auto gone =
-            static_cast<VertexId>(random.below(static_cast<std::uint32_t>(network.slot_count())));
+        const auto gone = any_slot(network, random);
         if (network.alive(gone) && network.can_collapse(gone, network.ring(gone)[0]))
             network.collapse(gone, network.ring(gone)[0]);
     }
@@ -145,7 +131,7 @@ Network network_with_free_slots() {
 Hit nearest_of(const Surface& surface, const std::vector<int>& faces, const Vector3& p) {
     std::vector<Triangle> corners;
     for (const int f : faces) corners.push_back(surface.faces[f]);
-    Hit hit = referee::nearest_face(p, surface.positions, corners);
+    Hit hit = nearest_face(p, surface.positions, corners);
     hit.face = faces.at(static_cast<std::size_t>(hit.face));
     return hit;
 }
@@ -183,24 +169,29 @@ TEST(Surface, HasTheFacesOfTheNetworkAroundEveryVertex) {
     }
 }
 
-TEST(Surface, KnowsTheNormalsOfNeighbouringFaces) {
+TEST(Surface, KnowsTheNormalsOfNeighbouringFacesAndItsBoundary) {
+    EXPECT_FALSE(Surface(network_of(shapes::icosphere(1))).has_boundary());
     const Network network = network_of(shapes::grid(4, 4), 0.01);
     const Surface surface(network);
-    int on_boundary = 0;
-    for (const Triangle& face : surface.faces)
+    int boundary_edges = 0;
+    for (int f = 0; f < surface.face_count(); ++f)
         for (std::size_t k = 0; k < 3; ++k) {
-            const VertexId a = face[k];
-            const VertexId b = face[(k + 1) % 3];
+            const VertexId a = surface.faces[f][k], b = surface.faces[f][(k + 1) % 3];
             Vector3 expected = Vector3::Zero();
             for (int g = 0; g < surface.face_count(); ++g)
                 for (std::size_t j = 0; j < 3; ++j)
                     if (surface.faces[g][j] == b && surface.faces[g][(j + 1) % 3] == a)
-                        expected =
-                            unit_normal(surface.corner(g, 0), surface.corner(g, 1), surface.corner(g, 2));
-            on_boundary += expected == Vector3(0, 0, 0) ? 1 : 0;
+                        expected = unit_normal(surface, g);
             EXPECT_LT((normal_beyond(surface, a, b) - expected).norm(), 1e-6);
+            const bool on_boundary = expected.isZero();
+            boundary_edges += on_boundary ? 1 : 0;
+            EXPECT_EQ(surface.on_boundary(f, k), on_boundary);
+            Foot middle = foot_on_triangle((surface.positions[a] + surface.positions[b]) / 2,
+                                           surface.corner(f, 0), surface.corner(f, 1), surface.corner(f, 2));
+            middle.weights[(k + 2) % 3] = 0;
+            EXPECT_EQ(is_beyond_boundary(surface, {f, middle}), on_boundary);
         }
-    EXPECT_GT(on_boundary, 0);
+    EXPECT_EQ(boundary_edges, 2 * network.edge_count() - 3 * surface.face_count());
 }
 
 TEST(Surface, HasAMeanEdgeLength) {
@@ -223,6 +214,12 @@ TEST(Surface, SpreadsValuesOverRings) {
     }
 }
 
+void expect_same(const Hit& found, const Hit& expected) {
+    EXPECT_EQ(found.face, expected.face);
+    EXPECT_EQ(found.foot.squared_distance, expected.foot.squared_distance);
+    EXPECT_EQ(found.foot.weights, expected.foot.weights);
+}
+
 TEST(FaceTree, FindsTheNearestFace) {
     const Surface surface(network_of(shapes::torus_grid(20, 10), 0.05));
     Random random(5);
@@ -231,10 +228,7 @@ TEST(FaceTree, FindsTheNearestFace) {
         const FaceTree tree(surface, faces);
         for (int i = 0; i < 300; ++i) {
             const Vector3 p = 1.5F * in_cube(random);
-            const Hit expected = nearest_of(surface, faces, p);
-            const Hit found = tree.nearest(p);
-            EXPECT_EQ(found.face, expected.face);
-            EXPECT_EQ(found.foot.squared_distance, expected.foot.squared_distance);
+            expect_same(tree.nearest(p), nearest_of(surface, faces, p));
         }
     }
 }
@@ -264,21 +258,14 @@ std::vector<Vector3> probes(const Surface& surface, std::size_t count, Random& r
     return points;
 }
 
-void expect_same(const Hit& found, const Hit& expected) {
-    EXPECT_EQ(found.face, expected.face);
-    EXPECT_EQ(found.foot.squared_distance, expected.foot.squared_distance);
-    EXPECT_EQ(found.foot.weights, expected.foot.weights);
-}
-
 // Points beside the edges of flat squares: rounding decides which of two faces is nearer, and a box may seem
 // farther than the face in it.
 TEST(FaceTree, FindsTheNearestFaceWhereRoundingDecides) {
     Random random(9);
-    ThreadTeam team(1);
     const Surface surface(network_of(shapes::cube()));
     const FaceTree tree(surface);
     const std::vector<Vector3> points = probes(surface, 4000, random);
-    const std::vector<Hit> hits = tree.nearest(points, team);
+    const std::vector<Hit> hits = tree.nearest(points, one_thread());
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Hit expected = nearest_of(surface, every(1, surface), points[i]);
         expect_same(tree.nearest(points[i]), expected);
@@ -290,8 +277,7 @@ TEST(FaceTree, FindsNothingWithoutFaces) {
     const Surface surface(network_of(shapes::cube()));
     const FaceTree tree(surface, {});
     EXPECT_EQ(tree.nearest({0, 0, 0}).face, -1);
-    ThreadTeam team(1);
-    EXPECT_EQ(tree.nearest({{0, 0, 0}}, team).at(0).face, -1);
+    EXPECT_EQ(tree.nearest({{0, 0, 0}}, one_thread()).at(0).face, -1);
     tree.for_overlapping(surface, 0, [](int) { ADD_FAILURE(); });
 }
 
@@ -346,27 +332,4 @@ TEST(FaceWalk, NeverEndsFurtherThanItBegan) {
     }
 }
 
-TEST(Surface, KnowsItsBoundaryEdges) {
-    EXPECT_FALSE(Surface(referee::network_of(shapes::icosphere(1))).has_boundary());
-    const Network network = referee::network_of(shapes::grid(4, 3));
-    const Surface surface(network);
-    int edges = 0;
-    for (int f = 0; f < surface.face_count(); ++f)
-        for (std::size_t k = 0; k < 3; ++k) {
-            const VertexId a = surface.faces[f][k];
-            const VertexId b = surface.faces[f][(k + 1) % 3];
-            const bool expected = normal_beyond(surface, a, b).isZero();
-            EXPECT_EQ(surface.on_boundary(f, k), expected);
-            edges += expected ? 1 : 0;
-            const Foot middle =
-                foot_on_triangle((surface.positions[a] + surface.positions[b]) / 2, surface.corner(f, 0),
-                                 surface.corner(f, 1), surface.corner(f, 2));
-            Foot exact = middle;
-            exact.weights[(k + 2) % 3] = 0;
-            EXPECT_EQ(is_beyond_boundary(surface, {f, exact}), expected);
-        }
-    EXPECT_EQ(edges, network.edge_count() - (3 * surface.face_count() - network.edge_count()));
-}
-
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::surface_test

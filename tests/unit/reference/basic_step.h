@@ -7,9 +7,7 @@
 
 #include <vcg/space/point3.h>
 
-#include <array>
-#include <vector>
-
+#include "tests/unit/support/prelude.h"
 #include "vcg_core/engine/eight_steps.h"
 #include "vcg_core/mesh/network.h"
 

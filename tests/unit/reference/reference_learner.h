@@ -5,19 +5,12 @@
 // one and in double, and counters that are decayed one by one. The oracle for Learner.
 #pragma once
 
-#include <cmath>
-#include <limits>
-#include <numeric>
-#include <utility>
-#include <vector>
-
 #include "tests/unit/reference/basic_step.h"
 #include "vcg_core/learning/learner_options.h"
-#include "vcg_core/mesh/network.h"
 
 namespace neuralmesh::reference {
 
-inline Positions positions_of(const Network& network) {
+inline Positions exact_positions_of(const Network& network) {
     Positions result(network.slot_count());
     for (const VertexId v : network.vertices()) result[v] = vcg::Point3d::Construct(network.position(v));
     return result;
@@ -27,7 +20,7 @@ inline Positions positions_of(const Network& network) {
 class ReferenceLearner {
 public:
     ReferenceLearner(Network start, const LearnerOptions& options)
-        : network_(std::move(start)), options_(options), positions_(positions_of(network_)) {
+        : network_(std::move(start)), options_(options), positions_(exact_positions_of(network_)) {
         grow();
     }
 

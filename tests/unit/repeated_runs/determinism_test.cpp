@@ -2,21 +2,10 @@
 // Copyright the Neural Mesh authors
 
 // The same input gives the same bytes, whatever the threads; position and scale of the cloud do not matter.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstring>
-#include <string>
-
 #include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/runs.h"
-#include "vcg_core/reconstruct.h"
 
-namespace neuralmesh {
-namespace {
-
-using runs::learn;
-using runs::variants;
+namespace neuralmesh::determinism_test {
 
 template <class T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
@@ -33,7 +22,7 @@ void expect_same(const NeuralMesh& a, const NeuralMesh& b) {
     EXPECT_EQ(a.report.mean_counter, b.report.mean_counter);
 }
 
-void expect_same_with_threads(const shapes::Cloud& cloud, Settings settings) {
+void expect_same_with_threads(const Cloud& cloud, Settings settings) {
     settings.threads = 1;
     const NeuralMesh first = learn(cloud, settings);
     settings.threads = 3;
@@ -43,9 +32,9 @@ void expect_same_with_threads(const shapes::Cloud& cloud, Settings settings) {
 TEST(Determinism, SameSeedSameBytesWhateverTheThreads) {
     for (const Settings& settings : variants())
         expect_same_with_threads(shapes::sphere_cloud(1500, 0.01), settings);
-    expect_same_with_threads(shapes::uneven_sphere_cloud(5000, 20, 0.01), runs::with_target(500));
-    const shapes::Cloud two = shapes::two_sphere_cloud(10000, 3);
-    Settings apart = runs::with_target(1500, kTetrahedron);
+    expect_same_with_threads(shapes::uneven_sphere_cloud(5000, 20, 0.01), with_target(500));
+    const Cloud two = shapes::two_sphere_cloud(10000, 3);
+    Settings apart = with_target(1500, kTetrahedron);
     apart.learn_topology = true;
     EXPECT_EQ(learn(two, apart).report.components, 2);
     expect_same_with_threads(two, apart);
@@ -53,14 +42,13 @@ TEST(Determinism, SameSeedSameBytesWhateverTheThreads) {
 
 /// From 3,000 vertices on, each thread has its own region of space.
 TEST(Determinism, SameBytesWhereThreadsShareTheNetwork) {
-    Settings settings;
-    settings.target_vertices = 5000;
+    Settings settings = with_target(5000);
     settings.signals_per_split = 40;
     settings.min_wins_per_split = 10;
     settings.settling_signals_per_vertex = 20;
     settings.fit_to_points = false;
     expect_same_with_threads(shapes::torus_cloud(20000, 0.005), settings);
-    settings = runs::with_target(3000);
+    settings = with_target(3000);
     settings.surface = kOpenSurface;
     settings.signals_per_split = 40;
     settings.min_wins_per_split = 10;
@@ -69,7 +57,7 @@ TEST(Determinism, SameBytesWhereThreadsShareTheNetwork) {
 }
 
 TEST(Determinism, AnotherSeedGivesAnotherMesh) {
-    const shapes::Cloud cloud = shapes::sphere_cloud(1500);
+    const Cloud cloud = shapes::sphere_cloud(1500);
     for (Settings settings : variants()) {
         const NeuralMesh first = learn(cloud, settings);
         settings.random_seed = 2;
@@ -79,10 +67,10 @@ TEST(Determinism, AnotherSeedGivesAnotherMesh) {
 
 TEST(Determinism, PlaceAndScaleDoNotMatter) {
     // Dyadic coordinates, moved and scaled by powers of two: exact in double.
-    shapes::Cloud cloud = shapes::box_cloud(1500);
+    Cloud cloud = shapes::box_cloud(1500);
     for (vcg::Point3d& p : cloud)
         for (int k = 0; k < 3; ++k) p[k] = std::round(p[k] * 0x1p20) * 0x1p-20;
-    shapes::Cloud moved = cloud;
+    Cloud moved = cloud;
     for (vcg::Point3d& p : moved) p = p * 0x1p10 + vcg::Point3d(0x1p24, -0x1p20, 0x1p22);
     for (const Settings& settings : variants()) {
         const NeuralMesh here = learn(cloud, settings);
@@ -97,5 +85,4 @@ TEST(Determinism, PlaceAndScaleDoNotMatter) {
     }
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::determinism_test

@@ -4,24 +4,12 @@
 // Every parameter at the ends of its range, and random settings on random clouds: no crash, a sound mesh,
 // and no more signals than the settings allow. NEURALMESH_RANDOM_RUNS=500 makes 500 runs instead of 12;
 // NEURALMESH_RANDOM_FIRST=N starts with run N, to repeat a failure.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <sstream>
-#include <string>
-
-#include "tests/unit/support/environment.h"
 #include "tests/unit/support/runs.h"
-#include "tests/unit/support/soundness.h"
 #include "vcg_core/learn_and_fit.h"
 #include "vcg_core/learning/learner.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::random_settings_test {
 
-using shapes::Cloud;
 using Kind = SettingInfo::Kind;
 
 /// Calls until a run is stopped, because some settings take billions of signals. Learning makes one per
@@ -30,7 +18,7 @@ constexpr int kPatience = 400;
 
 /// Upper bound on the signals of one growth with landing and settling.
 std::int64_t most_of_growth(const TargetSpace& target, const Settings& settings) {
-    const Learner learner(target, learner_options_from(settings), referee::network_of(shapes::tetrahedron()));
+    const Learner learner(target, learner_options_from(settings), network_of(shapes::tetrahedron()));
     const std::int64_t vertices = settings.target_vertices;
     const auto learning = [&](std::int64_t per_vertex) {
         return std::max<std::int64_t>(60000, per_vertex * vertices);
@@ -64,7 +52,7 @@ void expect_near_the_points(const NeuralMesh& mesh, const TargetSpace& target) {
 
 /// A tetrahedron in the middle of the points, for the settings that need a start mesh of the caller's.
 IndexedMesh<double> start_for(const TargetSpace& target) {
-    const shapes::Shape shape = shapes::tetrahedron();
+    const Shape shape = shapes::tetrahedron();
     IndexedMesh<double> start{{}, shape.faces};
     for (const vcg::Point3d& p : shape.positions)
         start.positions.push_back(target.frame().outside(vcg::Point3f::Construct(p) * 0.2F));
@@ -72,9 +60,9 @@ IndexedMesh<double> start_for(const TargetSpace& target) {
 }
 
 void expect_valid_result(const TargetSpace& target, const Settings& settings) {
-    runs::Watch patience(kPatience);
+    Watch patience(kPatience);
     const NeuralMesh mesh = reconstruct(target, settings, patience, start_for(target));
-    soundness::expect_sound(mesh);
+    expect_sound(mesh);
     expect_near_the_points(mesh, target);
     EXPECT_LE(mesh.report.signals, most_signals(target, settings));
     EXPECT_LE(mesh.report.vertices, settings.target_vertices);
@@ -91,11 +79,11 @@ void expect_valid_result(const TargetSpace& target, const Settings& settings) {
 }
 
 TEST(RandomSettings, EveryParameterWorksAtBothEndsOfItsRange) {
-    const TargetSpace target = targets::target_of(shapes::sphere_cloud(500));
+    const TargetSpace target = target_of(shapes::sphere_cloud(500));
     for (const SettingInfo& info : setting_table())
         for (const double end : {info.low, info.high}) {
             SCOPED_TRACE(testing::Message() << info.id << " = " << end);
-            Settings settings = runs::with_target(60);
+            Settings settings = with_target(60);
             settings.settling_signals_per_vertex = 10;
             info.store(settings, end);
             expect_valid_result(target, settings);
@@ -104,10 +92,10 @@ TEST(RandomSettings, EveryParameterWorksAtBothEndsOfItsRange) {
 
 /// Those that make each other worse, from the tetrahedron, where the network grows most.
 TEST(RandomSettings, HostilePairsWork) {
-    const TargetSpace target = targets::target_of(shapes::torus_cloud(2000));
+    const TargetSpace target = target_of(shapes::torus_cloud(2000));
     const auto expect_valid = [&](const char* name, const auto& change) {
         SCOPED_TRACE(name);
-        Settings settings = runs::with_target(150, kTetrahedron);
+        Settings settings = with_target(150, kTetrahedron);
         change(settings);
         expect_valid_result(target, settings);
     };
@@ -122,7 +110,7 @@ TEST(RandomSettings, HostilePairsWork) {
                  [](Settings& s) { s.utility_counter = kSignalCount, s.min_wins_per_split = 0; });
 }
 
-double fraction(Random& random) { return static_cast<double>(random.unit()); }
+double fraction(Random& random) { return shapes::unit(random); }
 
 /// Log-uniform between the bounds.
 double log_uniform(Random& random, double low, double high) {
@@ -184,7 +172,7 @@ Cloud random_cloud(Random& random) {
 /// A random cloud, or triangles of three consecutive points each.
 TargetSpace random_target(Random& random) {
     const Cloud cloud = random_cloud(random);
-    if (random.below(4) != 0 || cloud.size() < 6) return targets::target_of(cloud);
+    if (random.below(4) != 0 || cloud.size() < 6) return target_of(cloud);
     return TargetSpace::triangles(
         cloud.size() / 3, [&](std::size_t i, int k) { return cloud[3 * i + static_cast<std::size_t>(k)]; });
 }
@@ -199,8 +187,8 @@ std::string changes(const Settings& settings) {
 }
 
 TEST(RandomSettings, GiveValidResultsOnRandomClouds) {
-    const int runs = environment::number_of("NEURALMESH_RANDOM_RUNS", 12, 1);
-    const int first = environment::number_of("NEURALMESH_RANDOM_FIRST", 0, 0);
+    const int runs = number_from("NEURALMESH_RANDOM_RUNS", 12, 1);
+    const int first = number_from("NEURALMESH_RANDOM_FIRST", 0, 0);
     if (HasFailure()) return;
     int learned = 0, scattered = 0;
     for (int i = first; i < first + runs; ++i) {
@@ -230,5 +218,4 @@ TEST(RandomSettings, GiveValidResultsOnRandomClouds) {
     EXPECT_GE(learned, runs * 6 / 10);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::random_settings_test

@@ -1,27 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Lattices: nodes, links, solids without bridges, and their surfaces.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <cstdlib>
-#include <set>
-#include <vector>
-
+// Lattices: nodes, links, components, solids without bridges, and their surfaces.
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/small_lattice.h"
-#include "vcg_core/mesh/network.h"
+#include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/start/bridgeless_growth.h"
 #include "vcg_core/start/components.h"
-#include "vcg_core/start/lattice.h"
 #include "vcg_core/start/marching_tetrahedra.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::lattice_test {
 
 TEST(Lattice, NodeOfAPointIsTheNearestOne) {
     const Lattice lattice = small_lattice();
@@ -93,7 +81,7 @@ TEST(MarchingTetrahedra, SurfaceHasTwiceTheEulerCharacteristicOfTheSolid) {
         ASSERT_EQ(network.validate(), "");
         EXPECT_EQ(network.boundary_loop_count(), 0);
         EXPECT_EQ(network.euler_characteristic(), 2 * euler_characteristic(lattice, solid)) << seed;
-        EXPECT_GT(referee::enclosed_volume(mesh), 0);
+        EXPECT_GT(enclosed_volume(mesh), 0);
         for (const VertexId v : network.vertices()) {
             EXPECT_GE(network.ring(v).valence, 4);
             EXPECT_LE(network.ring(v).valence, 12);
@@ -233,5 +221,32 @@ TEST(BridgelessGrowth, ConnectedSetsAreThoseOfOneComponent) {
     EXPECT_EQ(differ, 0);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+// Components by runs against the union of all adjacent nodes.
+
+TEST(Components, AreTheSetsThatAdjacentNodesJoin) {
+    const Lattice lattice = small_lattice();
+    const Neighbours neighbours(lattice);
+    for (const std::uint32_t one_in : {2U, 3U, 6U}) {
+        NodeSet nodes;
+        for (const std::uint32_t count : random_counts(lattice, one_in, one_in))
+            nodes.push_back(count > 0 ? 1 : 0);
+        for (const bool value : {false, true}) {
+            DisjointSets sets(lattice.size());
+            for (NodeId i = 0; i < lattice.size(); ++i)
+                neighbours.for_each_at(i, neighbours.places(i), [&](NodeId j, int) {
+                    if (nodes[i] == value && nodes[j] == value) sets.join(i, j);
+                });
+            PerNode<NodeId> found(lattice.size(), -1);
+            NodeId last = -1;
+            for_each_component(lattice, nodes, value, [&](const auto& runs) {
+                EXPECT_GT(runs[0].begin, last);
+                last = runs[0].begin;
+                for (const auto& run : runs) std::fill(run.begin_in(found), run.end_in(found), last);
+            });
+            for (NodeId i = 0; i < lattice.size(); ++i)
+                ASSERT_EQ(found[i], nodes[i] == value ? sets.find(i) : -1) << i;
+        }
+    }
+}
+
+}  // namespace neuralmesh::lattice_test

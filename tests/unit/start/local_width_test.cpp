@@ -4,14 +4,10 @@
 // The widths of walls and gaps along the shell of shapes on a lattice, whose widths are known.
 #include "vcg_core/start/local_width.h"
 
-#include <gtest/gtest.h>
-
-#include <functional>
-
+#include "tests/unit/support/prelude.h"
 #include "vcg_core/start/marching_tetrahedra.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::local_width_test {
 
 constexpr float kStep = 0.02F;
 constexpr float kFarthest = 0.5F;
@@ -89,6 +85,11 @@ TEST(LocalWidth, IsNeverLessThanTheLatticeTells) {
 
 struct PlateSides {
     std::vector<float> outer, facing;
+
+    void expect_near(float outside, float between, float tolerance) const {
+        for (const float length : outer) EXPECT_NEAR(length, outside, tolerance);
+        for (const float length : facing) EXPECT_NEAR(length, between, tolerance);
+    }
 };
 
 /// The thickenings at the two sides of the lower of two plates of \p thickness that are \p gap apart.
@@ -114,24 +115,17 @@ PlateSides thickenings_of_plates(float thickness, float gap, float radius, float
 
 TEST(Thickenings, FillAQuarterOfTheRoomUpToHalfTheRadius) {
     // The wall between the points is .06 thick.
-    const PlateSides some = thickenings_of_plates(0.18F, 0.3F, 0.06F, 0.16F);
-    for (const float length : some.outer) EXPECT_NEAR(length, 0.025F, kStep / 2);
-    for (const float length : some.facing) EXPECT_NEAR(length, 0.025F, kStep / 2);
-    const PlateSides most = thickenings_of_plates(0.18F, 0.3F, 0.06F, 0.5F);
-    for (const float length : most.outer) EXPECT_EQ(length, 0.03F);
-    for (const float length : most.facing) EXPECT_EQ(length, 0.03F);
+    thickenings_of_plates(0.18F, 0.3F, 0.06F, 0.16F).expect_near(0.025F, 0.025F, kStep / 2);
+    thickenings_of_plates(0.18F, 0.3F, 0.06F, 0.5F).expect_near(0.03F, 0.03F, 0);
 }
 
 TEST(Thickenings, AreZeroAtThickWalls) {
-    const PlateSides plate = thickenings_of_plates(0.3F, 0.3F, 0.04F, 0.15F);
-    for (const float length : plate.outer) EXPECT_EQ(length, 0);
-    for (const float length : plate.facing) EXPECT_EQ(length, 0);
+    thickenings_of_plates(0.3F, 0.3F, 0.04F, 0.15F).expect_near(0, 0, 0);
 }
 
 TEST(Thickenings, TakeWallsTooThinForTheLatticeForTheThinnestThatItTells) {
-    const PlateSides plate = thickenings_of_plates(0.1F, 0.4F, 0.06F, 0.1F);
-    for (const float length : plate.outer) EXPECT_FLOAT_EQ(length, (0.1F - 1.5F * kStep) / 4);
-    for (const float length : plate.facing) EXPECT_FLOAT_EQ(length, (0.1F - 1.5F * kStep) / 4);
+    const float room = 0.1F - 1.5F * kStep;
+    thickenings_of_plates(0.1F, 0.4F, 0.06F, 0.1F).expect_near(room / 4, room / 4, 7e-9F);
 }
 
 TEST(Thickenings, AreZeroBeforeGapsNarrowerThanTheWall) {
@@ -140,5 +134,4 @@ TEST(Thickenings, AreZeroBeforeGapsNarrowerThanTheWall) {
     for (const float length : plate.facing) EXPECT_EQ(length, 0);
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::local_width_test

@@ -4,19 +4,13 @@
 // The triangulation of points with normals, and what is cut from it.
 #include "vcg_core/start/point_triangulation.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <utility>
-#include <vector>
-
+#include "tests/unit/support/prelude.h"
 #include "tests/unit/support/shapes.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/pinched_vertices.h"
 #include "vcg_core/start/short_handles.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::point_triangulation_test {
 
 using vcg::Point3f;
 
@@ -54,9 +48,7 @@ TEST(PointTriangulation, OfASquareIsADisc) {
     std::vector<int> source;
     const Network network = network_of(square, source);
     EXPECT_EQ(network.vertex_count(), 900);
-    EXPECT_EQ(network.component_count(), 1);
-    EXPECT_EQ(network.boundary_loop_count(), 1);
-    EXPECT_EQ(network.genus(), 0);
+    EXPECT_EQ(topology_of(network), kDisc);
     for (const Triangle& f : network.faces()) {
         const auto at = [&](std::size_t k) { return network.position(f[k]); };
         EXPECT_GT(((at(1) - at(0)) ^ (at(2) - at(0)))[2], 0) << "faces the side of the normals";
@@ -64,15 +56,14 @@ TEST(PointTriangulation, OfASquareIsADisc) {
 }
 
 TEST(PointTriangulation, OfASphereIsClosed) {
-    const shapes::Shape sphere = shapes::icosphere(4);
+    const Shape sphere = shapes::icosphere(4);
     Sample sample;
     for (const vcg::Point3d& p : sphere.positions)
         sample.add(Point3f::Construct(p), Point3f::Construct(p), 0.06F);
     std::vector<int> source;
     const Network network = network_of(sample, source, 3);
     EXPECT_EQ(network.vertex_count(), static_cast<int>(sphere.positions.size()));
-    EXPECT_EQ(network.boundary_loop_count(), 0);
-    EXPECT_EQ(network.genus(), 0);
+    EXPECT_EQ(topology_of(network), kBall);
     EXPECT_EQ(network.faces(), network_of(sample, source, 1).faces()) << "with any number of threads";
 }
 
@@ -86,6 +77,24 @@ TEST(PointTriangulation, LeavesGapsAndKeepsLayersApart) {
     add_square(gap, 12, 0, 0);
     for (const Point3f& p : std::vector<Point3f>(gap.positions)) gap.add(p + Point3f(15, 0, 0), {0, 0, 1}, 1);
     EXPECT_EQ(network_of(gap, source).component_count(), 2);
+}
+
+/// Joins two squares of \p side x \p side points, one after the other, along the square from \p low to \p
+/// high.
+void add_wall(IndexedMesh<float>& mesh, int side, int low, int high, bool turned) {
+    std::vector<int> ring;
+    for (int i = low; i < high; ++i) ring.push_back(i * side + low);
+    for (int k = low; k < high; ++k) ring.push_back(high * side + k);
+    for (int i = high; i > low; --i) ring.push_back(i * side + high);
+    for (int k = high; k > low; --k) ring.push_back(low * side + k);
+    const int above = side * side;
+    for (std::size_t n = 0; n < ring.size(); ++n) {
+        const int a = ring[n], b = ring[(n + 1) % ring.size()];
+        for (Triangle face : {Triangle{a, b, b + above}, Triangle{a, b + above, a + above}}) {
+            if (turned) std::swap(face[1], face[2]);
+            mesh.faces.push_back(face);
+        }
+    }
 }
 
 /// Two squares with a square hole each, one above the other, the holes joined by a tube of four sides.
@@ -109,34 +118,14 @@ IndexedMesh<float> joined_squares(int side, int hole) {
                 add(id(i, k, layer), id(i + 1, k, layer), id(i + 1, k + 1, layer), layer == 0);
                 add(id(i, k, layer), id(i + 1, k + 1, layer), id(i, k + 1, layer), layer == 0);
             }
-    std::vector<std::array<int, 2>> ring;
-    for (int i = low; i < high; ++i) ring.push_back({i, low});
-    for (int k = low; k < high; ++k) ring.push_back({high, k});
-    for (int i = high; i > low; --i) ring.push_back({i, high});
-    for (int k = high; k > low; --k) ring.push_back({low, k});
-    for (std::size_t n = 0; n < ring.size(); ++n) {
-        const auto &a = ring[n], &b = ring[(n + 1) % ring.size()];
-        add(id(a[0], a[1], 0), id(b[0], b[1], 0), id(b[0], b[1], 1), true);
-        add(id(a[0], a[1], 0), id(b[0], b[1], 1), id(a[0], a[1], 1), true);
-    }
+    add_wall(mesh, side, low, high, true);
     return mesh;
 }
 
 /// Their outer boundaries joined by a wall, so that the tube is a handle.
 IndexedMesh<float> closed_with_tube(int side, int hole) {
     IndexedMesh<float> mesh = joined_squares(side, hole);
-    const auto id = [&](int i, int k, int layer) { return (layer * side + i) * side + k; };
-    std::vector<std::array<int, 2>> ring;
-    const int last = side - 1;
-    for (int i = 0; i < last; ++i) ring.push_back({i, 0});
-    for (int k = 0; k < last; ++k) ring.push_back({last, k});
-    for (int i = last; i > 0; --i) ring.push_back({i, last});
-    for (int k = last; k > 0; --k) ring.push_back({0, k});
-    for (std::size_t n = 0; n < ring.size(); ++n) {
-        const auto &a = ring[n], &b = ring[(n + 1) % ring.size()];
-        mesh.faces.push_back({id(a[0], a[1], 0), id(b[0], b[1], 0), id(b[0], b[1], 1)});
-        mesh.faces.push_back({id(a[0], a[1], 0), id(b[0], b[1], 1), id(a[0], a[1], 1)});
-    }
+    add_wall(mesh, side, 0, side - 1, false);
     return mesh;
 }
 
@@ -146,16 +135,13 @@ TEST(ShortHandles, AreCutAndLongOnesStay) {
         std::vector<int> source(mesh.positions.size());
         drop_unused_vertices(mesh, source);
         const Network before(mesh.positions, mesh.faces);
-        ASSERT_EQ(before.validate(), "");
-        ASSERT_EQ(before.genus(), 1);
+        ASSERT_EQ(topology_of(before), kRing);
         // Around the tube leads a loop of four edges or 24; along it and back outside, always more.
         EXPECT_EQ(cut_short_handles(mesh, 8, source), is_short ? 1 : 0);
         const Network after(mesh.positions, mesh.faces);
-        EXPECT_EQ(after.validate(), "");
-        EXPECT_EQ(after.genus(), is_short ? 0 : 1);
+        EXPECT_EQ(topology_of(after), (is_short ? Topology{1, 0, 2} : kRing));
         EXPECT_EQ(source.size(), mesh.positions.size());
     }
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::point_triangulation_test

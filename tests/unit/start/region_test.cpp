@@ -2,13 +2,6 @@
 // Copyright the Neural Mesh authors
 
 // A cloud on one lattice: clearances, spaces, outliers, and the vote of several radii.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <vector>
-
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/small_lattice.h"
 #include "vcg_core/start/clearance.h"
@@ -17,8 +10,7 @@
 #include "vcg_core/start/outliers.h"
 #include "vcg_core/start/region.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::region_test {
 
 using vcg::Point3f;
 
@@ -113,6 +105,7 @@ TEST(Clearance, SmallComponentsAreSpecks) {
     EXPECT_EQ(small.points_in_specks, 3);
     EXPECT_EQ(small.nodes[lattice.index(2, 2, 3)], 1);
     EXPECT_EQ(small.nodes[lattice.index(8, 8, 8)], 0);
+    EXPECT_EQ(solid_of(lattice, clearance, counts, 1, 10).components, 1) << "of as many points as it takes";
     // They are 6 * sqrt(3) apart: balls of radius 5 have adjacent nodes.
     const Solid large = solid_of(lattice, clearance, counts, kLargestRadius * kLargestRadius, 5);
     EXPECT_EQ(large.components, 1);
@@ -172,10 +165,6 @@ std::vector<Point3f> sphere(int count, float radius, const Point3f& centre, std:
     return points;
 }
 
-void append(std::vector<Point3f>& points, const std::vector<Point3f>& more) {
-    points.insert(points.end(), more.begin(), more.end());
-}
-
 /// A sphere of radius 0.5 with 20,000 points, which is in one piece at level 4, and \p others.
 struct Examined {
     explicit Examined(const std::vector<Point3f>& others)
@@ -202,27 +191,19 @@ struct Examined {
 
 private:
     static Region with(const std::vector<Point3f>& others, std::vector<Point3f>& points) {
-        append(points, others);
+        points.insert(points.end(), others.begin(), others.end());
         const vcg::Box3f box(Point3f(-1, -1, -1), Point3f(1, 1, 1));
         return examine(points, box, 0.04F);
     }
 };
 
-TEST(Outliers, OfASurfaceAloneThereAreNone) { EXPECT_TRUE(Examined({}).outliers().empty()); }
-
-TEST(Outliers, AreIsolatedPointsOutside) {
-    EXPECT_EQ(Examined({{0.8F, 0, 0}, {0, 0, -0.9F}}).outliers(), (std::vector<int>{1, 1}));
-}
-
-TEST(Outliers, ArePointsOutsideTheLattice) {
-    EXPECT_EQ(Examined({{3, 0, 0}, {0, -1e20F, 0}}).outliers(), (std::vector<int>{1, 1}));
-}
-
-TEST(Outliers, ArePointsDeepInside) {
-    EXPECT_EQ(Examined({{0, 0, 0}, {0.2F, 0, 0}}).outliers(), (std::vector<int>{1, 1}));
-}
-
-TEST(Outliers, AreNotPointsCloseToTheSurface) {
+TEST(Outliers, ArePointsFarFromTheSurface) {
+    EXPECT_TRUE(Examined({}).outliers().empty());
+    using Points = std::vector<Point3f>;
+    for (const Points& far : {Points{{0.8F, 0, 0}, {0, 0, -0.9F}},  // outside
+                              Points{{3, 0, 0}, {0, -1e20F, 0}},    // outside the lattice
+                              Points{{0, 0, 0}, {0.2F, 0, 0}}})     // deep inside
+        EXPECT_EQ(Examined(far).outliers(), (std::vector<int>{1, 1})) << far[0][0];
     EXPECT_TRUE(Examined({{0.52F, 0, 0}, {0, 0.48F, 0}}).outliers().empty());
     // Each is judged on its own: of these the second one is an outlier.
     EXPECT_EQ(Examined({{0.52F, 0, 0}, {0.8F, 0, 0}}).outliers(), (std::vector<int>{0, 1}));
@@ -284,5 +265,4 @@ TEST(LatticeSurvey, PrefersAFinerLatticeThatIsNotUncertain) {
     EXPECT_TRUE(is_better(other, first, false));
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::region_test

@@ -2,24 +2,17 @@
 // Copyright the Neural Mesh authors
 
 // The sides that open start meshes face: by normals, by a sensor, or up.
-#include <gtest/gtest.h>
-
+#include "vcg_core/start/viewpoint.h"
 #include "tests/unit/support/depth_camera.h"
 #include "tests/unit/support/normal_clouds.h"
-#include "tests/unit/support/open_shapes.h"
-#include "tests/unit/support/referee.h"
 #include "vcg_core/mesh/triangle.h"
 #include "vcg_core/start/facing.h"
 #include "vcg_core/start/normal_orientation.h"
 #include "vcg_core/start/sensor_place.h"
-#include "vcg_core/start/viewpoint.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::viewpoint_test {
 
 using Pairs = std::vector<std::pair<int, int>>;
-using namespace normal_clouds;
-using shapes::Cloud;
 using vcg::Point3d;
 using vcg::Point3f;
 
@@ -34,8 +27,8 @@ struct Seen {
     std::vector<int> parts;
 
     /// The vertices of \p shape, moved by up to \p noise. \p over: the first normal is turned over.
-    Seen(const shapes::Shape& shape, bool over, double noise = 0) {
-        const Network network = referee::network_of(shape, noise);
+    Seen(const Shape& shape, bool over, double noise = 0) {
+        const Network network = network_of(shape, noise);
         for (const VertexId v : network.vertices()) {
             const Ring& ring = network.ring(v);
             vcg::Point3f normal(0, 0, 0);
@@ -70,36 +63,29 @@ struct Seen {
 };
 
 /// A square, turned about the x axis by so many degrees.
-shapes::Shape tilted(double degrees) {
+Shape tilted(double degrees) {
     const double turn = degrees * shapes::kPi / 180;
-    shapes::Shape sheet = shapes::grid(30, 30);
+    Shape sheet = shapes::grid(30, 30);
     for (vcg::Point3d& p : sheet.positions) p = {p[0], p[1] * std::cos(turn), p[1] * std::sin(turn)};
     return sheet;
 }
 
-struct TiltedSheet {
-    double tilt, noise;
-};
-
-class ViewOfSheets : public testing::TestWithParam<TiltedSheet> {};
-
-TEST_P(ViewOfSheets, IsFromAbove) {
-    for (const bool over : {false, true}) {
-        Seen seen(tilted(GetParam().tilt), over, GetParam().noise);
-        EXPECT_TRUE(seen.turn_to(kFarAway));
-        EXPECT_GT(seen.turned_to({0, 0, 1}, true), 0.85);
-    }
+TEST(ViewOfSheets, IsFromAbove) {
+    using TiltAndNoise = std::pair<double, double>;
+    for (const auto& [tilt, noise] :
+         {TiltAndNoise(0, 0), TiltAndNoise(0, 0.01), TiltAndNoise(30, 0), TiltAndNoise(30, 0.01),
+          TiltAndNoise(60, 0), TiltAndNoise(60, 0.005), TiltAndNoise(85, 0)})
+        for (const bool over : {false, true}) {
+            Seen seen(tilted(tilt), over, noise);
+            EXPECT_TRUE(seen.turn_to(kFarAway)) << tilt << ' ' << noise;
+            EXPECT_GT(seen.turned_to({0, 0, 1}, true), 0.85) << tilt << ' ' << noise;
+        }
 }
-
-INSTANTIATE_TEST_SUITE_P(TiltsAndNoise, ViewOfSheets,
-                         testing::Values(TiltedSheet{0, 0}, TiltedSheet{0, 0.01}, TiltedSheet{30, 0},
-                                         TiltedSheet{30, 0.01}, TiltedSheet{60, 0}, TiltedSheet{60, 0.005},
-                                         TiltedSheet{85, 0}));
 
 /// What a sensor at the origin sees along z, \p distance away, with two more squares to the sides of the
 /// first and half as far again behind it. From above, which is along z as well, all are single-valued, too.
-shapes::Shape frame(double distance) {
-    shapes::Shape seen;
+Shape frame(double distance) {
+    Shape seen;
     for (const double side : {-1.0, 0.0, 1.0})
         shapes::append(seen, shapes::grid(10, 10), {side, 0, distance * (side == 0 ? 1 : 1.5)});
     return seen;
@@ -178,7 +164,7 @@ TEST(Viewpoint, IsAboveWhereTheOriginIsNoSensor) {
 }
 
 TEST(Viewpoint, IsNowhereIfNobodySeesAllOfTheSurface) {
-    for (const shapes::Shape& shape : {open_shapes::open_sphere(), shapes::tube(24, 8), shapes::icosphere(2)})
+    for (const Shape& shape : {open_shapes::open_sphere(), shapes::tube(24, 8), shapes::icosphere(2)})
         for (const vcg::Point3f& origin : {vcg::Point3f(0, 0, 0), vcg::Point3f(0, -5, 0.5F), kFarAway})
             for (const bool over : {false, true}) {
                 Seen seen(shape, over);
@@ -189,10 +175,6 @@ TEST(Viewpoint, IsNowhereIfNobodySeesAllOfTheSurface) {
 }
 
 // Start meshes turned by normals.
-
-Network network_for(const TargetSpace& target, const shapes::Shape& shape) {
-    return targets::network_in_frame(target, shape);
-}
 
 /// Twice the signed volume of the fans from the origin of the input: positive if it faces away from there.
 double facing_away(const Network& network, const TargetSpace& target, VertexId first, VertexId end) {
@@ -207,23 +189,11 @@ double facing_away(const Network& network, const TargetSpace& target, VertexId f
     return sum;
 }
 
-TEST(Facing, OfASheetFollowsItsNormals) {
-    const Cloud cloud = shapes::plane_cloud(2000);
-    const TargetSpace target =
-        target_of(cloud, std::vector<PackedNormal>(cloud.size(), packed_point({0, 0, -1})));
-    Network network = network_for(target, shapes::grid(10, 10));
-    EXPECT_EQ(orient_by_normals(network, target), 1);
-    for (const Triangle& f : network.faces()) {
-        const auto at = [&](std::size_t k) { return network.position(f[k]); };
-        EXPECT_LT(((at(1) - at(0)) ^ (at(2) - at(0)))[2], 0);
-    }
-}
-
 TEST(Facing, OfAnOpenMeshFollowsMostNormals) {
     const Cloud cloud = bowl(8000);
     for (const bool in : {false, true}) {
         const TargetSpace target = target_of(cloud, flipped(in ? inward(cloud) : outward(cloud), 5));
-        Network network = network_for(target, open_shapes::open_sphere());
+        Network network = network_in_frame(target, open_shapes::open_sphere());
         ASSERT_EQ(network.boundary_loop_count(), 1);
         orient_convex_side_outward(network);
         EXPECT_GT(facing_away(network, target, 0, network.slot_count()), 0);
@@ -239,29 +209,18 @@ TEST(Facing, OfAnOpenMeshFollowsMostNormals) {
 TEST(Facing, OfAnOpenMeshStaysWhereNormalsDisagreeOrAreMissing) {
     const Cloud cloud = bowl(8000);
     const TargetSpace disagreeing = target_of(cloud, flipped(inward(cloud), 2));
-    const TargetSpace without = targets::target_of(cloud);
+    const TargetSpace without = target_of(cloud);
     for (const TargetSpace* target : {&disagreeing, &without}) {
-        Network network = network_for(*target, open_shapes::open_sphere());
+        Network network = network_in_frame(*target, open_shapes::open_sphere());
         const auto faces = network.faces();
         EXPECT_EQ(orient_by_normals(network, *target), 0);
         EXPECT_EQ(network.faces(), faces);
     }
 }
 
-TEST(Facing, OfClosedComponentsStays) {
-    const Cloud cloud = shapes::sphere_cloud(8000);
-    const TargetSpace target = target_of(cloud, inward(cloud));
-    Network network = network_for(target, shapes::icosphere(2));
-    const auto faces = network.faces();
-    EXPECT_EQ(facing_votes(network, target).front().along, 0);
-    EXPECT_TRUE(facing_votes(network, target).front().is_clear());
-    EXPECT_EQ(orient_by_normals(network, target), 0);
-    EXPECT_EQ(network.faces(), faces);
-}
-
 TEST(Facing, OfEveryComponentIsItsOwn) {
     // Two bowls side by side, whose normals point in and out.
-    shapes::Shape both = open_shapes::open_sphere();
+    Shape both = open_shapes::open_sphere();
     const auto first = static_cast<VertexId>(both.positions.size());
     shapes::append(both, open_shapes::open_sphere(), {3, 0, 0});
     Cloud cloud = bowl(8000);
@@ -271,7 +230,7 @@ TEST(Facing, OfEveryComponentIsItsOwn) {
         normals.push_back(opposite(packed_point(p)));
     }
     const TargetSpace target = target_of(cloud, normals);
-    Network network = network_for(target, both);
+    Network network = network_in_frame(target, both);
     EXPECT_EQ(orient_by_normals(network, target), 2);
     const std::vector<FacingVote> votes = facing_votes(network, target);
     ASSERT_EQ(votes.size(), 2U);
@@ -317,5 +276,4 @@ TEST(SensorPlace, IsNoneForEvenPoints) {
     EXPECT_FALSE(found(shapes::plane_cloud(30)));
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::viewpoint_test

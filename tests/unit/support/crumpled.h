@@ -4,11 +4,8 @@
 // Surfaces that cut themselves, and their self-crossings.
 #pragma once
 
-#include <set>
-#include <vector>
-
+#include "tests/unit/support/prelude.h"
 #include "tests/unit/support/referee.h"
-#include "tests/unit/support/shapes.h"
 #include "vcg_core/mesh/self_crossings.h"
 
 namespace neuralmesh {
@@ -16,7 +13,7 @@ namespace neuralmesh {
 /// A sphere of radius 10, where vcglib's tolerances are small, crumpled by \p noise times
 /// its radius.
 inline Network crumpled_sphere(double noise, std::uint64_t seed = 5) {
-    return referee::network_of(shapes::scaled(shapes::icosphere(3), 10), 10 * noise, seed);
+    return network_of(shapes::scaled(shapes::icosphere(3), 10), 10 * noise, seed);
 }
 
 inline std::vector<SelfCrossing> crossings(const Surface& surface, int threads) {

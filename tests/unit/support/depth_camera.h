@@ -4,24 +4,12 @@
 // Two virtual sensors: a depth camera before a ball and a wall, and an aerial scanner over ground with trees.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
+#include "tests/unit/support/prelude.h"
 #include "tests/unit/support/shapes.h"
-#include "vcg_core/base/random.h"
 
 namespace neuralmesh::sensors {
 
-using shapes::Cloud;
 using vcg::Point3d;
-
-/// About normally distributed, of deviation 1.
-inline double normal(Random& random) {
-    double sum = -6;
-    for (int i = 0; i < 12; ++i) sum += static_cast<double>(random.unit());
-    return sum;
-}
 
 constexpr double kWall = 3;  ///< metres before the camera, at the origin, which looks along z
 inline const Point3d kBall(0, 0, 1.6);
@@ -47,9 +35,9 @@ inline Cloud depth_frame(int width, unsigned seed = 1) {
                 Point3d(scale * (u - width / 2.0), scale * (v - width * 3 / 8.0), 1).Normalize();
             const double depth = depth_along(way),
                          deviation = 0.0012 + 0.0019 * (depth - 0.4) * (depth - 0.4);
-            double measured = depth + deviation * normal(random);
+            double measured = depth + deviation * shapes::normal(random);
             if (u > 0 && std::abs(depth - last) > 0.1 && random.below(3) == 0)
-                measured = last + (depth - last) * static_cast<double>(random.unit());
+                measured = last + (depth - last) * shapes::unit(random);
             last = depth;
             cloud.push_back(way * measured);
         }
@@ -80,7 +68,7 @@ inline Cloud frame_of_steps(int width, unsigned seed = 1) {
     for (int v = 0; v < width * 3 / 4; ++v)
         for (int u = 0; u < width; ++u) {
             const double x = 1.1 * (u - width / 2.0) / width, y = 1.1 * (v - width * 3 / 8.0) / width;
-            const double depth = kWall / (1 - x / 10 - y / 5), noise = 0.005 * normal(random);
+            const double depth = kWall / (1 - x / 10 - y / 5), noise = 0.005 * shapes::normal(random);
             cloud.push_back(Point3d(x, y, 1) * stepped_depth(depth + noise));
         }
     return cloud;
@@ -96,7 +84,7 @@ inline Cloud aerial_scan(int points, int trees, unsigned seed = 1) {
     Cloud cloud;
     for (int i = 0; i < points; ++i) {
         const double x = 20 * shapes::signed_unit(random), y = 20 * shapes::signed_unit(random);
-        cloud.emplace_back(x, y, ground(x, y) + 0.02 * normal(random));
+        cloud.emplace_back(x, y, ground(x, y) + 0.02 * shapes::normal(random));
     }
     for (int i = 0; i < trees; ++i) {
         const double x = 16 * shapes::signed_unit(random), y = 16 * shapes::signed_unit(random);

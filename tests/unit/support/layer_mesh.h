@@ -6,9 +6,7 @@
 
 #include <vcg/complex/complex.h>
 
-#include <cstddef>
-#include <vector>
-
+#include "tests/unit/support/prelude.h"
 #include "tests/unit/support/shapes.h"
 
 namespace neuralmesh::layer_mesh {
@@ -25,7 +23,7 @@ class Face : public vcg::Face<Types, vcg::face::VertexRef, vcg::face::BitFlags> 
 class Mesh : public vcg::tri::TriMesh<std::vector<Vertex>, std::vector<Face>> {};
 
 /// Adds the vertices of \p shape, and if \p with_faces its faces, to the empty \p mesh.
-inline void fill(Mesh& mesh, const shapes::Shape& shape, bool with_faces) {
+inline void fill(Mesh& mesh, const Shape& shape, bool with_faces) {
     for (const vcg::Point3d& p : shape.positions)
         vcg::tri::Allocator<Mesh>::AddVertex(mesh, vcg::Point3f::Construct(p));
     if (!with_faces) return;

@@ -4,17 +4,12 @@
 // Small networks of several topologies, random operations on them, and checks against the referee.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <vector>
-
+#include "tests/unit/support/prelude.h"
 #include "tests/unit/support/referee.h"
-#include "tests/unit/support/shapes.h"
-#include "vcg_core/mesh/network.h"
 
-namespace neuralmesh::network_starts {
+namespace neuralmesh {
 
-inline shapes::Shape together(shapes::Shape a, const shapes::Shape& b, const vcg::Point3d& shift) {
+inline Shape together(Shape a, const Shape& b, const vcg::Point3d& shift) {
     shapes::append(a, b, shift);
     return a;
 }
@@ -22,7 +17,7 @@ inline shapes::Shape together(shapes::Shape a, const shapes::Shape& b, const vcg
 /// A mesh and its topology.
 struct Start {
     const char* name;
-    shapes::Shape shape;
+    Shape shape;
     int euler;
     int loops;
     int components;
@@ -49,9 +44,9 @@ inline std::vector<Start> starts() {
 }
 
 /// The network is valid, has the expected topology, and its counts are those of the referee.
-inline void expect_sound(const Network& network, const referee::Census& expected_topology) {
+inline void expect_sound(const Network& network, const Census& expected_topology) {
     ASSERT_EQ(network.validate(), "");
-    const referee::Census now = referee::census(network.faces());
+    const Census now = census(network.faces());
     ASSERT_EQ(now.breach, "");
     EXPECT_EQ(now.vertices, network.vertex_count());
     EXPECT_EQ(now.edges, network.edge_count());
@@ -66,7 +61,7 @@ inline void expect_sound(const Network& network, const referee::Census& expected
 /// A random operation, if it is legal. Below \p least vertices a split, above \p most a collapse.
 inline void random_operation(Network& network, Random& random, int least, int most) {
     VertexId v = 0;
-    do v = static_cast<VertexId>(random.below(static_cast<std::uint32_t>(network.slot_count())));
+    do v = any_slot(network, random);
     while (!network.alive(v));
     const Ring ring = network.ring(v);
     const int i = static_cast<int>(random.below(ring.valence));
@@ -83,4 +78,4 @@ inline void random_operation(Network& network, Random& random, int least, int mo
     }
 }
 
-}  // namespace neuralmesh::network_starts
+}  // namespace neuralmesh

@@ -4,15 +4,10 @@
 // Clouds with normals, right and wrong ones.
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include "tests/unit/support/open_shapes.h"
-#include "tests/unit/support/targets.h"
+#include "tests/unit/support/referee.h"
 
-namespace neuralmesh::normal_clouds {
-
-using shapes::Cloud;
+namespace neuralmesh {
 
 inline PackedNormal packed_point(const vcg::Point3d& n) { return packed({n[0], n[1], n[2]}); }
 
@@ -50,14 +45,12 @@ inline std::vector<PackedNormal> nonsense(std::size_t count) {
 }
 
 /// Of a sphere, what lies below its upper third.
-inline Cloud bowl(int count) {
-    return open_shapes::cut(shapes::sphere_cloud(count), [](const vcg::Point3d& p) { return p[2] < 0.3; });
-}
+inline Cloud bowl(int count) { return open_shapes::sphere_below(0.3, count); }
 
 inline TargetSpace target_of(const Cloud& cloud, const std::vector<PackedNormal>& normals) {
-    TargetSpace target = targets::target_of(cloud);
+    TargetSpace target = target_of(cloud);
     target.set_normals(normals);
     return target;
 }
 
-}  // namespace neuralmesh::normal_clouds
+}  // namespace neuralmesh

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Networks of shapes, and slow and simple checks of meshes from their lists of faces.
+// Networks and target spaces of shapes and clouds, and slow and simple checks of meshes from their lists of
+// faces.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -9,19 +10,42 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <ostream>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "tests/unit/support/shapes.h"
+#include "vcg_core/cloud/target_space.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/surface.h"
 
-namespace neuralmesh::referee {
+namespace neuralmesh {
+
+/// Of a surface; two are equal only if both are whole.
+struct Topology {
+    int components, genus, loops;
+    std::string breach{};
+
+    bool operator==(const Topology& other) const {
+        return std::tie(components, genus, loops, breach) ==
+               std::tie(other.components, other.genus, other.loops, other.breach);
+    }
+    friend std::ostream& operator<<(std::ostream& out, const Topology& t) {
+        return out << t.components << " components of genus " << t.genus << ", " << t.loops << " boundaries. "
+                   << t.breach;
+    }
+};
+inline const Topology kBall{1, 0, 0}, kRing{1, 1, 0}, kDisc{1, 0, 1};
+
+inline Topology topology_of(const Network& network) {
+    return {network.component_count(), network.genus(), network.boundary_loop_count(), network.validate()};
+}
 
 /// The shape as a network, every vertex moved by up to \p noise.
-inline Network network_of(const shapes::Shape& shape, double noise = 0, std::uint64_t seed = 3) {
+inline Network network_of(const Shape& shape, double noise = 0, std::uint64_t seed = 3) {
     Random random(seed);
     std::vector<vcg::Point3f> positions;
     for (const vcg::Point3d& p : shape.positions)
@@ -29,10 +53,33 @@ inline Network network_of(const shapes::Shape& shape, double noise = 0, std::uin
     return {positions, shape.faces};
 }
 
+inline TargetSpace target_of(const Cloud& cloud) {
+    return TargetSpace::points(cloud.size(), [&](std::size_t i) { return cloud[i]; });
+}
+
+/// Signals are drawn from the faces.
+inline TargetSpace target_of(const Shape& shape) {
+    return TargetSpace::triangles(shape.faces.size(), [&](std::size_t i, int k) {
+        return shape.positions[static_cast<std::size_t>(shape.faces[i][static_cast<std::size_t>(k)])];
+    });
+}
+
+/// The shape, in the coordinates of the cloud, as a network in the frame of \p target. Every vertex is moved
+/// by up to \p noise, in diagonals of the target's bounding box.
+inline Network network_in_frame(const TargetSpace& target, Shape shape, double noise = 0) {
+    for (vcg::Point3d& p : shape.positions) p = vcg::Point3d::Construct(target.frame().inside(p));
+    return network_of(shape, noise);
+}
+
 inline std::vector<vcg::Point3f> positions_of(const Network& network) {
     std::vector<vcg::Point3f> positions;
     for (const VertexId v : network.vertices()) positions.push_back(network.position(v));
     return positions;
+}
+
+/// An id, of a vertex or of none.
+inline VertexId any_slot(const Network& network, Random& random) {
+    return static_cast<VertexId>(random.below(static_cast<std::uint32_t>(network.slot_count())));
 }
 
 /// The sorted faces, each rotated to start with its smallest vertex: equal for equal meshes.
@@ -183,6 +230,15 @@ inline double enclosed_volume(const Network& network) {
     return enclosed_volume(network.faces(), [&](VertexId v) { return network.position(v); });
 }
 
+/// The smallest triangle_quality() of the faces.
+inline float worst_quality(const Network& network) {
+    float worst = 1;
+    for (const auto& [a, b, c] : network.faces())
+        worst = std::min(worst, triangle_quality(to_eigen(network.position(a)), to_eigen(network.position(b)),
+                                                 to_eigen(network.position(c))));
+    return worst;
+}
+
 /// The face of \p faces nearest to \p p, the first among equals; face -1 if there are none.
 template <class Faces>
 Hit nearest_face(const Vector3& p, const PerVertex<Vector3>& positions, const Faces& faces) {
@@ -196,4 +252,4 @@ Hit nearest_face(const Vector3& p, const PerVertex<Vector3>& positions, const Fa
     return best;
 }
 
-}  // namespace neuralmesh::referee
+}  // namespace neuralmesh

@@ -200,8 +200,18 @@ inline std::vector<vcg::Point3f> in_float(const Cloud& cloud) {
     return points;
 }
 
+/// Uniform in [0, 1).
+inline double unit(Random& random) { return static_cast<double>(random.unit()); }
+
 /// Uniform in [-1, 1).
-inline double signed_unit(Random& random) { return 2 * static_cast<double>(random.unit()) - 1; }
+inline double signed_unit(Random& random) { return 2 * unit(random) - 1; }
+
+/// About normally distributed, of deviation 1.
+inline double normal(Random& random) {
+    double sum = -6;
+    for (int i = 0; i < 12; ++i) sum += unit(random);
+    return sum;
+}
 
 /// Uniform in [-1, 1)^3. Draws the numbers in separate statements, as the order in which arguments are
 /// evaluated depends on the compiler.
@@ -255,8 +265,8 @@ inline Cloud torus_cloud(int count, double noise = 0, std::uint64_t seed = 1) {
     Random random(seed);
     Cloud cloud;
     for (int i = 0; i < count; ++i) {
-        const double u = static_cast<double>(random.unit());
-        const double v = static_cast<double>(random.unit());
+        const double u = unit(random);
+        const double v = unit(random);
         cloud.push_back(torus_point(u, v, 0.4) + in_ball(random) * noise);
     }
     return cloud;
@@ -288,3 +298,10 @@ inline Cloud plane_cloud(int count, std::uint64_t seed = 1) {
 }
 
 }  // namespace neuralmesh::shapes
+
+namespace neuralmesh {
+
+using shapes::Cloud;
+using shapes::Shape;
+
+}  // namespace neuralmesh

@@ -7,29 +7,21 @@
 
 #include <vcg/space/point3.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
+#include "tests/unit/support/prelude.h"
 #include "tests/unit/support/shapes.h"
-#include "vcg_core/base/random.h"
 
 namespace neuralmesh::shell_shapes {
 
 using shapes::append;
-using shapes::Shape;
 
 /// A surface of revolution around z of the profile (radius, height), which runs counter-clockwise (outside to
 /// its right); closed: the last profile point joins the first (a ring), else both ends should lie on the
 /// axis.
 inline Shape revolve(const std::vector<std::array<double, 2>>& profile, int segments, bool closed) {
-    const double pi = 3.14159265358979323846;
     Shape shape;
     const int n = static_cast<int>(profile.size());
     for (int i = 0; i < segments; ++i) {
-        const double u = 2 * pi * i / segments;
+        const double u = 2 * shapes::kPi * i / segments;
         for (const auto& [r, h] : profile) shape.positions.emplace_back(r * std::cos(u), r * std::sin(u), h);
     }
     for (int i = 0; i < segments; ++i)
@@ -44,10 +36,9 @@ inline Shape revolve(const std::vector<std::array<double, 2>>& profile, int segm
 
 /// A sphere; its poles are doubled vertices with faces of no area, which sampling never hits.
 inline Shape sphere(double radius, int segments = 48) {
-    const double pi = 3.14159265358979323846;
     std::vector<std::array<double, 2>> profile;
     for (int i = 0; i <= segments / 2; ++i) {
-        const double v = pi * (2.0 * i / segments - 0.5);
+        const double v = shapes::kPi * (2.0 * i / segments - 0.5);
         profile.push_back({radius * std::cos(v), radius * std::sin(v)});
     }
     return revolve(profile, segments, false);
@@ -55,10 +46,9 @@ inline Shape sphere(double radius, int segments = 48) {
 
 /// A torus around z.
 inline Shape torus(double radius, double tube, int segments = 64) {
-    const double pi = 3.14159265358979323846;
     std::vector<std::array<double, 2>> profile;
     for (int i = 0; i < segments; ++i) {
-        const double v = 2 * pi * i / segments;
+        const double v = 2 * shapes::kPi * i / segments;
         profile.push_back({radius + tube * std::cos(v), tube * std::sin(v)});
     }
     return revolve(profile, segments, true);
@@ -101,17 +91,13 @@ inline std::vector<vcg::Point3d> sample(const Shape& shape, std::size_t count, R
         const auto p = [&](int i) { return shape.positions[static_cast<std::size_t>(i)]; };
         area.push_back(total += ((p(b) - p(a)) ^ (p(c) - p(a))).Norm());
     }
-    const auto bell = [&] {
-        double sum = -6;
-        for (int i = 0; i < 12; ++i) sum += static_cast<double>(random.unit());
-        return sum * noise;
-    };
+    const auto bell = [&] { return shapes::normal(random) * noise; };
     std::vector<vcg::Point3d> points;
     for (std::size_t i = 0; i < count; ++i) {
         const double at = (random.bits() + 0.5) / 4294967296.0 * total;
         const std::size_t f =
             static_cast<std::size_t>(std::lower_bound(area.begin(), area.end(), at) - area.begin());
-        double s = static_cast<double>(random.unit()), t = static_cast<double>(random.unit());
+        double s = shapes::unit(random), t = shapes::unit(random);
         if (s + t > 1) {
             s = 1 - s;
             t = 1 - t;

@@ -4,8 +4,7 @@
 // A lattice small enough for brute force, and random points on it.
 #pragma once
 
-#include <cstdint>
-
+#include "tests/unit/support/prelude.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/start/lattice.h"
 

@@ -2,36 +2,34 @@
 // Copyright the Neural Mesh authors
 
 // Faces without signals: what they win, which go together, and what patches gain.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <set>
-#include <vector>
-
+#include "vcg_core/topology/membranes.h"
 #include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/referee.h"
-#include "tests/unit/support/shapes.h"
-#include "tests/unit/support/targets.h"
 #include "vcg_core/topology/face_signals.h"
-#include "vcg_core/topology/membranes.h"
 #include "vcg_core/topology/surroundings.h"
 
-namespace neuralmesh {
-namespace {
-
-using referee::nearest_face;
-using targets::network_in_frame;
-using targets::target_of;
+namespace neuralmesh::membranes_test {
 
 /// The points of the unit sphere that are lower than \p top.
-shapes::Cloud lower_sphere(int count, double top) {
-    shapes::Cloud cloud =
-        open_shapes::cut(shapes::sphere_cloud(count), [&](const vcg::Point3d& p) { return p[2] < top; });
+Cloud lower_sphere(int count, double top) {
+    Cloud cloud = open_shapes::sphere_below(top, count);
     cloud.emplace_back(0, 0, 1);  // so that the frame is that of the whole sphere
     return cloud;
 }
+
+/// A network in the frame of a target, and the signals that its faces win, of \p most at the most.
+struct Covered {
+    Covered(TargetSpace given, const Shape& shape, std::size_t most)
+        : target(std::move(given)), network(network_in_frame(target, shape)), surface(network) {
+        Random random(1);
+        support = face_signals(network, surface, fair_sample(target, most, random), one_thread());
+    }
+
+    TargetSpace target;
+    Network network;
+    Surface surface;
+    FaceSignals support;
+};
 
 TEST(FairSample, HasEveryPointOfACloudOnceAtMost) {
     const TargetSpace target = target_of(shapes::sphere_cloud(1000));
@@ -48,14 +46,8 @@ TEST(FairSample, HasEveryPointOfACloudOnceAtMost) {
 }
 
 TEST(FaceSignals, GiveEverySignalToTheNearestFace) {
-    const TargetSpace target = target_of(shapes::sphere_cloud(500, 0.05));
-    const Network network = network_in_frame(target, shapes::icosphere(2));
-    const Surface surface(network);
-    Random random(1);
-    const std::vector<Vector3> signals = fair_sample(target, 1000, random);
-    ASSERT_EQ(signals.size(), 500U);
-    ThreadTeam team(1);
-    const FaceSignals support = face_signals(network, surface, signals, team);
+    const Covered ball(target_of(shapes::sphere_cloud(500, 0.05)), shapes::icosphere(2), 1000);
+    const auto& [target, network, surface, support] = ball;
     int sum = 0;
     for (int f = 0; f < surface.face_count(); ++f) {
         EXPECT_EQ(support.of(f).size(), support.wins[f]);
@@ -72,25 +64,16 @@ TEST(FaceSignals, GiveEverySignalToTheNearestFace) {
 }
 
 TEST(FaceSignals, ExpectAsManyAsThereAreWhereThePointsAreEven) {
-    const TargetSpace target = target_of(shapes::sphere_cloud(50000));
-    const Network network = network_in_frame(target, shapes::icosphere(2));
-    const Surface surface(network);
-    Random random(1);
-    ThreadTeam team(1);
-    const FaceSignals support = face_signals(network, surface, fair_sample(target, 100000, random), team);
-    for (int f = 0; f < surface.face_count(); ++f) {
-        EXPECT_NEAR(support.expected[f], 50000.0F * 1 / 320, 50);
-        EXPECT_FALSE(support.lacks_support(f));
+    const Covered ball(target_of(shapes::sphere_cloud(50000)), shapes::icosphere(2), 100000);
+    for (int f = 0; f < ball.surface.face_count(); ++f) {
+        EXPECT_NEAR(ball.support.expected[f], 50000.0F * 1 / 320, 50);
+        EXPECT_FALSE(ball.support.lacks_support(f));
     }
 }
 
 TEST(FaceSignals, AMembraneLacksSupportHoweverWideItIs) {
-    const TargetSpace target = target_of(lower_sphere(20000, -0.2));
-    const Network network = network_in_frame(target, shapes::icosphere(3));
-    const Surface surface(network);
-    Random random(1);
-    ThreadTeam team(1);
-    const FaceSignals support = face_signals(network, surface, fair_sample(target, 100000, random), team);
+    const Covered ball(target_of(lower_sphere(20000, -0.2)), shapes::icosphere(3), 100000);
+    const auto& [target, network, surface, support] = ball;
     int lacking = 0;
     for (int f = 0; f < surface.face_count(); ++f) {
         const float z = (surface.corner(f, 0) + surface.corner(f, 1) + surface.corner(f, 2))[2] / 3;
@@ -107,15 +90,8 @@ TEST(FaceSignals, AMembraneLacksSupportHoweverWideItIs) {
 // Membranes by hand on a ball: which go together, and that they are taken apart.
 
 /// A ball covered evenly, and the faces around its vertices as membranes.
-struct Ball {
-    Ball()
-        : target(target_of(shapes::sphere_cloud(20000))),
-          network(network_in_frame(target, shapes::icosphere(3))),
-          surface(network) {
-        Random random(1);
-        ThreadTeam team(1);
-        support = face_signals(network, surface, fair_sample(target, 20000, random), team);
-    }
+struct Ball : Covered {
+    Ball() : Covered(target_of(shapes::sphere_cloud(20000)), shapes::icosphere(3), 20000) {}
     Membrane around(VertexId v, float missing, bool certain = true) const {
         Membrane membrane;
         const auto faces = surface.faces_around(v);
@@ -139,11 +115,6 @@ struct Ball {
         }
         return v;
     }
-
-    TargetSpace target;
-    Network network;
-    Surface surface;
-    FaceSignals support;
 };
 
 TEST(MembraneGroups, AreThreeAndMoreCertainOnesNearEachOther) {
@@ -183,7 +154,7 @@ double plain_cost(const Surface& surface, const FaceSignals& support, const std:
     std::vector<float> wins(faces.size(), 0);
     double cost = 0;
     for (const FaceSignals::Assigned& s : support.signals) {
-        const Hit hit = referee::nearest_face(s.point, surface.positions, faces);
+        const Hit hit = nearest_face(s.point, surface.positions, faces);
         ++wins[static_cast<std::size_t>(hit.face)];
         cost += std::min(1.0, static_cast<double>(hit.foot.squared_distance / (0.5F * edge * 0.5F * edge)));
     }
@@ -227,13 +198,12 @@ void expect_the_plain_gain(bool deep) {
     const Network network = network_in_frame(target, shapes::icosphere(3));
     const Surface surface(network);
     Random random(1);
-    ThreadTeam team(1);
     const std::vector<Vector3> sample = fair_sample(target, 4000, random);
     const float edge = mean_edge_length(surface);
     for (const VertexId centre : {100, 300, 500}) {
         SCOPED_TRACE(centre);
         const std::vector<Vector3> signals = deep ? with_deep_ones(sample, network, centre) : sample;
-        const FaceSignals support = face_signals(network, surface, signals, team);
+        const FaceSignals support = face_signals(network, surface, signals, one_thread());
         Membrane membrane;  // the faces of two rings: the patch has more faces than one group of boxes
         for (const VertexId v : network.ring(centre))
             for (const int f : surface.faces_around(v)) membrane.faces.push_back(f);
@@ -261,5 +231,4 @@ TEST(Surroundings, TellTheDifferenceThatAPatchMakes) { expect_the_plain_gain(fal
 
 TEST(Surroundings, CountSignalsThatAPatchWinsFromFacesSomeWayOff) { expect_the_plain_gain(true); }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::membranes_test

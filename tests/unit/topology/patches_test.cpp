@@ -4,31 +4,35 @@
 // Patches against all triangulations of small rims, and what they make of meshes.
 #include "vcg_core/topology/patches.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <limits>
-
+#include "tests/unit/support/prelude.h"
 #include "tests/unit/support/referee.h"
-#include "tests/unit/support/shapes.h"
 #include "vcg_core/mesh/boundary_loops.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::patches_test {
 
-using referee::network_of;
-
-/// A network with holes, and what patches need.
+/// A network with holes, and the patches of some of them.
 struct Scene {
-    explicit Scene(const shapes::Shape& shape, double noise = 0)
-        : network(network_of(shape, noise)), surface(network), none(surface.face_count(), 0) {}
-    Edges edges() const { return {network, surface, none}; }
+    explicit Scene(Network given)
+        : network(std::move(given)), surface(network), none(surface.face_count(), 0) {}
+    explicit Scene(const Shape& shape, double noise = 0) : Scene(network_of(shape, noise)) {}
     std::vector<Rim> rims() const { return boundary_loops(network.slot_count(), network.faces()); }
+    std::vector<Triangle> closing(const Rim& rim) const {
+        return closing_patches({rim}, surface.positions, {network, surface, none});
+    }
+    std::vector<Triangle> joining(const std::vector<Rim>& rims) const {
+        return joining_patch(rims, surface.positions, {network, surface, none});
+    }
 
     Network network;
     Surface surface;
     PerFace<char> none;
 };
+
+Network with_patch(Network network, const std::vector<Triangle>& patch) {
+    EXPECT_TRUE(network.can_exchange_faces({}, patch));
+    network.exchange_faces({}, patch);
+    return network;
+}
 
 float squared(const Scene& scene, VertexId a, VertexId b) {
     return (scene.surface.positions[a] - scene.surface.positions[b]).squaredNorm();
@@ -67,16 +71,12 @@ TEST(Patches, CloseRimsWithTheLeastEdges) {
         const Scene scene(shapes::tube(around, 4), 0.1);
         Network closed = scene.network;
         for (const Rim& rim : scene.rims()) {
-            const std::vector<Triangle> patch =
-                closing_patches({rim}, scene.surface.positions, scene.edges());
+            const std::vector<Triangle> patch = scene.closing(rim);
             ASSERT_EQ(patch.size(), rim.size() - 2);
             EXPECT_NEAR(inner_edges(scene, patch), least_sum(scene, rim, 0, rim.size() - 1), 1e-4);
-            ASSERT_TRUE(closed.can_exchange_faces({}, patch));
-            closed.exchange_faces({}, patch);
+            closed = with_patch(closed, patch);
         }
-        EXPECT_EQ(closed.validate(), "");
-        EXPECT_EQ(closed.boundary_loop_count(), 0);
-        EXPECT_EQ(closed.genus(), 0);
+        EXPECT_EQ(topology_of(closed), kBall);
     }
 }
 
@@ -84,33 +84,24 @@ TEST(Patches, JoinTheEndsOfATubeToATorus) {
     for (const int around : {3, 4, 7, 24}) {
         SCOPED_TRACE(around);
         const Scene scene(shapes::tube(around, 5), 0.02);
-        const auto rims = scene.rims();
-        ASSERT_EQ(rims.size(), 2U);
-        const std::vector<Triangle> patch =
-            joining_patch({rims[0], rims[1]}, scene.surface.positions, scene.edges());
+        ASSERT_EQ(scene.rims().size(), 2U);
+        const std::vector<Triangle> patch = scene.joining(scene.rims());
         ASSERT_EQ(patch.size(), 2 * static_cast<std::size_t>(around));
-        Network torus = scene.network;
-        ASSERT_TRUE(torus.can_exchange_faces({}, patch));
-        torus.exchange_faces({}, patch);
-        EXPECT_EQ(torus.validate(), "");
-        EXPECT_EQ(torus.boundary_loop_count(), 0);
-        EXPECT_EQ(torus.genus(), 1);
+        EXPECT_EQ(topology_of(with_patch(scene.network, patch)), kRing);
     }
 }
 
 TEST(Patches, JoinTwoPartsWithRimsOfDifferentLengths) {
-    shapes::Shape shape = shapes::tube(4, 3);
+    Shape shape = shapes::tube(4, 3);
     shapes::append(shape, shapes::tube(9, 3), {0, 0, 4});
     const Scene scene(shape, 0.02);
     const auto rims = scene.rims();
     int joined = 0;
     for (std::size_t a = 0; a < rims.size(); ++a)
         for (std::size_t b = a + 1; b < rims.size(); ++b) {
-            const std::vector<Triangle> patch =
-                joining_patch({rims[a], rims[b]}, scene.surface.positions, scene.edges());
+            const std::vector<Triangle> patch = scene.joining({rims[a], rims[b]});
             if (!scene.network.can_exchange_faces({}, patch)) continue;
-            Network network = scene.network;
-            network.exchange_faces({}, patch);
+            const Network network = with_patch(scene.network, patch);
             EXPECT_EQ(network.validate(), "");
             EXPECT_EQ(network.boundary_loop_count(), 2);
             joined += network.component_count() == 1 ? 1 : 0;
@@ -128,28 +119,17 @@ TEST(Patches, JoinThreeRimsAndMore) {
                 if (std::find(f.begin(), f.end(), corner) != f.end()) around.push_back(f);
             network.exchange_faces(around, {});
         }
-        const std::vector<Rim> rims = boundary_loops(network.slot_count(), network.faces());
-        ASSERT_EQ(rims.size(), static_cast<std::size_t>(holes));
-        const Surface surface(network);
-        const PerFace<char> none(surface.face_count(), 0);
-        const auto patch = joining_patch(rims, surface.positions, {network, surface, none});
-        ASSERT_TRUE(network.can_exchange_faces({}, patch));
-        network.exchange_faces({}, patch);
-        EXPECT_EQ(network.validate(), "");
-        EXPECT_EQ(network.boundary_loop_count(), 0);
-        EXPECT_EQ(network.genus(), holes - 1);
+        const Scene scene(network);
+        ASSERT_EQ(scene.rims().size(), static_cast<std::size_t>(holes));
+        EXPECT_EQ(topology_of(with_patch(network, scene.joining(scene.rims()))), (Topology{1, holes - 1, 0}));
     }
 }
 
 TEST(Patches, NeedNoEdgeThatExists) {
     // The rim of a half disc of two faces: its only diagonal is the edge between them.
     const Scene scene(shapes::fan(2));
-    const auto rims = scene.rims();
-    ASSERT_EQ(rims.size(), 1U);
-    const std::vector<Triangle> patch = closing_patches({rims[0]}, scene.surface.positions, scene.edges());
-    Network closed = scene.network;
-    ASSERT_TRUE(closed.can_exchange_faces({}, patch));
-    closed.exchange_faces({}, patch);
+    ASSERT_EQ(scene.rims().size(), 1U);
+    const Network closed = with_patch(scene.network, scene.closing(scene.rims()[0]));
     EXPECT_EQ(closed.validate(), "");
     EXPECT_EQ(closed.faces().size(), 4U);
 }
@@ -159,8 +139,7 @@ TEST(Patches, JoinLongRimsByTheShortestEdges) {
     for (const int around : {20, 60}) {
         const Scene scene(shapes::tube(around, 3));
         const auto rims = scene.rims();
-        const std::vector<Triangle> patch =
-            joining_patch({rims[0], rims[1]}, scene.surface.positions, scene.edges());
+        const std::vector<Triangle> patch = scene.joining(rims);
         ASSERT_EQ(patch.size(), 2U * static_cast<std::size_t>(around));
         float longest = 0, least = std::numeric_limits<float>::max();
         for (const Triangle& f : patch)
@@ -175,13 +154,11 @@ TEST(Patches, JoinLongRimsByTheShortestEdges) {
 TEST(Patches, AreRefusedForLongRimsAndRimsThatTouch) {
     const Scene scene(shapes::tube(kLongestRim + 1, 3));
     const auto rims = scene.rims();
-    EXPECT_TRUE(closing_patches({rims[0]}, scene.surface.positions, scene.edges()).empty());
-    EXPECT_TRUE(joining_patch({rims[0], rims[1]}, scene.surface.positions, scene.edges()).empty());
-    EXPECT_TRUE(joining_patch({rims[0], rims[0]}, scene.surface.positions, scene.edges()).empty());
+    EXPECT_TRUE(scene.closing(rims[0]).empty());
     const Rim three(rims[0].begin(), rims[0].begin() + 3);
-    EXPECT_TRUE(joining_patch({three, rims[1], three}, scene.surface.positions, scene.edges()).empty());
-    EXPECT_TRUE(joining_patch({rims[0], rims[1], {}}, scene.surface.positions, scene.edges()).empty());
+    for (const std::vector<Rim>& refused :
+         {rims, {rims[0], rims[0]}, {three, rims[1], three}, {rims[0], rims[1], {}}})
+        EXPECT_TRUE(scene.joining(refused).empty());
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::patches_test

@@ -3,38 +3,21 @@
 
 // Clouds with outliers, repeated points, holes and clumps: the mesh keeps the components and genus of the
 // shell, and a sentence says what was left out.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
 #include "tests/unit/support/runs.h"
 #include "tests/unit/support/shell_shapes.h"
-#include "tests/unit/support/soundness.h"
-#include "vcg_core/mesh/network.h"
-#include "vcg_core/reconstruct.h"
 
-namespace neuralmesh {
-namespace {
-
-using shapes::Cloud;
-using soundness::has_warning;
+namespace neuralmesh::dirty_clouds_test {
 
 /// Of exactly \p vertices and \p genus, closed and in one part.
 NeuralMesh closed_mesh(const Cloud& cloud, int vertices, int genus = 0, int surface = kAutomatic) {
-    Settings settings = runs::with_target(vertices);
+    Settings settings = with_target(vertices);
     settings.surface = surface;
-    NeuralMesh mesh = runs::learn(cloud, settings);
-    soundness::expect_exact(mesh, settings);
-    EXPECT_EQ(mesh.report.components, 1);
-    EXPECT_EQ(mesh.report.genus, genus);
-    EXPECT_EQ(mesh.report.boundary_loops, 0);
+    NeuralMesh mesh = learn_exactly(cloud, settings);
+    EXPECT_EQ(topology_of(mesh), (Topology{1, genus, 0}));
     return mesh;
 }
 
-Cloud samples_of(const shapes::Shape& shape, std::size_t count, std::uint64_t seed) {
+Cloud samples_of(const Shape& shape, std::size_t count, std::uint64_t seed) {
     Random random(seed);
     return shell_shapes::sample(shape, count, random);
 }
@@ -43,7 +26,7 @@ Cloud samples_of(const shapes::Shape& shape, std::size_t count, std::uint64_t se
 Cloud sphere_with_gross_outliers() {
     Random random(11);
     Cloud cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
-    const auto anywhere = [&] { return 6 * static_cast<double>(random.unit()) - 3; };
+    const auto anywhere = [&] { return 6 * shapes::unit(random) - 3; };
     for (std::size_t i = 0; i < cloud.size(); i += 100) cloud[i] = {anywhere(), anywhere(), anywhere()};
     return cloud;
 }
@@ -61,9 +44,9 @@ TEST(DirtyClouds, GrossOutliersMakeNoComponentsAndDoNotPull) {
         EXPECT_GE(mesh.report.outliers, 180);
         EXPECT_LE(mesh.report.outliers, 220);
     }
-    Settings all = runs::with_target(500);
+    Settings all = with_target(500);
     all.remove_outliers = false;
-    const NeuralMesh pulled = runs::learn(sphere_with_gross_outliers(), all);
+    const NeuralMesh pulled = learn(sphere_with_gross_outliers(), all);
     EXPECT_EQ(pulled.report.outliers, 0);
     EXPECT_TRUE(has_warning(pulled, "points were ignored as outliers by the start mesh, but are learned"));
     EXPECT_TRUE(std::any_of(pulled.positions.begin(), pulled.positions.end(),
@@ -82,7 +65,7 @@ TEST(DirtyClouds, OnePointFarAwayCostsNeitherTimeNorPrecision) {
 TEST(DirtyClouds, PointsDeepInsideDoNotPull) {
     Random random(17);
     Cloud cloud = shell_shapes::sample(shell_shapes::sphere(1), 20000, random);
-    for (std::size_t i = 0; i < 200; ++i) cloud[i] *= 0.1 + 0.6 * static_cast<double>(random.unit());
+    for (std::size_t i = 0; i < 200; ++i) cloud[i] *= 0.1 + 0.6 * shapes::unit(random);
     const NeuralMesh mesh = closed_mesh(cloud, 500);
     expect_sphere(mesh, 0.02);
     EXPECT_TRUE(has_warning(mesh, "of 20000 points (1.0 %) were left out as outliers"));
@@ -99,8 +82,7 @@ TEST(DirtyClouds, FarClumpsOfFewPointsMakeNoComponents) {
     Cloud cloud = shell_shapes::sample(shell_shapes::torus(1, 0.35), 20000, random);
     for (const double x : {3.0, -3.0, 5.0})
         for (int i = 0; i < 150; ++i)
-            cloud.emplace_back(x + 0.05 * static_cast<double>(random.unit()),
-                               0.05 * static_cast<double>(random.unit()), 2);
+            cloud.emplace_back(x + 0.05 * shapes::unit(random), 0.05 * shapes::unit(random), 2);
     EXPECT_TRUE(has_warning(closed_mesh(cloud, 500, 1), "450 of 20450 points were ignored as outliers"));
 }
 
@@ -114,7 +96,7 @@ TEST(DirtyClouds, TooSparseForTheirShellTakeACoarserOneAndSaySo) {
     // Clusters of points, far apart: dense enough for a fine lattice, on which they stay apart.
     Random random(16);
     Cloud cloud;
-    const auto jitter = [&] { return 0.004 * static_cast<double>(random.unit()); };
+    const auto jitter = [&] { return 0.004 * shapes::unit(random); };
     for (const vcg::Point3d& p : shell_shapes::sample(shell_shapes::torus(1, 0.15), 800, random))
         for (int i = 0; i < 30; ++i) cloud.push_back(p + vcg::Point3d(jitter(), jitter(), jitter()));
     EXPECT_TRUE(has_warning(closed_mesh(cloud, 200, 1, kClosedSurface), "A coarser one was made"));
@@ -127,10 +109,9 @@ TEST(MostlyNoise, IsLeftOutAndTheMeshIsThatOfTheSurface) {
     constexpr int kSeeds = 3;
     double sum = 0;  // over the runs, which differ: from .04 to .053 over ten seeds
     for (int seed = 1; seed <= kSeeds; ++seed) {
-        Settings settings = runs::with_target(500);
+        Settings settings = with_target(500);
         settings.random_seed = seed;
-        const NeuralMesh mesh = runs::learn(cloud, settings);
-        soundness::expect_exact(mesh, settings);
+        const NeuralMesh mesh = learn_exactly(cloud, settings);
         EXPECT_GT(mesh.report.outliers, 2700);
         EXPECT_LT(mesh.report.outliers, 3610);
         EXPECT_TRUE(has_warning(mesh, " of 8600 points (3")) << "the share";
@@ -148,13 +129,11 @@ TEST(MostlyNoise, IsLearnedIfTheOtherPointsSpanNoSurface) {
     Random random(3);
     for (int i = 0; i < 2000; ++i) cloud.emplace_back(shapes::signed_unit(random), 0.0, 0.0);
     for (int i = 0; i < 20; ++i) cloud.push_back(shapes::in_cube(random));
-    Settings settings = runs::with_target(200);
+    Settings settings = with_target(200);
     settings.surface = kClosedSurface;
-    const NeuralMesh mesh = runs::learn(cloud, settings);
-    soundness::expect_exact(mesh, settings);
+    const NeuralMesh mesh = learn_exactly(cloud, settings);
     EXPECT_TRUE(has_warning(mesh, "20 of 2020 points (1.0 %) look like outliers"));
     EXPECT_TRUE(has_warning(mesh, "all points were learned"));
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::dirty_clouds_test

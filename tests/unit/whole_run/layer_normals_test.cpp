@@ -2,41 +2,26 @@
 // Copyright the Neural Mesh authors
 
 // Whole runs on clouds with normals: what they orient, and what the log says.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
 #include "tests/unit/support/normal_clouds.h"
 #include "tests/unit/support/runs.h"
-#include "tests/unit/support/soundness.h"
-#include "vcg_core/reconstruct.h"
 
-namespace neuralmesh {
-namespace {
-
-using namespace normal_clouds;
-using soundness::has_note;
-using soundness::has_warning;
+namespace neuralmesh::layer_normals_test {
 
 constexpr const char* kFollowed = "faces the side to which the normals";
 
 NeuralMesh learn(const TargetSpace& target, int surface = kAutomatic, bool use_normals = true) {
-    Settings settings;
-    settings.target_vertices = 300;
+    Settings settings = with_target(300);
     settings.surface = surface;
     settings.use_normals = use_normals;
     settings.vertex_color = kNoColors;
     settings.settling_signals_per_vertex = 5;
-    return runs::learn(target, settings);
+    return learn(target, settings);
 }
 
 /// The share of the faces that face away from the origin.
 double share_facing_out(const NeuralMesh& mesh) {
     double out = 0;
-    for (const Triangle& f : mesh.faces)
-        out += referee::corner(mesh, f, 0) * referee::area_of(mesh, f) > 0 ? 1 : 0;
+    for (const Triangle& f : mesh.faces) out += corner(mesh, f, 0) * area_of(mesh, f) > 0 ? 1 : 0;
     return out / static_cast<double>(mesh.faces.size());
 }
 
@@ -51,7 +36,7 @@ TEST(LayerNormals, OrientAnOpenSurface) {
     for (const int surface : {kAutomatic, kOpenSurface}) {
         for (const bool in : {false, true}) {
             const NeuralMesh mesh = learn(target_of(cloud, in ? inward(cloud) : outward(cloud)), surface);
-            soundness::expect_sound(mesh);
+            expect_sound(mesh);
             EXPECT_EQ(mesh.report.boundary_loops, 1);
             EXPECT_TRUE(has_note(mesh, kFollowed));
             EXPECT_FALSE(has_warning(mesh, "normals"));
@@ -80,7 +65,7 @@ TEST(LayerNormals, OfRepeatedPointsAndOutliersComeAlong) {
 
 TEST(LayerNormals, AreNotUsedIfTheyAreWrong) {
     const Cloud cloud = bowl(8000);
-    const NeuralMesh without = learn(targets::target_of(cloud));
+    const NeuralMesh without = learn(target_of(cloud));
     const NeuralMesh sides = learn(target_of(cloud, flipped(outward(cloud), 2)));
     EXPECT_TRUE(has_warning(sides, "point to either side of the surface"));
     expect_same(sides, without);
@@ -98,12 +83,12 @@ TEST(LayerNormals, OfPartsThatDisagreeAreNotUsed) {
     const NeuralMesh mesh = learn(target_of(cloud, normals));
     EXPECT_TRUE(has_warning(mesh, "point to both sides of 1 of the 1 parts"));
     EXPECT_FALSE(has_note(mesh, kFollowed));
-    expect_same(mesh, learn(targets::target_of(cloud)));
+    expect_same(mesh, learn(target_of(cloud)));
 }
 
 TEST(LayerNormals, ThatAreSwitchedOffAreNone) {
     const Cloud cloud = bowl(8000);
-    const NeuralMesh without = learn(targets::target_of(cloud));
+    const NeuralMesh without = learn(target_of(cloud));
     const NeuralMesh off = learn(target_of(cloud, inward(cloud)), kAutomatic, false);
     expect_same(off, without);
     EXPECT_TRUE(off.report.notes.empty());
@@ -112,7 +97,7 @@ TEST(LayerNormals, ThatAreSwitchedOffAreNone) {
 
 TEST(LayerNormals, OfAClosedSurfaceChangeNothing) {
     const Cloud cloud = shapes::sphere_cloud(10000);
-    const NeuralMesh without = learn(targets::target_of(cloud));
+    const NeuralMesh without = learn(target_of(cloud));
     const NeuralMesh out = learn(target_of(cloud, outward(cloud)));
     expect_same(out, without);
     EXPECT_TRUE(has_note(out, "A closed surface faces out without them"));
@@ -130,5 +115,4 @@ TEST(LayerNormals, ThatCannotBeComparedAreNotUsed) {
     EXPECT_TRUE(has_warning(learn(target_of(cloud, outward(cloud))), "cannot be compared with the points"));
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::layer_normals_test

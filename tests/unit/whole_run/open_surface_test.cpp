@@ -2,34 +2,18 @@
 // Copyright the Neural Mesh authors
 
 // Whole runs on surfaces with boundary, and the choice between open and closed.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/runs.h"
 #include "tests/unit/support/shell_shapes.h"
-#include "tests/unit/support/soundness.h"
-#include "vcg_core/base/error.h"
 #include "vcg_core/mesh/boundary_loops.h"
-#include "vcg_core/reconstruct.h"
 #include "vcg_core/start/open_start.h"
 
-namespace neuralmesh {
-namespace {
+namespace neuralmesh::open_surface_test {
 
 using open_shapes::Case;
-using runs::learn;
-using shapes::Cloud;
-using soundness::has_warning;
 
 Settings settings_with(int vertices, int surface) {
-    Settings settings;
-    settings.target_vertices = vertices;
+    Settings settings = with_target(vertices);
     settings.surface = surface;
     settings.settling_signals_per_vertex = 5;
     return settings;
@@ -42,11 +26,8 @@ TEST(OpenSurface, ComesOutWithItsTopologyAndExactlyAsManyVertices) {
             chosen = !chosen;
             SCOPED_TRACE(each.name + ", " + std::to_string(vertices));
             const Settings settings = settings_with(vertices, chosen ? kAutomatic : kOpenSurface);
-            const NeuralMesh mesh = learn(each.cloud, settings);
-            soundness::expect_exact(mesh, settings);
-            EXPECT_EQ(mesh.report.components, each.components);
-            EXPECT_EQ(mesh.report.genus, each.genus);
-            EXPECT_EQ(mesh.report.boundary_loops, each.loops);
+            const NeuralMesh mesh = learn_exactly(each.cloud, settings);
+            EXPECT_EQ(topology_of(mesh), (Topology{each.components, each.genus, each.loops}));
             EXPECT_LT(mesh.report.rms_error, 0.7);
             EXPECT_EQ(has_warning(mesh, "the surface ends where they end"), chosen);
         }
@@ -60,18 +41,15 @@ TEST(OpenSurface, FacesTheOriginIfThatIsBesideItElseUp) {
         for (vcg::Point3d& p : cloud) p[2] = height + 0.002 * shapes::signed_unit(random);
         const NeuralMesh mesh = learn(cloud, settings_with(500, kOpenSurface));
         const auto [all, up] =
-            referee::areas_of(mesh, [](const vcg::Point3d& area, const auto&) { return area[2] > 0; });
+            areas_of(mesh, [](const vcg::Point3d& area, const auto&) { return area[2] > 0; });
         EXPECT_NEAR(up / all, height > 0 ? 0 : 1, 0.01) << height;
     }
 }
 
 TEST(OpenSurface, IsTheStartOfWallsWithGapsAsWideAsTheyAreThick) {
     const Cloud cloud = open_shapes::tube_with_gap(66000);
-
     const NeuralMesh mesh = learn(cloud, settings_with(1500, kAutomatic));
-    EXPECT_EQ(mesh.report.components, 1);
-    EXPECT_EQ(mesh.report.genus, 1);
-    EXPECT_EQ(mesh.report.boundary_loops, 0);
+    EXPECT_EQ(topology_of(mesh), kRing);
     EXPECT_LT(mesh.report.rms_error, 0.1);
     EXPECT_FALSE(has_warning(mesh, "enclose no space"));
 }
@@ -81,9 +59,7 @@ TEST(OpenSurface, IsClosedWhereBothWallsArePoints) {
     Random random(1);
     const Cloud cloud = shell_shapes::sample(shell_shapes::cup(1, 2, 0.06), 100000, random);
     const NeuralMesh mesh = learn(cloud, settings_with(800, kAutomatic));
-    EXPECT_EQ(mesh.report.components, 1);
-    EXPECT_EQ(mesh.report.genus, 0);
-    EXPECT_EQ(mesh.report.boundary_loops, 0);
+    EXPECT_EQ(topology_of(mesh), kBall);
     EXPECT_FALSE(has_warning(mesh, "the surface ends where they end"));
 }
 
@@ -114,8 +90,7 @@ TEST(OpenSurface, OfAThinWallIsOneSheetAndSaysSo) {
 }
 
 TEST(OpenSurface, MeasuresHolesAgainstTheMeshNotAgainstFarOutliers) {
-    Cloud cloud =
-        open_shapes::cut(shapes::sphere_cloud(20000), [](const vcg::Point3d& p) { return p[2] < 0.5; });
+    Cloud cloud = open_shapes::sphere_below(0.5, 20000);
     for (int i = 0; i < 30; ++i) cloud.emplace_back(40 + 0.01 * i, 40 + 0.01 * (i % 7), 40 + 0.01 * (i % 3));
     EXPECT_EQ(learn(cloud, settings_with(400, kAutomatic)).report.boundary_loops, 1);
 }
@@ -138,8 +113,7 @@ TEST(OpenSurface, IsNotChosenForClosedCloudsOfFewPoints) {
         const std::array clouds = {shapes::sphere_cloud(count), shapes::torus_cloud(count),
                                    shapes::box_cloud(count)};
         EXPECT_EQ(learn(clouds[i], settings_with(200, kAutomatic)).report.boundary_loops, 0);
-        const Cloud half =
-            open_shapes::cut(shapes::sphere_cloud(2 * count), [](const vcg::Point3d& p) { return p[2] < 0; });
+        const Cloud half = open_shapes::sphere_below(0, 2 * count);
         EXPECT_EQ(learn(half, settings_with(200, kAutomatic)).report.boundary_loops, 1);
     }
 }
@@ -161,25 +135,22 @@ TEST(OpenSurface, OfFewVerticesHasABoundaryAsLongAsThatOfTheCloud) {
     });
     const NeuralMesh fine = learn(cloud, settings_with(5000, kAutomatic));
     const NeuralMesh coarse = learn(cloud, settings_with(300, kAutomatic));
-    EXPECT_EQ(coarse.report.boundary_loops, fine.report.boundary_loops);
-    EXPECT_EQ(coarse.report.genus, fine.report.genus);
+    EXPECT_EQ(topology_of(coarse), topology_of(fine));
     EXPECT_NEAR(boundary_length(coarse) / boundary_length(fine), 1, 0.1);
 }
 
 TEST(OpenSurface, OfALayerWithFacesEndsWhereTheyEnd) {
-    const Settings settings = settings_with(300, kAutomatic);
-    const NeuralMesh mesh = learn(targets::target_of(shapes::grid(9, 9)), settings);
-    soundness::expect_exact(mesh, settings);
+    const NeuralMesh mesh = learn_exactly(target_of(shapes::grid(9, 9)), settings_with(300, kAutomatic));
     EXPECT_EQ(mesh.report.boundary_loops, 1);
 }
 
 /// Of what is learned from a sphere of faces without those above \p height.
 int loops_of_faces_below(double height, double close_holes_up_to) {
-    const shapes::Shape cap =
+    const Shape cap =
         open_shapes::cut(shapes::icosphere(4), [&](const vcg::Point3d& p) { return p[2] <= height; });
     Settings settings = settings_with(300, kAutomatic);
     settings.close_holes_up_to = close_holes_up_to;
-    return learn(targets::target_of(cap), settings).report.boundary_loops;
+    return learn(target_of(cap), settings).report.boundary_loops;
 }
 
 TEST(OpenSurface, OfALayerWithFacesIsDecidedByTheirLoops) {
@@ -232,11 +203,8 @@ Cloud joined_sheets(int side, int points) {
 }
 
 TEST(OpenSurface, OfFewVerticesMayHaveManyHandles) {
-    const Settings settings = settings_with(500, kAutomatic);
-    const NeuralMesh mesh = learn(joined_sheets(4, 60000), settings);
-    soundness::expect_exact(mesh, settings);
-    EXPECT_EQ(mesh.report.boundary_loops, 2);
-    EXPECT_EQ(mesh.report.genus, 15);
+    const NeuralMesh mesh = learn_exactly(joined_sheets(4, 60000), settings_with(500, kAutomatic));
+    EXPECT_EQ(topology_of(mesh), (Topology{1, 15, 2}));
 }
 
 TEST(OpenSurface, ComesDownToTheVerticesThatItsTopologyNeeds) {
@@ -247,11 +215,8 @@ TEST(OpenSurface, ComesDownToTheVerticesThatItsTopologyNeeds) {
             cloud.push_back(p + vcg::Point3d(3.0 * (i % 5), 3.0 * (i / 5), 0.2 * p[0] * p[1]));
     for (const int vertices : {300, 120, 80, 70, 60}) {
         SCOPED_TRACE(vertices);
-        const Settings settings = settings_with(vertices, kOpenSurface);
-        const NeuralMesh mesh = learn(cloud, settings);
-        soundness::expect_exact(mesh, settings);
-        EXPECT_EQ(mesh.report.components, 20);
-        EXPECT_EQ(mesh.report.boundary_loops, 20);
+        const NeuralMesh mesh = learn_exactly(cloud, settings_with(vertices, kOpenSurface));
+        EXPECT_EQ(topology_of(mesh), (Topology{20, 0, 20}));
     }
 }
 
@@ -264,5 +229,4 @@ TEST(OpenSurface, CannotStartFromATetrahedron) {
     EXPECT_TRUE(has_warning(mesh, "because start_mesh 1 (tetrahedron) is"));
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::open_surface_test

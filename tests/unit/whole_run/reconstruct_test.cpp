@@ -4,33 +4,15 @@
 // Whole runs: what is learned, progress, stop reasons.
 #include "vcg_core/reconstruct.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-
-#include "tests/unit/support/referee.h"
 #include "tests/unit/support/runs.h"
-#include "tests/unit/support/shapes.h"
-#include "tests/unit/support/soundness.h"
 
-namespace neuralmesh {
-namespace {
-
-using runs::learn;
-using runs::Watch;
-using runs::with_target;
-using shapes::Cloud;
-using soundness::expect_exact;
-using soundness::expect_sound;
-using soundness::target_of;
+namespace neuralmesh::reconstruct_test {
 
 TEST(Reconstruct, LiesOnTheSphereItLearned) {
     for (const int start : {kShell, kTetrahedron}) {
         const NeuralMesh mesh = learn(shapes::sphere_cloud(20000), with_target(1000, start));
         const double sphere = 4.0 / 3 * shapes::kPi;
-        EXPECT_NEAR(referee::enclosed_volume(mesh), sphere, 0.02 * sphere);
+        EXPECT_NEAR(enclosed_volume(mesh), sphere, 0.02 * sphere);
         for (const vcg::Point3d& p : mesh.positions) EXPECT_NEAR(p.Norm(), 1, 0.05);
         EXPECT_LT(mesh.report.rms_error, 0.3);
     }
@@ -55,7 +37,7 @@ TEST(Reconstruct, FollowsNoNoiseOfFewPoints) {
 double normals_off_sphere(const NeuralMesh& mesh) {
     double sum = 0;
     for (const Triangle& f : mesh.faces) {
-        const vcg::Point3d normal = referee::area_of(mesh, f), out = referee::middle_of(mesh, f);
+        const vcg::Point3d normal = area_of(mesh, f), out = middle_of(mesh, f);
         sum += std::acos(std::clamp(normal * out / (normal.Norm() * out.Norm()), -1.0, 1.0));
     }
     return sum / static_cast<double>(mesh.faces.size()) * 180 / shapes::kPi;
@@ -73,7 +55,7 @@ TEST(Reconstruct, MostValencesAreRegular) {
     for (const auto& [start, share] : {std::pair(kShell, 0.85), std::pair(kTetrahedron, 0.95)}) {
         const NeuralMesh mesh = learn(shapes::sphere_cloud(20000), with_target(2000, start));
         int regular = 0;
-        for (const auto& entry : referee::census(mesh.faces).valence)
+        for (const auto& entry : census(mesh.faces).valence)
             regular += entry.second >= 5 && entry.second <= 7 ? 1 : 0;
         EXPECT_GE(regular, share * 2000);
     }
@@ -145,5 +127,4 @@ TEST(Reconstruct, SelectsByOneMeasureAndShowsTheOther) {
     EXPECT_EQ(learn(box, with_target(300)).features, crease.features) << "not the default";
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::reconstruct_test

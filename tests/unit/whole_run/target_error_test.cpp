@@ -2,26 +2,14 @@
 // Copyright the Neural Mesh authors
 
 // Meshes that have as many vertices as an error asks for.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/unit/support/runs.h"
-#include "tests/unit/support/soundness.h"
-#include "tests/unit/support/targets.h"
 #include "vcg_core/learn_to_error.h"
-#include "vcg_core/reconstruct.h"
 
-namespace neuralmesh {
-namespace {
-
-using runs::learn;
-using shapes::Cloud;
+namespace neuralmesh::target_error_test {
 
 Settings settings_for(double error, int most = 10000) {
-    Settings settings;
+    Settings settings = with_target(most);
     settings.target_error = error;
-    settings.target_vertices = most;
     return settings;
 }
 
@@ -31,7 +19,7 @@ double error_of_sphere(const NeuralMesh& mesh) {
     double sum = 0;
     int count = 0;
     for (const Triangle& f : mesh.faces) {
-        const auto at = [&](std::size_t k) { return referee::corner(mesh, f, k); };
+        const auto at = [&](std::size_t k) { return corner(mesh, f, k); };
         for (int i = 0; i < kPerEdge; ++i)
             for (int j = 0; i + j < kPerEdge; ++j, ++count) {
                 const double u = (i + 1.0 / 3) / kPerEdge, v = (j + 1.0 / 3) / kPerEdge;
@@ -44,45 +32,42 @@ double error_of_sphere(const NeuralMesh& mesh) {
 
 TEST(TargetError, IsReachedWithNoise) {
     constexpr double kNoise = 0.01, kError = 0.01;
-
-    const NeuralMesh mesh =
-        learn(targets::target_of(shapes::sphere_cloud(20000, kNoise)), settings_for(kError));
+    const NeuralMesh mesh = learn(target_of(shapes::sphere_cloud(20000, kNoise)), settings_for(kError));
     EXPECT_LE(mesh.report.held_out_error, 1.03 * kError);
     EXPECT_GE(mesh.report.held_out_error, 0.8 * kError);
     EXPECT_LE(error_of_sphere(mesh), 1.15 * kError);
     EXPECT_GE(error_of_sphere(mesh), 0.8 * kError);
     EXPECT_LT(mesh.report.vertices, 2000);
     EXPECT_EQ(mesh.report.vertices, static_cast<int>(mesh.positions.size()));
-    EXPECT_TRUE(soundness::has_note(mesh, "as target_error asks for"));
+    EXPECT_TRUE(has_note(mesh, "as target_error asks for"));
 }
 
 TEST(TargetError, IsThatOfFacesToo) {
-    const NeuralMesh mesh = learn(targets::target_of(shapes::icosphere(4)), settings_for(0.01, 300));
+    const NeuralMesh mesh = learn(target_of(shapes::icosphere(4)), settings_for(0.01, 300));
     EXPECT_LE(mesh.report.held_out_error, 0.0103);
-    EXPECT_TRUE(soundness::has_note(mesh, "as target_error asks for"));
+    EXPECT_TRUE(has_note(mesh, "as target_error asks for"));
 }
 
 TEST(TargetError, IsNotSpoiltByOutliers) {
     Cloud cloud = shapes::sphere_cloud(20000);
     Random random(1);
     for (int i = 0; i < 200; ++i) cloud.push_back(shapes::in_ball(random) * 3);
-    const NeuralMesh mesh = learn(targets::target_of(cloud), settings_for(0.01));
+    const NeuralMesh mesh = learn(target_of(cloud), settings_for(0.01));
     EXPECT_LE(error_of_sphere(mesh), 0.013);
     EXPECT_LT(mesh.report.vertices, 1000);
 }
 
 TEST(TargetError, WarnsIfTheMostVerticesDoNotSuffice) {
-    const NeuralMesh mesh = learn(targets::target_of(shapes::sphere_cloud(20000)), settings_for(0.0001, 200));
+    const NeuralMesh mesh = learn(target_of(shapes::sphere_cloud(20000)), settings_for(0.0001, 200));
     EXPECT_EQ(mesh.report.vertices, 200);
-    EXPECT_TRUE(soundness::has_warning(mesh, "Raise target_vertices"));
+    EXPECT_TRUE(has_warning(mesh, "Raise target_vertices"));
     EXPECT_GT(mesh.report.held_out_error, 0.0001);
 }
 
 TEST(TargetError, WarnsIfTheNoiseDoesNotAllowIt) {
-    const NeuralMesh mesh =
-        learn(targets::target_of(shapes::sphere_cloud(20000, 0.03)), settings_for(0.0005));
+    const NeuralMesh mesh = learn(target_of(shapes::sphere_cloud(20000, 0.03)), settings_for(0.0005));
     EXPECT_LT(mesh.report.vertices, 10000);
-    EXPECT_TRUE(soundness::has_warning(mesh, "noise or the number of the points"));
+    EXPECT_TRUE(has_warning(mesh, "noise or the number of the points"));
 }
 
 /// Those of a run, but no start mesh has fewer than \p least vertices. Counts the start meshes in \p made.
@@ -102,13 +87,12 @@ OuterStages stages_from(int least, int& made) {
 }
 
 TEST(TargetError, TriesMoreVerticesWhereTooFewMakeNoMesh) {
-    const TargetSpace target = targets::target_of(shapes::sphere_cloud(6000));
-    NoProgress progress;
+    const TargetSpace target = target_of(shapes::sphere_cloud(6000));
     int made = 0;
-    const NeuralMesh mesh = learn_to_error(target, settings_for(0.002), progress, stages_from(1600, made));
+    const NeuralMesh mesh = learn_to_error(target, settings_for(0.002), unwatched(), stages_from(1600, made));
     EXPECT_GE(mesh.report.vertices, 1600);
     EXPECT_LE(made, 3);
-    EXPECT_THROW(learn_to_error(target, settings_for(0.1, 500), progress, stages_from(600, made)),
+    EXPECT_THROW(learn_to_error(target, settings_for(0.1, 500), unwatched(), stages_from(600, made)),
                  SettingError);
 }
 
@@ -117,14 +101,13 @@ TEST(TargetError, LeavesNoComponentOut) {
     for (int i = 0; i < 36; ++i)
         for (const vcg::Point3d& p : shapes::sphere_cloud(150))
             cloud.push_back(p + vcg::Point3d(3.0 * (i % 6), 3.0 * (i / 6), 0));
-    const NeuralMesh mesh = learn(targets::target_of(cloud), settings_for(0.3));
-    EXPECT_EQ(mesh.report.components, 36);
-    EXPECT_EQ(mesh.report.genus, 0);
+    const NeuralMesh mesh = learn(target_of(cloud), settings_for(0.3));
+    EXPECT_EQ(topology_of(mesh), (Topology{36, 0, 0}));
 }
 
 TEST(TargetError, IsLeftWhereItIsIfAskedToStop) {
-    runs::Watch stop(0);
-    const TargetSpace target = targets::target_of(shapes::sphere_cloud(6000));
+    Watch stop(0);
+    const TargetSpace target = target_of(shapes::sphere_cloud(6000));
     int made = 0;
     learn_to_error(target, settings_for(0.001), stop, stages_from(4, made));
     EXPECT_EQ(made, 1);
@@ -133,5 +116,4 @@ TEST(TargetError, IsLeftWhereItIsIfAskedToStop) {
     EXPECT_FALSE(mesh.faces.empty());
 }
 
-}  // namespace
-}  // namespace neuralmesh
+}  // namespace neuralmesh::target_error_test
