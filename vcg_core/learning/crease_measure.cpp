@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "vcg_core/base/parallel_for.h"
-#include "vcg_core/learning/filtered_faces.h"
 #include "vcg_core/learning/two_planes.h"
 
 namespace neuralmesh {

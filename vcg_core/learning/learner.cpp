@@ -42,10 +42,9 @@ Learner::Learner(const TargetSpace& target, const LearnerOptions& options, Netwo
       rates_{static_cast<float>(options.learning_rate), static_cast<float>(options.smoothing_rate),
              options.smoothing_steps},
       mean_delta_(options.normalization_window),
-      schedule_(options, state_.network.vertex_count()),
+      schedule_(state_.options, state_.network.vertex_count()),
       random_(stream_seed(options.random_seed, Stream::learning)),
       batch_(options.threads),
-      memory_order_(state_),
       topology_random_(stream_seed(options.random_seed, Stream::topology)) {}
 
 StopReason Learner::run(int landing_signals, Progress& progress) {
@@ -81,7 +80,7 @@ StopReason Learner::grow(Progress& progress) {
         });
         const bool collapses = !forced_ && schedule_.collapse_due(signals());
         if (collapses) half_edge_collapse();
-        memory_order_.update_while_growing();
+        state_.reorder_while_growing();
         PartOf standing(progress, done, done);
         if (state_.options.learn_topology && stages.pass(network().vertex_count()) &&
             !learn_topology(stages.over(), standing))
@@ -205,7 +204,7 @@ bool Learner::settle(int per_vertex, Progress& progress, bool observe) {
 }
 
 bool Learner::learn_at_rest(std::int64_t count, Progress& progress, bool observe) {
-    memory_order_.finish();
+    state_.reorder_at_rest();
     crease_measure_ = CreaseMeasure();
     const std::int64_t begin = signals();
     const std::int64_t end = begin + count;

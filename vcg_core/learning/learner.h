@@ -18,8 +18,6 @@
 #include "vcg_core/learning/growth_schedule.h"
 #include "vcg_core/learning/learner_options.h"
 #include "vcg_core/learning/learning_state.h"
-#include "vcg_core/learning/memory_order.h"
-#include "vcg_core/learning/normal_turn.h"
 #include "vcg_core/learning/stop_reason.h"
 #include "vcg_core/mesh/network.h"
 
@@ -118,7 +116,6 @@ private:
     std::vector<vcg::Point3f> drawn_;  ///< those of the last batch
     BasicStepBatch batch_;
     BatchLimit batch_limit_;
-    MemoryOrder memory_order_;
     Saturation saturation_;
     std::int64_t last_report_ = 0;
     Random topology_random_;

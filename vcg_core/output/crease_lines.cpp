@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "vcg_core/base/disjoint_sets.h"
-#include "vcg_core/learning/filtered_faces.h"
 #include "vcg_core/learning/two_planes.h"
 #include "vcg_core/mesh/surface.h"
 

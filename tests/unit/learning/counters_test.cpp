@@ -10,9 +10,8 @@
 #include <vector>
 
 #include "vcg_core/base/random.h"
+#include "vcg_core/learning/counters.h"
 #include "vcg_core/learning/growth_schedule.h"
-#include "vcg_core/learning/normal_turn.h"
-#include "vcg_core/learning/utility_counter.h"
 
 namespace neuralmesh {
 namespace {
