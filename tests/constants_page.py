@@ -27,7 +27,7 @@ INERT = [
     (r"engine/(winner_search|scaled_numbers|eight_steps\.cpp|eight_steps\.h:kMost$)|mesh/face_tree|"
      r"cloud/nearest_points|start/clearance",
      "a search or an order: an exact result, found faster"),
-    (r"base/(logarithm|random|packed_normal|even_mesh)\.h:|:k(PiF|White|DegreesPerRadian|DeviationPerMedian|UnitBallVolume|"
+    (r"base/(logarithm|random|colors_and_normals|even_mesh)\.h:|:k(PiF|White|DegreesPerRadian|DeviationPerMedian|UnitBallVolume|"
      r"Ln2|Pi)$|:kWithin30Degrees$", "mathematics"),
     (r":k(None|NoVertex|NoNormal|Sentinel|FreeSlot|Nobody|Outside|Zero|End|Never|Unset|Unlimited|Far|Middle|Max)$",
      "a mark for nothing"),

@@ -43,8 +43,7 @@ WorkingCopy copy_of(const GivenStart& given) {
 /// Learns in rounds that begin at the places of \p given. \return the moments of all rounds
 CreaseMeasure learn_around(const Network& given, int signals_per_vertex, Learner& learner,
                            MonotoneProgress& progress) {
-    PerVertex<vcg::Point3f> places(given.slot_count());
-    for (const VertexId v : given.vertices()) places[v] = given.position(v);
+    const PerVertex<vcg::Point3f> places = given.positions();
     const std::int64_t signals = settling_signals(signals_per_vertex, given.vertex_count());
     const std::int64_t per_round = std::int64_t{kSignalsPerRound} * given.vertex_count();
     CreaseMeasure moments;

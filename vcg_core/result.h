@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "vcg_core/base/color.h"
+#include "vcg_core/base/colors_and_normals.h"
 #include "vcg_core/learning/stop_reason.h"
 
 namespace neuralmesh {

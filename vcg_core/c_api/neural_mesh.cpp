@@ -45,7 +45,7 @@ const std::vector<SettingInfo>& table_of(int kind) {
 
 /// Whether the parameter says which layer of a host, or which selected part of one, is meant.
 bool is_of_layers(const SettingInfo& info) {
-    return info.kind == Kind::layer || info.boolean_member == &Settings::selected_only;
+    return info.kind == Kind::layer || info.member == decltype(info.member)(&Settings::selected_only);
 }
 
 // --- Parameters ------------------------------------------------------------------------------------
@@ -174,15 +174,12 @@ class CallersProgress : public Progress {
 public:
     CallersProgress(neural_mesh_progress call, void* context) : call_(call), context_(context) {}
     bool operator()(double fraction, const char* text) override {
-        // Not asked again once it wants to stop.
-        goes_on_ = goes_on_ && (call_ == nullptr || call_(context_, fraction, text) != 0);
-        return goes_on_;
+        return call_ == nullptr || call_(context_, fraction, text) != 0;
     }
 
 private:
     neural_mesh_progress call_;
     void* context_;
-    bool goes_on_ = true;
 };
 
 template <class T>

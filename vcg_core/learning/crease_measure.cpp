@@ -83,10 +83,6 @@ void CreaseMeasure::add(const CreaseMeasure& other) {
     moments_ += other.moments_;
 }
 
-PerVertex<float> CreaseMeasure::values(const Network& learned, ThreadTeam& team) const {
-    return values(learned, learned, {}, team);
-}
-
 PerVertex<float> CreaseMeasure::values(const Network& learned, const Network& shown,
                                        const PerVertex<VertexId>& source, ThreadTeam& team) const {
     if (moments_ == 0) {

@@ -86,7 +86,10 @@ StopReason Learner::grow(Progress& progress) {
             !learn_topology(stages.over(), standing))
             return StopReason::cancelled;
 
-        if (!forced_ && schedule_.stalled(signals())) force_growth();
+        if (!forced_ && schedule_.stalled(signals())) {
+            forced_ = true;
+            state_.utility_counters.waive_maturity();
+        }
         if (schedule_.exhausted(signals())) return StopReason::cut_short;
         if (collapses &&
             saturation_.reached(network().vertex_count(), state_.splits + state_.splits_refused) &&
@@ -139,7 +142,7 @@ void Learner::learn_counters(const StepResult& step) {
     const double m_delta = mean_delta_.mean();
     // If no normal has turned (a plane learned by a plane), all vertices count the same.
     const double n_delta = m_delta > 0 ? delta / m_delta : 1;  // eq 3
-    const bool adaptive = state_.options.utility_increment == UtilityIncrement::n_delta;
+    const bool adaptive = state_.options.utility_counter == kNormalVariation;
     state_.utility_counters.win(step.winner, adaptive ? n_delta : 1);
     state_.feature_counters.win(step.winner, n_delta);
     normal_turn_.add(delta, network().vertex_count());
@@ -189,11 +192,6 @@ bool Learner::learn_topology(bool last, Progress& progress) {
     }
     topology_changes_ += changes;
     return goes_on;
-}
-
-void Learner::force_growth() {
-    forced_ = true;
-    state_.utility_counters.waive_maturity();
 }
 
 bool Learner::settle(int per_vertex, Progress& progress, bool observe) {

@@ -98,7 +98,6 @@ private:
     template <class AfterSignal>
     void learn_batch(int count, const AfterSignal& after_signal);
     StopReason grow(Progress& progress);
-    void force_growth();
     bool report_due();
     bool report(const char* doing, double fraction, Progress& progress) const;
 

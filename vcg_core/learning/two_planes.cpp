@@ -29,12 +29,6 @@ constexpr float kTiny = 1e-30F;       ///< keeps a vertex without edge length fr
 
 constexpr int kChunk = 512;  // faces
 
-PerVertex<Point3f> positions_of(const Network& network) {
-    PerVertex<Point3f> positions(network.slot_count(), Point3f(0, 0, 0));
-    for (const VertexId v : network.vertices()) positions[v] = network.position(v);
-    return positions;
-}
-
 /// Weight of a normal whose squared difference from another is \p d: 1 at 0, falling with d / \p width. A
 /// rational stand-in for exp(-d / width), whose bits differ between mathematical libraries.
 float similarity(float d, float width) {
@@ -45,7 +39,7 @@ float similarity(float d, float width) {
 }  // namespace
 
 FilteredFaces::FilteredFaces(const Network& network, ThreadTeam& team)
-    : FilteredFaces(network, positions_of(network), team) {}
+    : FilteredFaces(network, network.positions(), team) {}
 
 FilteredFaces::FilteredFaces(const Network& network, const PerVertex<Point3f>& positions, ThreadTeam& team)
     : surface_(network) {

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "vcg_core/base/span.h"
+#include "vcg_core/base/indexed.h"
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/surface.h"

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "vcg_core/cloud/surface_survey.h"
 #include "vcg_core/mesh/flips.h"
 
 namespace neuralmesh {

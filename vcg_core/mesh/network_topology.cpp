@@ -10,6 +10,7 @@
 #include <map>
 #include <utility>
 
+#include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/base/z_order.h"
 #include "vcg_core/mesh/network.h"
 
@@ -204,13 +205,10 @@ void Network::exchange_faces(const std::vector<Triangle>& gone, const std::vecto
             "This exchange of faces would break the network; ask can_exchange_faces() first.");
     free_.reserve(free_.size() + changed.size());
     for (const auto& [v, after] : changed) {
-        if (after.valence == 0 && gaps_.count() > 0) {
-            gaps_.add(v);
-        } else if (after.valence == 0) {
-            free_.push_back(v);
-        }
-        vertex_count_ -= after.valence == 0 ? 1 : 0;
-        ring_of(v) = after.valence == 0 ? Ring{} : after;
+        ring_of(v) = after;
+        if (after.valence != 0) continue;
+        release(v);
+        --vertex_count_;
     }
 }
 
@@ -238,23 +236,14 @@ std::vector<Triangle> Network::faces() const {
 }
 
 PerVertex<int> Network::components() const {
+    DisjointSets connected(slot_count());
+    for (const VertexId v : vertices())
+        for (const VertexId w : ring(v)) connected.join(v, w);
     PerVertex<int> component(slot_count(), -1);
-    std::vector<VertexId> stack;
     int count = 0;
-    for (const VertexId start : vertices()) {
-        if (component[start] >= 0) continue;
-        component[start] = count;
-        stack.push_back(start);
-        while (!stack.empty()) {
-            const VertexId v = stack.back();
-            stack.pop_back();
-            for (const VertexId w : ring(v)) {
-                if (component[w] >= 0) continue;
-                component[w] = count;
-                stack.push_back(w);
-            }
-        }
-        ++count;
+    for (const VertexId v : vertices()) {
+        const VertexId first = connected.find(v);
+        component[v] = first == v ? count++ : component[first];
     }
     return component;
 }

@@ -36,7 +36,7 @@ struct Scaled {
 /// True if moving \p v to \p where turns the normal of a face at v by more than about 72 degrees. Ignores the
 /// faces at \p except (-1: none).
 bool folds(const Network& net, VertexId v, const Point3f& where, VertexId except) {
-    constexpr float kSquaredCosine = 0.1F;
+    constexpr float kSquaredCosine = 0.1F;  // of that angle
     const Ring& ring = net.ring(v);
     for (int i = 0; i < ring.face_count(); ++i) {
         const VertexId a = ring[i];
@@ -162,10 +162,14 @@ void make_even(Network& net) {
     smooth_tangentially(net);
 }
 
-void simplify_scaled(const Scaled& scaled, int vertices) {
-    Network& network = scaled.net;
+}  // namespace
+
+void simplify(Network& network, int vertices, const PerVertex<float>& lengths) {
     constexpr int kRounds = 3;
     constexpr int kSweepAbove = 6;  // times the wanted vertices
+    Scaled scaled{network, PerVertex<float>(lengths.size(), 0)};
+    for (VertexId v = 0; v < lengths.size(); ++v)
+        if (network.alive(v)) scaled.inverse_squared[v] = 1 / (lengths[v] * lengths[v]);
     if (network.vertex_count() > kSweepAbove * vertices) {
         collapse_in_sweeps(scaled, kSweepAbove * vertices, 0.5F * mean_squared_length(scaled));
         make_even(network);
@@ -177,16 +181,6 @@ void simplify_scaled(const Scaled& scaled, int vertices) {
     }
     if (network.vertex_count() > vertices) collapse_to(scaled, vertices, false);
     for (int i = 0; i < kRounds; ++i) make_even(network);
-}
-
-}  // namespace
-
-void simplify(Network& network, int vertices) { simplify_scaled({network, {}}, vertices); }
-
-void simplify(Network& network, int vertices, const PerVertex<float>& lengths) {
-    PerVertex<float> inverse_squared(lengths.size(), 0);
-    for (const VertexId v : network.vertices()) inverse_squared[v] = 1 / (lengths[v] * lengths[v]);
-    simplify_scaled({network, std::move(inverse_squared)}, vertices);
 }
 
 }  // namespace neuralmesh

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "vcg_core/mesh/boundary_loops.h"
@@ -19,18 +18,9 @@ constexpr std::size_t kSignalsPerVertex = 20;
 /// handles with 10 of 30 seeds instead of 16.
 constexpr std::size_t kFewestPerVertex = 6;
 
-/// With more points per vertex, the mesh is too coarse to tell a handle from a bridge: it has a bridge
-/// wherever parts are closer than its edges are long.
-constexpr std::size_t kMostPerVertex = 40;
-
 /// Of the signals that a membrane lacks, what another has to lack to be its counterpart. Along the rim of an
 /// opening there may be small ones.
 constexpr float kComparable = 0.2F;
-
-bool may_form_handles(const TargetSpace& target, const TopologyRules& rules, std::size_t vertices) {
-    return !target.is_exact() &&
-           (rules.from_tetrahedron || target.positions().size() <= kMostPerVertex * vertices);
-}
 
 float width_of(const Rim& rim, const Surface& surface) {
     std::vector<vcg::Point3f> points;
@@ -58,22 +48,6 @@ std::optional<TopologyEvidence> topology_evidence(const Network& network, const 
         face_signals(network, surface, fair_sample(target, kSignalsPerVertex * vertices, random), team);
     std::vector<Membrane> membranes = find_membranes(surface, support);
     return TopologyEvidence{std::move(surface), std::move(support), std::move(membranes)};
-}
-
-std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target,
-                                           const TopologyEvidence& now, const TopologyRules& rules,
-                                           ThreadTeam& team, Progress& progress) {
-    const bool handles = may_form_handles(target, rules, static_cast<std::size_t>(network.vertex_count()));
-    std::vector<Reconnection> chosen;
-    std::set<int> used;
-    for (Reconnection& change : find_reconnections(network, now.surface, now.support, now.membranes, handles,
-                                                   rules.from_tetrahedron, team, progress)) {
-        const auto taken = [&](int membrane) { return used.count(membrane) != 0; };
-        if (std::any_of(change.membranes.begin(), change.membranes.end(), taken)) continue;
-        used.insert(change.membranes.begin(), change.membranes.end());
-        chosen.push_back(std::move(change));
-    }
-    return chosen;
 }
 
 std::vector<std::vector<Triangle>> membranes_to_open(const TopologyEvidence& now,

@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "vcg_core/base/connected_groups.h"
+#include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/base/logarithm.h"
 
 namespace neuralmesh {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/topology/reconnection.h"
+// The search for what takes the place of membranes.
+#include "vcg_core/topology/learned_topology.h"
 
 #include <algorithm>
 #include <atomic>
@@ -15,7 +16,6 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/mesh/face_tree.h"
-#include "vcg_core/topology/membranes.h"
 #include "vcg_core/topology/surroundings.h"
 
 namespace neuralmesh {
@@ -23,6 +23,9 @@ namespace {
 
 /// Membranes with more rims have too many reconnections to try: one or two membranes, and three or more.
 constexpr std::size_t kMostRims = 4, kMostOfGroup = 5;
+/// With more points per vertex, the mesh is too coarse to tell a handle from a bridge: it has a bridge
+/// wherever parts are closer than its edges are long.
+constexpr std::size_t kMostPerVertex = 40;
 /// Rings by which membranes are widened.
 constexpr std::size_t kWidestWeb = 2;
 /// A reconnection that loses more signals than this as the membranes are gains none with wider ones.
@@ -43,6 +46,11 @@ constexpr std::int64_t kVisitsPerFace = 8, kFewestFaces = 12000;
 /// let them change the result.
 constexpr int kBetweenLooks = 32;
 
+bool may_form_handles(const TargetSpace& target, const TopologyRules& rules, std::size_t vertices) {
+    return !target.is_exact() &&
+           (rules.from_tetrahedron || target.positions().size() <= kMostPerVertex * vertices);
+}
+
 /// A membrane, and the same one and more rings wider.
 using Wide = std::vector<Membrane>;
 /// Membranes that may go together, by their indices.
@@ -50,9 +58,8 @@ using Group = std::vector<int>;
 
 class Search {
 public:
-    Search(const Network& network, const Surface& surface, const FaceSignals& support,
-           const std::vector<Membrane>& membranes, bool handles, bool in_groups, ThreadTeam& team,
-           Progress& progress);
+    Search(const Network& network, const TopologyEvidence& now, bool handles, bool in_groups,
+           ThreadTeam& team, Progress& progress);
 
     /// Every certain membrane, and every two that face each other and are no clutter.
     std::vector<Group> candidates();
@@ -92,21 +99,20 @@ private:
     mutable std::atomic<std::int64_t> visits_{0};  ///< faces looked at
 };
 
-Search::Search(const Network& network, const Surface& surface, const FaceSignals& support,
-               const std::vector<Membrane>& membranes, bool handles, bool in_groups, ThreadTeam& team,
-               Progress& progress)
+Search::Search(const Network& network, const TopologyEvidence& now, bool handles, bool in_groups,
+               ThreadTeam& team, Progress& progress)
     : network_(network),
-      surface_(surface),
-      tree_(surface, team),
-      support_(support),
+      surface_(now.surface),
+      tree_(surface_, team),
+      support_(now.support),
       handles_(handles),
       most_visits_(kVisitsPerFace *
-                   std::max<std::int64_t>(surface.face_count(), in_groups ? kFewestFaces : 0)),
+                   std::max<std::int64_t>(surface_.face_count(), in_groups ? kFewestFaces : 0)),
       team_(team),
       progress_(progress),
-      edge_(mean_edge_length(surface)),
-      membrane_of_(surface.face_count(), -1) {
-    for (const Membrane& membrane : membranes) {
+      edge_(mean_edge_length(surface_)),
+      membrane_of_(surface_.face_count(), -1) {
+    for (const Membrane& membrane : now.membranes) {
         for (const int f : membrane.faces) membrane_of_[f] = wide_.size();
         wide_.push_back({membrane});
     }
@@ -148,8 +154,7 @@ Reconnection Search::best(const std::vector<Membrane>& membranes) const {
     const bool several = membranes.size() > 1;
     for (const bool joined : {false, true}) {
         if (joined ? rims.size() < 2 || (several && !handles_) : several) continue;
-        std::vector<Triangle> added = joined ? joining_patch(rims, surface_.positions, edges)
-                                             : closing_patches(rims, surface_.positions, edges);
+        std::vector<Triangle> added = joined ? joining_patch(rims, edges) : closing_patches(rims, edges);
         if (added.empty() || !network_.can_exchange_faces(found.gone, added)) continue;
         if (!around) visits_ += around.emplace(surface_, tree_, support_, faces, edge_).face_count();
         const float gain = around->gain(added);
@@ -291,15 +296,16 @@ std::vector<Group> with_smaller(const std::vector<Group>& groups) {
 
 }  // namespace
 
-std::vector<Reconnection> find_reconnections(const Network& network, const Surface& surface,
-                                             const FaceSignals& support,
-                                             const std::vector<Membrane>& membranes, bool handles,
-                                             bool in_groups, ThreadTeam& team, Progress& progress) {
-    if (membranes.empty()) return {};
-    Search search(network, surface, support, membranes, handles, in_groups, team, progress);
+std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target,
+                                           const TopologyEvidence& now, const TopologyRules& rules,
+                                           ThreadTeam& team, Progress& progress) {
+    if (now.membranes.empty()) return {};
+    const bool handles = may_form_handles(target, rules, static_cast<std::size_t>(network.vertex_count()));
+    Search search(network, now, handles, rules.from_tetrahedron, team, progress);
     std::vector<Group> groups = search.candidates();
-    if (in_groups && !skips("membrane_groups"))
-        for (Group& group : with_smaller(membrane_groups(surface, membranes, search.edge(), kMostOfGroup)))
+    if (rules.from_tetrahedron && !skips("membrane_groups"))
+        for (Group& group :
+             with_smaller(membrane_groups(now.surface, now.membranes, search.edge(), kMostOfGroup)))
             groups.push_back(std::move(group));
     // The budget is for those that lack the most signals.
     std::stable_sort(groups.begin(), groups.end(),
@@ -307,7 +313,15 @@ std::vector<Reconnection> find_reconnections(const Network& network, const Surfa
     std::vector<Reconnection> found = search.reconnections(groups);
     std::stable_sort(found.begin(), found.end(),
                      [](const Reconnection& a, const Reconnection& b) { return a.gain > b.gain; });
-    return found;
+    std::vector<Reconnection> chosen;
+    std::set<int> used;
+    for (Reconnection& change : found) {
+        const auto taken = [&](int membrane) { return used.count(membrane) != 0; };
+        if (std::any_of(change.membranes.begin(), change.membranes.end(), taken)) continue;
+        used.insert(change.membranes.begin(), change.membranes.end());
+        chosen.push_back(std::move(change));
+    }
+    return chosen;
 }
 
 }  // namespace neuralmesh

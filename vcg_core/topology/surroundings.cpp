@@ -73,7 +73,7 @@ Surroundings::Surroundings(const Surface& surface, const FaceTree& tree, const F
     for (const int f : left_out)
         for (const FaceSignals::Assigned& s : support.of(f)) points.push_back(s.point);
     ThreadTeam alone(1);
-    const std::vector<Hit> hits = FaceTree(surface, kept_).nearest(points, alone);
+    const std::vector<Hit> hits = FaceTree(surface, kept_, alone).nearest(points, alone);
     auto next = hits.begin();
     for (const int f : left_out) {
         int won = support.wins[f];

@@ -12,9 +12,9 @@
 #include <limits>
 
 #include "tests/unit/support/shapes.h"
+#include "vcg_core/base/colors_and_normals.h"
 #include "vcg_core/base/lanes.h"
 #include "vcg_core/base/logarithm.h"
-#include "vcg_core/base/packed_normal.h"
 #include "vcg_core/base/platform.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/base/simd.h"

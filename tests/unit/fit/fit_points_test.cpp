@@ -126,7 +126,8 @@ TEST(PointsByFace, WeighPointsByTheirInfluence) {
 TEST(PointsByFace, HaveEveryPointWithItsNearestFace) {
     const FitScene scene(referee::network_of(shapes::torus_grid(20, 10), 0.02),
                          shapes::torus_cloud(2000, 0.02));
-    const FaceTree tree(scene.surface);
+    ThreadTeam team(1);
+    const FaceTree tree(scene.surface, team);
     std::size_t i = 0;
     for (int f = 0; f < scene.surface.face_count(); ++f)
         for (const PointsByFace::Assignment& a : scene.points.of(f)) {

@@ -21,7 +21,7 @@ namespace {
 struct Learned {
     Learned(const shapes::Cloud& cloud, int vertices) : target(targets::target_of(cloud)) {
         options.grow_to = vertices;
-        options.utility_increment = UtilityIncrement::one;
+        options.utility_counter = kSignalCount;
         options.settling_signals_per_vertex = 0;
         Learner learner(target, options, referee::network_of(shapes::scaled(shapes::icosphere(1), 0.3)));
         NoProgress progress;
@@ -34,7 +34,7 @@ struct Learned {
             if (sweep >= 6) measure.observe(learner.network(), team);
         }
         network = learner.network();
-        values = measure.values(network, team);
+        values = measure.values(network, network, {}, team);
     }
 
     double mean_edge() const {
@@ -117,7 +117,7 @@ TEST(CreaseMeasure, FindsNothingOnAPlane) {
     CreaseMeasure measure;
     ThreadTeam team(1);
     measure.observe(network, team);
-    for (const float value : measure.values(network, team)) EXPECT_LT(value, 1e-3F);
+    for (const float value : measure.values(network, network, {}, team)) EXPECT_LT(value, 1e-3F);
 }
 
 TEST(CreaseMeasure, IsIndifferentToScale) {
@@ -130,8 +130,8 @@ TEST(CreaseMeasure, IsIndifferentToScale) {
     of_small.observe(run.network, team);
     of_large.observe(large, team);
     EXPECT_EQ(of_small.moments(), 1);
-    const PerVertex<float> a = of_small.values(run.network, team);
-    const PerVertex<float> b = of_large.values(large, team);
+    const PerVertex<float> a = of_small.values(run.network, run.network, {}, team);
+    const PerVertex<float> b = of_large.values(large, large, {}, team);
     EXPECT_GT(*std::max_element(a.begin(), a.end()), 1.0F);
     for (VertexId v = 0; v < a.size(); ++v) EXPECT_NEAR(a[v], b[v], 1e-4F);
 }
@@ -142,9 +142,9 @@ TEST(CreaseMeasure, IsTheSameWithOneOfNoMoments) {
     CreaseMeasure moments;
     ThreadTeam team(1);
     moments.observe(network, team);
-    const PerVertex<float> before = moments.values(network, team);
+    const PerVertex<float> before = moments.values(network, network, {}, team);
     moments.add(CreaseMeasure());
-    const PerVertex<float> after = moments.values(network, team);
+    const PerVertex<float> after = moments.values(network, network, {}, team);
     EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin(), after.end()));
 }
 
@@ -157,8 +157,10 @@ TEST(CreaseMeasure, MeasuresAMovedVertexWhereItLies) {
     CreaseMeasure one, by_three;
     one.observe(run.network, team);
     by_three.observe(run.network, three);
-    EXPECT_EQ(one.values(run.network, team), by_three.values(run.network, three));
-    EXPECT_EQ(none.values(run.network, team), one.values(run.network, team));
+    EXPECT_EQ(one.values(run.network, run.network, {}, team),
+              by_three.values(run.network, run.network, {}, three));
+    EXPECT_EQ(none.values(run.network, run.network, {}, team),
+              one.values(run.network, run.network, {}, team));
 
     const double half = 0.5 / std::sqrt(3.0);
     PerVertex<VertexId> source(run.network.slot_count());
@@ -177,7 +179,7 @@ TEST(CreaseMeasure, MeasuresAMovedVertexWhereItLies) {
     const vcg::Point3f p = moved.position(nearest);
     const auto edge = static_cast<float>(run.mean_edge());
     moved.set_position(nearest, p - vcg::Point3f(0, edge, 0));
-    const float there = one.values(run.network, team)[nearest];
+    const float there = one.values(run.network, run.network, {}, team)[nearest];
     const float aside = one.values(run.network, moved, source, team)[nearest];
     EXPECT_GT(there, 1.0F);
     EXPECT_LT(aside, 0.5F * there);

@@ -20,7 +20,6 @@
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/shapes.h"
 #include "vcg_core/base/random.h"
-#include "vcg_core/mesh/free_ids.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {

@@ -67,8 +67,7 @@ TEST(Patches, CloseRimsWithTheLeastEdges) {
         const Scene scene(shapes::tube(around, 4), 0.1);
         Network closed = scene.network;
         for (const Rim& rim : scene.rims()) {
-            const std::vector<Triangle> patch =
-                closing_patches({rim}, scene.surface.positions, scene.edges());
+            const std::vector<Triangle> patch = closing_patches({rim}, scene.edges());
             ASSERT_EQ(patch.size(), rim.size() - 2);
             EXPECT_NEAR(inner_edges(scene, patch), least_sum(scene, rim, 0, rim.size() - 1), 1e-4);
             ASSERT_TRUE(closed.can_exchange_faces({}, patch));
@@ -86,8 +85,7 @@ TEST(Patches, JoinTheEndsOfATubeToATorus) {
         const Scene scene(shapes::tube(around, 5), 0.02);
         const auto rims = scene.rims();
         ASSERT_EQ(rims.size(), 2U);
-        const std::vector<Triangle> patch =
-            joining_patch({rims[0], rims[1]}, scene.surface.positions, scene.edges());
+        const std::vector<Triangle> patch = joining_patch({rims[0], rims[1]}, scene.edges());
         ASSERT_EQ(patch.size(), 2 * static_cast<std::size_t>(around));
         Network torus = scene.network;
         ASSERT_TRUE(torus.can_exchange_faces({}, patch));
@@ -106,8 +104,7 @@ TEST(Patches, JoinTwoPartsWithRimsOfDifferentLengths) {
     int joined = 0;
     for (std::size_t a = 0; a < rims.size(); ++a)
         for (std::size_t b = a + 1; b < rims.size(); ++b) {
-            const std::vector<Triangle> patch =
-                joining_patch({rims[a], rims[b]}, scene.surface.positions, scene.edges());
+            const std::vector<Triangle> patch = joining_patch({rims[a], rims[b]}, scene.edges());
             if (!scene.network.can_exchange_faces({}, patch)) continue;
             Network network = scene.network;
             network.exchange_faces({}, patch);
@@ -132,7 +129,7 @@ TEST(Patches, JoinThreeRimsAndMore) {
         ASSERT_EQ(rims.size(), static_cast<std::size_t>(holes));
         const Surface surface(network);
         const PerFace<char> none(surface.face_count(), 0);
-        const auto patch = joining_patch(rims, surface.positions, {network, surface, none});
+        const auto patch = joining_patch(rims, {network, surface, none});
         ASSERT_TRUE(network.can_exchange_faces({}, patch));
         network.exchange_faces({}, patch);
         EXPECT_EQ(network.validate(), "");
@@ -146,7 +143,7 @@ TEST(Patches, NeedNoEdgeThatExists) {
     const Scene scene(shapes::fan(2));
     const auto rims = scene.rims();
     ASSERT_EQ(rims.size(), 1U);
-    const std::vector<Triangle> patch = closing_patches({rims[0]}, scene.surface.positions, scene.edges());
+    const std::vector<Triangle> patch = closing_patches({rims[0]}, scene.edges());
     Network closed = scene.network;
     ASSERT_TRUE(closed.can_exchange_faces({}, patch));
     closed.exchange_faces({}, patch);
@@ -159,8 +156,7 @@ TEST(Patches, JoinLongRimsByTheShortestEdges) {
     for (const int around : {20, 60}) {
         const Scene scene(shapes::tube(around, 3));
         const auto rims = scene.rims();
-        const std::vector<Triangle> patch =
-            joining_patch({rims[0], rims[1]}, scene.surface.positions, scene.edges());
+        const std::vector<Triangle> patch = joining_patch({rims[0], rims[1]}, scene.edges());
         ASSERT_EQ(patch.size(), 2U * static_cast<std::size_t>(around));
         float longest = 0, least = std::numeric_limits<float>::max();
         for (const Triangle& f : patch)
@@ -175,12 +171,12 @@ TEST(Patches, JoinLongRimsByTheShortestEdges) {
 TEST(Patches, AreRefusedForLongRimsAndRimsThatTouch) {
     const Scene scene(shapes::tube(kLongestRim + 1, 3));
     const auto rims = scene.rims();
-    EXPECT_TRUE(closing_patches({rims[0]}, scene.surface.positions, scene.edges()).empty());
-    EXPECT_TRUE(joining_patch({rims[0], rims[1]}, scene.surface.positions, scene.edges()).empty());
-    EXPECT_TRUE(joining_patch({rims[0], rims[0]}, scene.surface.positions, scene.edges()).empty());
+    EXPECT_TRUE(closing_patches({rims[0]}, scene.edges()).empty());
+    EXPECT_TRUE(joining_patch({rims[0], rims[1]}, scene.edges()).empty());
+    EXPECT_TRUE(joining_patch({rims[0], rims[0]}, scene.edges()).empty());
     const Rim three(rims[0].begin(), rims[0].begin() + 3);
-    EXPECT_TRUE(joining_patch({three, rims[1], three}, scene.surface.positions, scene.edges()).empty());
-    EXPECT_TRUE(joining_patch({rims[0], rims[1], {}}, scene.surface.positions, scene.edges()).empty());
+    EXPECT_TRUE(joining_patch({three, rims[1], three}, scene.edges()).empty());
+    EXPECT_TRUE(joining_patch({rims[0], rims[1], {}}, scene.edges()).empty());
 }
 
 }  // namespace
