@@ -94,12 +94,6 @@ void write_measures(const FeatureMeasures& measures, const WorkingCopy& copy, co
     result.report.feature_vertices = static_cast<int>(std::count(features.begin(), features.end(), 1));
 }
 
-LearnerOptions learner_options(const Settings& settings, int vertices) {
-    LearnerOptions options = learner_options_from(settings);
-    options.grow_to = vertices;
-    return options;
-}
-
 }  // namespace
 
 MeshCounters mesh_counters(const IndexedMesh<double>& mesh, const TargetSpace& target,
@@ -109,7 +103,9 @@ MeshCounters mesh_counters(const IndexedMesh<double>& mesh, const TargetSpace& t
     MonotoneProgress monotone(progress);
     LearningTask task = points_to_learn(target, settings);
     const WorkingCopy copy = copy_of(given_start(mesh, task.target(), GivenAs::current_layer));
-    Learner learner(task.target(), learner_options(settings, copy.network.vertex_count()), copy.network);
+    LearnerOptions options = learner_options_from(settings);
+    options.grow_to = copy.network.vertex_count();
+    Learner learner(task.target(), options, copy.network);
     const CreaseMeasure moments = learn_around(copy.network, settings.signals_per_vertex, learner, monotone);
 
     MeshCounters result;

@@ -17,7 +17,7 @@ namespace {
 
 using Kind = SettingInfo::Kind;
 
-using Member = decltype(SettingInfo::member);
+using Member = SettingInfo::Member;
 
 SettingInfo row(Kind kind, const Member& member, const char* id, const char* label, double low, double high,
                 const char* help, std::vector<std::string> choices = {}) {

@@ -109,7 +109,8 @@ struct SettingInfo {
     std::vector<std::string> choices;  ///< names of a choice's values, in order from 0
 
     /// Where Settings holds it. Choices and layers are integers, lengths are real numbers.
-    std::variant<bool Settings::*, int Settings::*, double Settings::*> member;
+    using Member = std::variant<bool Settings::*, int Settings::*, double Settings::*>;
+    Member member;
 
     /// The parameter's value in \p settings, as a number.
     double value(const Settings& settings) const;

@@ -15,8 +15,7 @@
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/learning/boundary_faces.h"
-#include "vcg_core/learning/half_edge_collapse.h"
-#include "vcg_core/learning/vertex_split.h"
+#include "vcg_core/learning/connectivity_steps.h"
 #include "vcg_core/topology/learned_topology.h"
 
 namespace neuralmesh {

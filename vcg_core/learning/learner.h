@@ -18,7 +18,6 @@
 #include "vcg_core/learning/growth_schedule.h"
 #include "vcg_core/learning/learner_options.h"
 #include "vcg_core/learning/learning_state.h"
-#include "vcg_core/learning/stop_reason.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
@@ -54,11 +53,11 @@ public:
     /// are too high to add them up.
     int batch_size() const;
     static constexpr int kVerticesPerSignal = 32;
-    /// Vertex Split, see vertex_split.h. False if the network has options.grow_to vertices already, or if no
-    /// vertex can be split. O(log n).
+    /// Vertex Split, see connectivity_steps.h. False if the network has options.grow_to vertices already, or
+    /// if no vertex can be split. O(log n).
     bool vertex_split();
     /// Half-Edge Collapse of all vertices that have been inactive since its last call, see
-    /// half_edge_collapse.h. Before, mends the faces along boundaries, see boundary_faces.h. \return the
+    /// connectivity_steps.h. Before, mends the faces along boundaries, see boundary_faces.h. \return the
     /// number of inactive vertices removed. O(n).
     int half_edge_collapse();
     /// Takes membranes out of the network, see topology/learned_topology.h, in rounds until none gains any

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The constants of the learning, with the paper's symbols.
+// What the learning is given and why it ends: its constants, with the paper's symbols, and reasons to stop.
 #pragma once
 
 #include "vcg_core/topology/learned_topology.h"
@@ -14,6 +14,14 @@ class SurfaceSurvey;
 enum UtilityCounter : int {
     kNormalVariation = 0,  ///< n_delta of eq 4: the mesh is dense where the surface bends
     kSignalCount = 1,      ///< 1: the mesh is as dense as the cloud
+};
+
+/// Why the learning stopped. The values are part of the filter's results: they never change.
+enum class StopReason : int {
+    target_reached = 0,  ///< the network has the number of vertices asked for
+    converged = 1,       ///< the normals turn less per signal than the bound (see eq 8)
+    cancelled = 2,       ///< the caller's progress object asked to stop
+    cut_short = 3,       ///< the bound on signals was reached before the target
 };
 
 /// The constants that users set (settings.h has their ranges).

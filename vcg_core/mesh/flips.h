@@ -24,6 +24,8 @@ struct FlipRule {
     int max_valence = Ring::kMaxValence;          ///< no flip raises a valence above it
 };
 
+/// Changes of a whole mesh raise no valence above it: that leaves room for those of learning and fit.
+constexpr int kHighestValence = 12;
 /// Valences in a regular triangulation, inside and on a boundary.
 constexpr int kRegularValence = 6, kRegularBoundaryValence = 4;
 

@@ -133,7 +133,13 @@ VertexId Network::new_vertex(VertexId parent, const vcg::Point3f& where) {
     return v;
 }
 
-void Network::release(VertexId v) { gaps_.count() > 0 ? gaps_.add(v) : free_.push_back(v); }
+void Network::release(VertexId v) {
+    if (gaps_.count() > 0) {
+        gaps_.add(v);
+    } else {
+        free_.push_back(v);
+    }
+}
 
 bool Network::can_split(VertexId v, int first, int count) const {
     const Ring& r = ring(v);

@@ -205,10 +205,11 @@ void Network::exchange_faces(const std::vector<Triangle>& gone, const std::vecto
             "This exchange of faces would break the network; ask can_exchange_faces() first.");
     free_.reserve(free_.size() + changed.size());
     for (const auto& [v, after] : changed) {
+        if (after.valence == 0) {
+            release(v);
+            --vertex_count_;
+        }
         ring_of(v) = after;
-        if (after.valence != 0) continue;
-        release(v);
-        --vertex_count_;
     }
 }
 

@@ -17,8 +17,7 @@ namespace {
 
 using vcg::Point3f;
 
-constexpr int kMaxValence = 12;
-/// Collapses leave this much below kMaxValence for flips and further collapses.
+/// Collapses leave this much below kHighestValence for flips and further collapses.
 constexpr int kSpareValence = 2;
 
 /// A network with the lengths that its edges are wanted to have, by vertex.
@@ -52,7 +51,7 @@ bool folds(const Network& net, VertexId v, const Point3f& where, VertexId except
 }
 
 bool result_valence_fits(const Network& net, VertexId gone, VertexId kept) {
-    return net.ring(gone).valence + net.ring(kept).valence - 4 <= kMaxValence - kSpareValence;
+    return net.ring(gone).valence + net.ring(kept).valence - 4 <= kHighestValence - kSpareValence;
 }
 
 bool may_collapse(const Network& net, VertexId gone, VertexId kept, bool careful) {
@@ -158,7 +157,7 @@ void smooth_tangentially(Network& net) {
 }
 
 void make_even(Network& net) {
-    flip_edges_for_valence(net, {is_flat, kMaxValence});
+    flip_edges_for_valence(net, {is_flat, kHighestValence});
     smooth_tangentially(net);
 }
 

@@ -94,7 +94,7 @@ struct Reconnection {
 ///
 /// The search ends when it has cost its budget, which is in proportion to the faces, those first that lack
 /// the most signals; or when \p progress asks to stop. \return the best of those that gain enough (see
-/// reconnection.cpp), the largest gain first; each of them alone leaves a manifold, and no membrane is in
+/// learned_topology.cpp), the largest gain first; each of them alone leaves a manifold, and no membrane is in
 /// two. They do not depend on the number of threads. O(faces log faces + signals)
 std::vector<Reconnection> topology_changes(const Network& network, const TargetSpace& target,
                                            const TopologyEvidence& now, const TopologyRules& rules,
