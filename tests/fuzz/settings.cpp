@@ -44,7 +44,8 @@ double value_for(const SettingInfo& info, Bytes& bytes) {
 /// True if the table allows \p value, rounded for integer parameters.
 bool in_range(const SettingInfo& info, double value) {
     if (info.kind == SettingInfo::Kind::boolean) return true;
-    const double stored = info.real_member != nullptr ? value : std::round(value);
+    const bool real = std::holds_alternative<double Settings::*>(info.member);
+    const double stored = real ? value : std::round(value);
     return stored >= info.low && stored <= info.high;
 }
 

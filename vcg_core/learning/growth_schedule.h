@@ -76,10 +76,10 @@ class Saturation {
 public:
     /// \param vertices after the collapses that end a period \param due splits so far, done or refused
     /// \return whether the network has grown by a tenth or less of the splits that were due in each of the
-    /// last periods. One is not enough: at first the vertices of the start mesh go that are not needed where
-    /// they are.
+    /// last periods.
     bool reached(int vertices, std::int64_t due) {
-        constexpr std::int64_t kLeastGrowth = 10;
+        constexpr std::int64_t kLeastGrowth = 10;  // splits that are due for a vertex more
+        // One is not enough: at first the vertices of the start mesh go that are not needed where they are.
         constexpr int kPeriods = 4;
         const bool grows = kLeastGrowth * (vertices - vertices_) > due - due_;
         vertices_ = vertices;

@@ -48,11 +48,11 @@ public:
     void learn_counters(const StepResult& step);
     /// Basic Step and counters of one signal.
     void basic_step(const vcg::Point3f& s) { learn_counters(basic_steps(&s, 1).front()); }
-    /// Number of signals in a batch of run(): vertices / kVerticesPerSignal, so that the steps of a batch
-    /// rarely overlap; smaller while they do. 1 if options.min_wins_per_split is 0, or the rates of the steps
-    /// are too high to add them up.
+    /// Number of signals in a batch of run(): vertices / kVerticesPerSignal, or fewer while the steps of a
+    /// batch overlap. 1 if options.min_wins_per_split is 0, or the rates of the steps are too high to add
+    /// them up.
     int batch_size() const;
-    static constexpr int kVerticesPerSignal = 32;
+    static constexpr int kVerticesPerSignal = 32;  ///< so many that the steps of a batch rarely overlap
     /// Vertex Split, see connectivity_steps.h. False if the network has options.grow_to vertices already, or
     /// if no vertex can be split. O(log n).
     bool vertex_split();
