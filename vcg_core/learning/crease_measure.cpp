@@ -100,7 +100,7 @@ PerVertex<float> CreaseMeasure::values(const Network& learned, const Network& sh
         crease_strengths(learned, {learned, means, team}, shown, source, spreads, team);  // f
     if (!source.empty()) {
         const PerVertex<float> g =
-            crease_strengths(shown, FilteredFaces(shown, team), shown, {}, spreads, team);
+            crease_strengths(shown, {shown, shown.positions(), team}, shown, {}, spreads, team);
         for (VertexId v = 0; v < result.size(); ++v)
             result[v] = std::sqrt(result[v] * std::sqrt(result[v] * g[v]));
     }

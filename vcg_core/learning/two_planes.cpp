@@ -38,9 +38,6 @@ float similarity(float d, float width) {
 
 }  // namespace
 
-FilteredFaces::FilteredFaces(const Network& network, ThreadTeam& team)
-    : FilteredFaces(network, network.positions(), team) {}
-
 FilteredFaces::FilteredFaces(const Network& network, const PerVertex<Point3f>& positions, ThreadTeam& team)
     : surface_(network) {
     normals_.reserve(count());

@@ -22,8 +22,6 @@ class FilteredFaces {
 public:
     /// The faces of \p network with its vertices at \p positions. O(vertices).
     FilteredFaces(const Network& network, const PerVertex<vcg::Point3f>& positions, ThreadTeam& team);
-    /// The same with the vertices where they are.
-    FilteredFaces(const Network& network, ThreadTeam& team);
 
     int count() const { return surface_.face_count(); }
     /// As Surface::faces_around().

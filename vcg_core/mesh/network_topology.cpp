@@ -136,10 +136,6 @@ std::uint64_t cell_of(float coordinate) {
     return static_cast<std::uint64_t>((std::clamp(coordinate, -1.0F, 0.999F) + 1) * 0x1p20F);
 }
 
-std::uint64_t morton_code(const vcg::Point3f& p) {
-    return z_order(cell_of(p[0]), cell_of(p[1]), cell_of(p[2]));
-}
-
 }  // namespace
 
 Network::Network(const std::vector<vcg::Point3f>& positions, const std::vector<Triangle>& faces) {
@@ -332,7 +328,10 @@ std::string Network::validate_edge(VertexId v, int i) const {
 std::vector<VertexId> morton_order(const Network& network) {
     std::vector<std::pair<std::uint64_t, VertexId>> codes;
     codes.reserve(static_cast<std::size_t>(network.vertex_count()));
-    for (const VertexId v : network.vertices()) codes.emplace_back(morton_code(network.position(v)), v);
+    for (const VertexId v : network.vertices()) {
+        const vcg::Point3f p = network.position(v);
+        codes.emplace_back(z_order(cell_of(p[0]), cell_of(p[1]), cell_of(p[2])), v);
+    }
     std::sort(codes.begin(), codes.end());
     std::vector<VertexId> order;
     order.reserve(codes.size());

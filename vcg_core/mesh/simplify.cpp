@@ -50,13 +50,9 @@ bool folds(const Network& net, VertexId v, const Point3f& where, VertexId except
     return false;
 }
 
-bool result_valence_fits(const Network& net, VertexId gone, VertexId kept) {
-    return net.ring(gone).valence + net.ring(kept).valence - 4 <= kHighestValence - kSpareValence;
-}
-
 bool may_collapse(const Network& net, VertexId gone, VertexId kept, bool careful) {
-    return result_valence_fits(net, gone, kept) && net.can_collapse(gone, kept) &&
-           !(careful && folds(net, gone, net.position(kept), kept));
+    return net.ring(gone).valence + net.ring(kept).valence - 4 <= kHighestValence - kSpareValence &&
+           net.can_collapse(gone, kept) && !(careful && folds(net, gone, net.position(kept), kept));
 }
 
 /// Collapses \p v along its first edge that is not longer than the bound and may go.

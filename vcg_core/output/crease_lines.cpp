@@ -306,7 +306,7 @@ Point3f place_on_line(const Network& network, const Surface& surface, TwoPlanes&
 
 CreaseGraph crease_lines(const Network& network, const PerVertex<float>& measure) {
     ThreadTeam alone(1);
-    const FilteredFaces faces(network, alone);
+    const FilteredFaces faces(network, network.positions(), alone);
     CreaseEdges chosen(network, faces, measure);
     chosen.add_sharp_edges();
     chosen.open_triangles();
