@@ -27,7 +27,7 @@ INERT = [
     (r"engine/(winner_search|scaled_numbers|eight_steps\.cpp|eight_steps\.h:kMost$)|mesh/face_tree|"
      r"cloud/nearest_points|start/clearance",
      "a search or an order: an exact result, found faster"),
-    (r"base/(logarithm|random|packed_normal|even_mesh)\.h:|:k(PiF|White|DegreesPerRadian|DeviationPerMedian|UnitBallVolume|"
+    (r"base/(logarithm|random|colors_and_normals|even_mesh)\.h:|:k(PiF|White|DegreesPerRadian|DeviationPerMedian|UnitBallVolume|"
      r"Ln2|Pi)$|:kWithin30Degrees$", "mathematics"),
     (r":k(None|NoVertex|NoNormal|Sentinel|FreeSlot|Nobody|Outside|Zero|End|Never|Unset|Unlimited|Far|Middle|Max)$",
      "a mark for nothing"),
@@ -58,7 +58,7 @@ SUBJECT = re.compile(
     r"|PointsPer(Part|Node)"
     r"|(target|final|wanted|fewest)_vertices|most_wanted|\bcarried\b|grow_to|reduce_to|VerticesToHold|DenseFrom|ByVolumeFrom")
 BOUND = re.compile(r"^(?=.*([<>]|\b(clamp|min|max)\())(?=.*(\bk[A-Z]\w*|(?<![\w.])([2-9]|1\d)\d*\b))|\?.*\bk[A-Z]\w*|\? \d+ : \d+")
-NO_RESULT = ("learning/memory_order.cpp",)
+NO_RESULT = ("learning/learning_state.cpp",)
 CONSTANT = re.compile(r"^\s*(?:inline |static )*constexpr (?!const char)([\w:<>]+) (k[A-Z].*)$")
 DECLARED = re.compile(r"(k[A-Z]\w*)(?:\[\w*\])? ?(?:= ?|(?=\{))((?:\{.*?\}|[^,{]|,(?! k[A-Z]))+)")
 FUNCTION = re.compile(r"\bconstexpr [\w:<>]+ \w+\(")

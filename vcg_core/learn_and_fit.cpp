@@ -108,9 +108,7 @@ LearnedNetwork observed(const LearningTask& task, const Settings& settings, Prog
     network.renumber(morton_order(network));
     Learner learner(task.target(), learner_options_from(settings), network);
     const bool finished = learner.settle(settings.settling_signals_per_vertex, progress);
-    PerVertex<vcg::Point3f> places;
-    for (const VertexId v : network.vertices()) places.push_back(network.position(v));
-    learner.move_to(places);
+    learner.move_to(network.positions());
     LearnedNetwork result =
         learned_by(learner, finished ? StopReason::target_reached : StopReason::cancelled, {});
     result.measures = measures_of(learner, learner.crease_measure(), result.network, {}, settings);
@@ -124,7 +122,7 @@ Learning::Learning(const LearningTask& task, const Settings& settings)
     : task_(task),
       settings_(settings),
       team_(thread_count(settings.threads)),
-      thickening_(task),
+      thickening_(task, team_),
       thicker_(thickening_.thicker(task, team_)) {}
 
 Settings Learning::settings_for(int vertices) const {
@@ -200,24 +198,11 @@ LearnedNetwork Learning::reduced(const LearnedNetwork& finer, int vertices,
 
 LearnerOptions learner_options_from(const Settings& settings) {
     LearnerOptions options;
-    options.learning_rate = settings.learning_rate;
-    options.smoothing_rate = settings.smoothing_rate;
-    options.smoothing_steps = settings.smoothing_steps;
-    options.signals_per_split = settings.signals_per_split;
-    options.signals_per_collapse = settings.signals_per_collapse;
-    options.counter_decay = settings.counter_decay;
-    options.feature_decay = settings.feature_decay;
-    options.normalization_window = settings.normalization_window;
+    static_cast<LearningConstants&>(options) = settings;
     options.stop_below_turn = settings.stop_below_mean_counter;
-    options.utility_increment =
-        settings.utility_counter == kNormalVariation ? UtilityIncrement::n_delta : UtilityIncrement::one;
     options.grow_to = settings.target_vertices;
     options.learn_topology = settings.learn_topology;
-    options.min_wins_per_split = settings.min_wins_per_split;
-    options.settling_signals_per_vertex = settings.settling_signals_per_vertex;
     options.observe_creases = settings.uses(kCreaseMeasure);
-    options.random_seed = settings.random_seed;
-    options.threads = settings.threads;
     return options;
 }
 

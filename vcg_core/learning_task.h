@@ -15,7 +15,7 @@
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/settings.h"
 #include "vcg_core/start/shell.h"
-#include "vcg_core/topology/topology_rules.h"
+#include "vcg_core/topology/learned_topology.h"
 
 namespace neuralmesh {
 

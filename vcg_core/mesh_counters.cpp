@@ -25,7 +25,7 @@ namespace {
 /// six of 10.
 constexpr int kSignalsPerRound = 20;
 
-/// The network of a given mesh. It is in the order into which learning would bring it (memory_order.h), so
+/// The network of a given mesh. It is in the order into which learning would bring it (learning_state.h), so
 /// that ids stay the same.
 struct WorkingCopy {
     Network network;
@@ -43,8 +43,7 @@ WorkingCopy copy_of(const GivenStart& given) {
 /// Learns in rounds that begin at the places of \p given. \return the moments of all rounds
 CreaseMeasure learn_around(const Network& given, int signals_per_vertex, Learner& learner,
                            MonotoneProgress& progress) {
-    PerVertex<vcg::Point3f> places(given.slot_count());
-    for (const VertexId v : given.vertices()) places[v] = given.position(v);
+    const PerVertex<vcg::Point3f> places = given.positions();
     const std::int64_t signals = settling_signals(signals_per_vertex, given.vertex_count());
     const std::int64_t per_round = std::int64_t{kSignalsPerRound} * given.vertex_count();
     CreaseMeasure moments;
@@ -95,12 +94,6 @@ void write_measures(const FeatureMeasures& measures, const WorkingCopy& copy, co
     result.report.feature_vertices = static_cast<int>(std::count(features.begin(), features.end(), 1));
 }
 
-LearnerOptions learner_options(const Settings& settings, int vertices) {
-    LearnerOptions options = learner_options_from(settings);
-    options.grow_to = vertices;
-    return options;
-}
-
 }  // namespace
 
 MeshCounters mesh_counters(const IndexedMesh<double>& mesh, const TargetSpace& target,
@@ -110,7 +103,9 @@ MeshCounters mesh_counters(const IndexedMesh<double>& mesh, const TargetSpace& t
     MonotoneProgress monotone(progress);
     LearningTask task = points_to_learn(target, settings);
     const WorkingCopy copy = copy_of(given_start(mesh, task.target(), GivenAs::current_layer));
-    Learner learner(task.target(), learner_options(settings, copy.network.vertex_count()), copy.network);
+    LearnerOptions options = learner_options_from(settings);
+    options.grow_to = copy.network.vertex_count();
+    Learner learner(task.target(), options, copy.network);
     const CreaseMeasure moments = learn_around(copy.network, settings.signals_per_vertex, learner, monotone);
 
     MeshCounters result;

@@ -17,8 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "vcg_core/base/color.h"
-#include "vcg_core/base/packed_normal.h"
+#include "vcg_core/base/colors_and_normals.h"
 #include "vcg_core/cloud/target_space.h"
 #include "vcg_core/mesh/indexed_mesh.h"
 #include "vcg_core/mesh_counters.h"
@@ -172,6 +171,25 @@ std::vector<PackedNormal> normals_of(const std::vector<const Vertex*>& vertices,
     return normals;
 }
 
+/// Adds vertices with \p quality to \p out, at \p positions relative to \p origin.
+template <class MeshType>
+void add_vertices(const std::vector<vcg::Point3d>& positions, const std::vector<float>& quality,
+                  MeshType& out, const Coordinates& origin) {
+    const vcg::Point3d from(origin[0], origin[1], origin[2]);
+    auto vertex = vcg::tri::Allocator<MeshType>::AddVertices(out, positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i, ++vertex) {
+        vertex->P() = MeshType::CoordType::Construct(positions[i] - from);
+        if (vcg::tri::HasPerVertexQuality(out)) vertex->Q() = quality[i];
+    }
+}
+
+/// Makes \p element, a face or an edge of \p out, the one of the vertices \p indices.
+template <class Element, class Indices, class MeshType>
+void set_vertices(Element& element, const Indices& indices, MeshType& out) {
+    int k = 0;
+    for (const int i : indices) element.V(k++) = &out.vert[static_cast<std::size_t>(i)];
+}
+
 }  // namespace detail
 
 template <class MeshType, class Matrix>
@@ -253,41 +271,23 @@ Coordinates origin_of(const NeuralMesh& result, const Matrix& transform) {
 template <class MeshType>
 void write_mesh(const NeuralMesh& result, const Settings& settings, MeshType& out,
                 const Coordinates& origin) {
-    using Coord = typename MeshType::CoordType;
-    const vcg::Point3d from(origin[0], origin[1], origin[2]);
-    auto vertex = vcg::tri::Allocator<MeshType>::AddVertices(out, result.positions.size());
-    for (std::size_t i = 0; i < result.positions.size(); ++i, ++vertex) {
-        vertex->P() = Coord::Construct(result.positions[i] - from);
-        if (vcg::tri::HasPerVertexQuality(out)) vertex->Q() = result.counters[i];
+    detail::add_vertices(result.positions, result.counters, out, origin);
+    for (std::size_t i = 0; i < result.positions.size(); ++i) {
         if (!result.colors.empty() && vcg::tri::HasPerVertexColor(out)) {
             const Color& c = result.colors[i];
-            vertex->C() = vcg::Color4b(c[0], c[1], c[2], 255);
+            out.vert[i].C() = vcg::Color4b(c[0], c[1], c[2], 255);
         }
-        if (settings.select_features && result.features[i] != 0) vertex->SetS();
+        if (settings.select_features && result.features[i] != 0) out.vert[i].SetS();
     }
     auto face = vcg::tri::Allocator<MeshType>::AddFaces(out, result.faces.size());
-    for (const std::array<int, 3>& corners : result.faces) {
-        for (int k = 0; k < 3; ++k)
-            face->V(k) = &out.vert[static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])];
-        ++face;
-    }
+    for (const std::array<int, 3>& corners : result.faces) detail::set_vertices(*face++, corners, out);
 }
 
 template <class MeshType>
 void write_creases(const CreaseLines& lines, MeshType& out, const Coordinates& origin) {
-    using Coord = typename MeshType::CoordType;
-    const vcg::Point3d from(origin[0], origin[1], origin[2]);
-    auto vertex = vcg::tri::Allocator<MeshType>::AddVertices(out, lines.positions.size());
-    for (std::size_t i = 0; i < lines.positions.size(); ++i, ++vertex) {
-        vertex->P() = Coord::Construct(lines.positions[i] - from);
-        if (vcg::tri::HasPerVertexQuality(out)) vertex->Q() = lines.measures[i];
-    }
+    detail::add_vertices(lines.positions, lines.measures, out, origin);
     auto edge = vcg::tri::Allocator<MeshType>::AddEdges(out, lines.edges.size());
-    for (const std::array<int, 2>& ends : lines.edges) {
-        for (int k = 0; k < 2; ++k)
-            edge->V(k) = &out.vert[static_cast<std::size_t>(ends[static_cast<std::size_t>(k)])];
-        ++edge;
-    }
+    for (const std::array<int, 2>& ends : lines.edges) detail::set_vertices(*edge++, ends, out);
 }
 
 template <class MeshType>

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "vcg_core/base/color.h"
-#include "vcg_core/learning/stop_reason.h"
+#include "vcg_core/base/colors_and_normals.h"
+#include "vcg_core/learning/learner_options.h"
 
 namespace neuralmesh {
 

@@ -23,7 +23,7 @@ struct Figure {
 /// Of the report of reconstruct(), in the order of the log.
 std::vector<Figure> figures_of_reconstruction(const Report& report);
 
-/// The same of the report of mesh_counters().
+/// Those of them that the report of mesh_counters() has.
 std::vector<Figure> figures_of_counters(const Report& report);
 
 }  // namespace neuralmesh

@@ -17,47 +17,42 @@ namespace {
 
 using Kind = SettingInfo::Kind;
 
+using Member = SettingInfo::Member;
+
+SettingInfo row(Kind kind, const Member& member, const char* id, const char* label, double low, double high,
+                const char* help, std::vector<std::string> choices = {}) {
+    return {kind, id, label, help, Stage::mesh, false, low, high, std::move(choices), member};
+}
+
 SettingInfo row(bool Settings::*member, const char* id, const char* label, const char* help) {
-    SettingInfo info{Kind::boolean, id, label, help, Stage::mesh, false, 0, 1, {}};
-    info.boolean_member = member;
-    return info;
+    return row(Kind::boolean, member, id, label, 0, 1, help);
 }
 
 SettingInfo row(int Settings::*member, const char* id, const char* label, double low, double high,
                 const char* help) {
-    SettingInfo info{Kind::integer, id, label, help, Stage::mesh, false, low, high, {}};
-    info.integer_member = member;
-    return info;
+    return row(Kind::integer, member, id, label, low, high, help);
+}
+
+SettingInfo row(double Settings::*member, const char* id, const char* label, double low, double high,
+                const char* help) {
+    return row(Kind::real, member, id, label, low, high, help);
 }
 
 SettingInfo row(int Settings::*member, const char* id, const char* label, std::vector<std::string> choices,
                 const char* help) {
     const auto last = static_cast<double>(choices.size() - 1);
-    SettingInfo info{Kind::choice, id, label, help, Stage::mesh, false, 0, last, std::move(choices)};
-    info.integer_member = member;
-    return info;
-}
-
-SettingInfo row(double Settings::*member, const char* id, const char* label, double low, double high,
-                const char* help) {
-    SettingInfo info{Kind::real, id, label, help, Stage::mesh, false, low, high, {}};
-    info.real_member = member;
-    return info;
+    return row(Kind::choice, member, id, label, 0, last, help, std::move(choices));
 }
 
 SettingInfo length_row(double Settings::*member, const char* id, const char* label, double low,
                        const char* help) {
     constexpr double kLongest = 1e30;  // the hosts keep lengths as float
-    SettingInfo info = row(member, id, label, low, kLongest, help);
-    info.kind = Kind::length;
-    return info;
+    return row(Kind::length, member, id, label, low, kLongest, help);
 }
 
 /// A number of a layer; -1: none.
 SettingInfo layer_row(int Settings::*member, const char* id, const char* label, const char* help) {
-    SettingInfo info = row(member, id, label, -1, std::numeric_limits<int>::max(), help);
-    info.kind = Kind::layer;
-    return info;
+    return row(Kind::layer, member, id, label, -1, std::numeric_limits<int>::max(), help);
 }
 
 SettingInfo advanced(SettingInfo info) {
@@ -260,19 +255,14 @@ std::vector<SettingInfo> joined(const std::vector<std::vector<SettingInfo>>& gro
 }  // namespace
 
 double SettingInfo::value(const Settings& settings) const {
-    if (boolean_member != nullptr) return settings.*boolean_member ? 1 : 0;
-    if (integer_member != nullptr) return settings.*integer_member;
-    return settings.*real_member;
+    return std::visit([&](auto held) { return static_cast<double>(settings.*held); }, member);
 }
 
 void SettingInfo::store(Settings& settings, double value) const {
-    if (boolean_member != nullptr) {
-        settings.*boolean_member = value != 0;
-    } else if (integer_member != nullptr) {
-        settings.*integer_member = nearest_int(value);
-    } else {
-        settings.*real_member = value;
-    }
+    if (const auto* const boolean = std::get_if<bool Settings::*>(&member)) settings.** boolean = value != 0;
+    if (const auto* const integer = std::get_if<int Settings::*>(&member))
+        settings.** integer = nearest_int(value);
+    if (const auto* const real = std::get_if<double Settings::*>(&member)) settings.** real = value;
 }
 
 const std::vector<SettingInfo>& setting_table() {

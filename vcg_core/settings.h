@@ -9,15 +9,12 @@
 #pragma once
 
 #include <string>
+#include <variant>
 #include <vector>
 
-namespace neuralmesh {
+#include "vcg_core/learning/learner_options.h"
 
-/// Which vertices are split (the paper's utility counter, sections 2 and 3).
-enum UtilityCounter : int {
-    kNormalVariation = 0,  ///< eq 4: where the normal varies; the mesh is dense where the surface bends
-    kSignalCount = 1,      ///< where signals arrive; the mesh is as dense as the cloud
-};
+namespace neuralmesh {
 
 /// How much of a feature a vertex is: what the vertex quality of the result holds, and what selects.
 enum FeatureMeasure : int {
@@ -49,12 +46,11 @@ enum SurfaceKind : int {
 struct SettingInfo;
 
 /// All parameters of both filters. setting_table() and counter_table() have their ranges and meanings.
-struct Settings {
+struct Settings : LearningConstants {
     int target_vertices = 10000;
     double target_error = 0;  ///< in the units of the input, see learn_to_error.h; 0: off
     int surface = kAutomatic;
     double close_holes_up_to = -1;  ///< a diameter in the units of the input; negative: chosen by the filter
-    int utility_counter = kNormalVariation;
     int start_mesh = kShell;
     /// For kGivenMesh: the host's number of the layer, which only the host reads; -1: none.
     int start_layer = 0;
@@ -71,21 +67,7 @@ struct Settings {
     int feature_measure = kFeatureCounter;
     int select_by = kCreaseMeasure;
     bool crease_lines = false;
-    double feature_threshold = 1.0;  ///< of select_by; of the counter C_nc, eq 7
-    int random_seed = 1;
-    int threads = 0;  ///< 0: one per core
-
-    // The first seven have their values from eq 9.
-    double learning_rate = 0.06;           ///< alpha_w, eq 1
-    double smoothing_rate = 0.05;          ///< alpha_L
-    int smoothing_steps = 5;               ///< C_L
-    int signals_per_split = 100;           ///< C_vs; the plan may halve it
-    int signals_per_collapse = 10;         ///< C_ec
-    double counter_decay = 0.95;           ///< alpha_nc, after eq 4
-    double feature_decay = 0.95;           ///< alpha_fd, eq 6
-    int normalization_window = 1000;       ///< C_delta, eq 3
-    int min_wins_per_split = 30;           ///< maturity; 0: none, as in the paper
-    int settling_signals_per_vertex = 60;  ///< signals per vertex learned after the last split
+    double feature_threshold = 1.0;        ///< of select_by; of the counter C_nc, eq 7
     double stop_below_mean_counter = 0.0;  ///< alpha_t, eq 8; 0: off
 
     // Of the counters of a given mesh, see mesh_counters.h.
@@ -126,9 +108,9 @@ struct SettingInfo {
     double low, high;                  ///< closed range; booleans: 0 and 1
     std::vector<std::string> choices;  ///< names of a choice's values, in order from 0
 
-    bool Settings::*boolean_member = nullptr;
-    int Settings::*integer_member = nullptr;  ///< integers, choices and layers
-    double Settings::*real_member = nullptr;  ///< real numbers and lengths
+    /// Where Settings holds it. Choices and layers are integers, lengths are real numbers.
+    using Member = std::variant<bool Settings::*, int Settings::*, double Settings::*>;
+    Member member;
 
     /// The parameter's value in \p settings, as a number.
     double value(const Settings& settings) const;

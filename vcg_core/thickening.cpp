@@ -10,16 +10,15 @@
 
 namespace neuralmesh {
 
-Thickening::Thickening(const LearningTask& task) {
+Thickening::Thickening(const LearningTask& task, ThreadTeam& team) {
     const WallSides& walls = task.walls;
     if (walls.faces.empty()) return;
-    shell_.emplace(Network(walls.positions, walls.faces));
-    tree_.emplace(*shell_);
-    moves_.assign(shell_->positions.size(), Vector3::Zero());
-    for (VertexId v = 0; v < moves_.size(); ++v) {
-        for (const int f : shell_->faces_around(v)) moves_[v] += area_vector(*shell_, f);
+    const Network network(walls.positions, walls.faces);
+    shell_.emplace(network);
+    tree_.emplace(*shell_, team);
+    moves_ = area_vectors_around(network, *shell_, 0);
+    for (VertexId v = 0; v < moves_.size(); ++v)
         moves_[v] = walls.thickenings[static_cast<std::size_t>(v)] * moves_[v].normalized();
-    }
 }
 
 Vector3 Thickening::move_at(const Hit& hit) const {

@@ -20,7 +20,7 @@ namespace neuralmesh {
 class Thickening {
 public:
     /// O(vertices log vertices)
-    explicit Thickening(const LearningTask& task);
+    Thickening(const LearningTask& task, ThreadTeam& team);
 
     /// The points of \p task, those of thin walls moved outwards; nothing if there are no such walls. For
     /// signals that are drawn from faces or by a sampler it has to outlive the result. O(points log

@@ -62,7 +62,8 @@ TEST(CreaseLines, StayNearTheMesh) {
     // Rough sides: two planes near a vertex may meet far from both.
     const Network cube = network_of(cube_of_pieces(), 0.08);
     const Surface surface(cube);
-    const FaceTree tree(surface);
+    ThreadTeam team(1);
+    const FaceTree tree(surface, team);
     const CreaseGraph graph = crease_lines(cube, everywhere(cube, 2));
     ASSERT_GT(graph.vertices.size(), 50U);
     for (std::size_t i = 0; i < graph.vertices.size(); ++i) {

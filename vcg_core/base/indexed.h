@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// An array indexed by signed ids, such as those of vertices and faces.
+// Arrays indexed by signed ids, such as those of vertices and faces.
 #pragma once
 
 #include <algorithm>
@@ -68,6 +68,28 @@ public:
 
 private:
     Vector values_;
+};
+
+/// A view of consecutive values that someone else owns (std::span comes with C++20). Valid as long as the
+/// container it was made from is neither changed in size nor destroyed.
+template <class T>
+class Span {
+public:
+    Span() = default;
+    Span(T* begin, T* end) : begin_(begin), end_(end) {}
+
+    T* begin() const { return begin_; }
+    T* end() const { return end_; }
+    int size() const { return static_cast<int>(end_ - begin_); }
+    bool empty() const { return begin_ == end_; }
+    T& operator[](int i) const {
+        assert(i >= 0 && i < size());
+        return begin_[i];
+    }
+
+private:
+    T* begin_ = nullptr;
+    T* end_ = nullptr;
 };
 
 /// \p values permuted: result[i] = values[order[i]], or \p fill where order[i] is -1. Keeps the capacity that

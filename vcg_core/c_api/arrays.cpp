@@ -11,8 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "vcg_core/base/color.h"
-#include "vcg_core/base/packed_normal.h"
+#include "vcg_core/base/colors_and_normals.h"
 #include "vcg_core/rounded_coordinates.h"
 
 namespace neuralmesh::c_api {
@@ -20,40 +19,38 @@ namespace neuralmesh::c_api {
 namespace {
 
 template <class T>
-T value_in(const neural_mesh_array& array, std::size_t row, int k) {
-    T value;
-    std::memcpy(&value,
-                static_cast<const char*>(array.data) + static_cast<std::ptrdiff_t>(row) * array.row_step +
-                    k * array.value_step,
-                sizeof value);
-    return value;
+std::array<T, 3> row_of(const neural_mesh_array& array, std::size_t row) {
+    std::array<T, 3> values;
+    const char* at = static_cast<const char*>(array.data) + static_cast<std::ptrdiff_t>(row) * array.row_step;
+    for (T& value : values) {
+        std::memcpy(&value, at, sizeof value);
+        at += array.value_step;
+    }
+    return values;
 }
 
 std::array<double, 3> coordinates(const neural_mesh_array& array, std::size_t row) {
-    if (array.type == NEURAL_MESH_DOUBLE)
-        return {value_in<double>(array, row, 0), value_in<double>(array, row, 1),
-                value_in<double>(array, row, 2)};
-    return {static_cast<double>(value_in<float>(array, row, 0)),
-            static_cast<double>(value_in<float>(array, row, 1)),
-            static_cast<double>(value_in<float>(array, row, 2))};
+    if (array.type == NEURAL_MESH_DOUBLE) return row_of<double>(array, row);
+    const auto [x, y, z] = row_of<float>(array, row);
+    return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
 }
 
-Color color(const neural_mesh_array& array, std::size_t row) {
-    return {value_in<unsigned char>(array, row, 0), value_in<unsigned char>(array, row, 1),
-            value_in<unsigned char>(array, row, 2)};
+std::array<std::int64_t, 3> indices(const neural_mesh_array& array, std::size_t row) {
+    if (array.type == NEURAL_MESH_INT64) return row_of<std::int64_t>(array, row);
+    const auto [a, b, c] = row_of<std::int32_t>(array, row);
+    return {a, b, c};
 }
 
 /// \throws InputError if the face names no row of an array of \p count
 std::array<int, 3> corners(const neural_mesh_array& faces, std::size_t row, std::size_t count) {
     std::array<int, 3> result{};
-    for (int k = 0; k < 3; ++k) {
-        const std::int64_t index = faces.type == NEURAL_MESH_INT64 ? value_in<std::int64_t>(faces, row, k)
-                                                                   : value_in<std::int32_t>(faces, row, k);
+    std::size_t k = 0;
+    for (const std::int64_t index : indices(faces, row)) {
         if (index < 0 || static_cast<std::uint64_t>(index) >= count)
             throw InputError("Face " + std::to_string(row) + " has the corner " + std::to_string(index) +
                              ", but corners are numbers from 0 of " + std::to_string(count) +
                              " points: correct the faces.");
-        result[static_cast<std::size_t>(k)] = static_cast<int>(index);
+        result[k++] = static_cast<int>(index);
     }
     return result;
 }
@@ -111,6 +108,10 @@ neural_mesh_array checked(const neural_mesh_array* given, const char* name,
     return *given;
 }
 
+bool is_finite(const vcg::Point3d& p) {
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
 vcg::Point3d point(const neural_mesh_array& array, std::size_t row) {
     const auto [x, y, z] = coordinates(array, row);
     return {x, y, z};
@@ -122,8 +123,8 @@ TargetSpace target_space_of(const Cloud& cloud, const Settings& settings) {
     const bool by_faces = settings.draw_from_faces && cloud.faces.rows > 0;
     TargetSpace target = by_faces ? target_of_faces(cloud) : target_of_points(cloud, settings);
     if (settings.vertex_color == kCloudColors && cloud.colors.rows > 0)
-        target.set_colors(
-            for_each_position(cloud, by_faces, [&](std::size_t row) { return color(cloud.colors, row); }));
+        target.set_colors(for_each_position(
+            cloud, by_faces, [&](std::size_t row) { return row_of<unsigned char>(cloud.colors, row); }));
     return target;
 }
 
@@ -136,7 +137,7 @@ IndexedMesh<double> indexed_mesh_of(const neural_mesh_array& positions, const ne
         mesh.faces.push_back(corners(faces, row, positions.rows));
         for (const int corner : mesh.faces.back()) {
             const vcg::Point3d& p = mesh.positions[static_cast<std::size_t>(corner)];
-            if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+            if (!is_finite(p))
                 throw InputError("Vertex " + std::to_string(corner) +
                                  " of the given mesh has coordinates that are not finite (NaN or infinite): "
                                  "remove it, and its faces.");

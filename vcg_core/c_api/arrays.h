@@ -27,6 +27,7 @@ public:
 /// CallError if its data are missing, or its type is none of \p types
 neural_mesh_array checked(const neural_mesh_array* given, const char* name, std::initializer_list<int> types);
 
+bool is_finite(const vcg::Point3d& p);
 /// A row of an array of floats or doubles.
 vcg::Point3d point(const neural_mesh_array& array, std::size_t row);
 

@@ -28,10 +28,6 @@ constexpr std::size_t kChunk = 4096;    ///< points per task of a thread
 /// at most some 1e-4 diagonals further from the point than the nearest one, a ten-millionth of the distance.
 constexpr double kFar = 1000;
 
-bool is_finite(const vcg::Point3d& p) {
-    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-}
-
 /// Vertices that no face uses do not count. They may have any coordinates.
 Frame frame_of(const IndexedMesh<double>& mesh) {
     if (mesh.faces.empty()) throw InputError("The mesh has no faces to measure distances from.");

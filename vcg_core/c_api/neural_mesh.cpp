@@ -45,22 +45,14 @@ const std::vector<SettingInfo>& table_of(int kind) {
 
 /// Whether the parameter says which layer of a host, or which selected part of one, is meant.
 bool is_of_layers(const SettingInfo& info) {
-    return info.kind == Kind::layer || info.boolean_member == &Settings::selected_only;
+    return info.kind == Kind::layer || info.member == SettingInfo::Member(&Settings::selected_only);
 }
 
 // --- Parameters ------------------------------------------------------------------------------------
 
-int kind_of(Kind kind) {
-    switch (kind) {
-        case Kind::boolean: return NEURAL_MESH_BOOLEAN;
-        case Kind::real: return NEURAL_MESH_REAL;
-        case Kind::length: return NEURAL_MESH_LENGTH;
-        case Kind::choice: return NEURAL_MESH_CHOICE;
-        case Kind::integer:
-        case Kind::layer: break;
-    }
-    return NEURAL_MESH_INTEGER;
-}
+static_assert(int(Kind::boolean) == NEURAL_MESH_BOOLEAN && int(Kind::integer) == NEURAL_MESH_INTEGER &&
+              int(Kind::real) == NEURAL_MESH_REAL && int(Kind::length) == NEURAL_MESH_LENGTH &&
+              int(Kind::choice) == NEURAL_MESH_CHOICE);
 
 /// The rows of a table of the core as C knows them.
 struct ParameterTable {
@@ -70,7 +62,7 @@ struct ParameterTable {
             if (is_of_layers(info)) continue;
             std::vector<const char*>& choice = choices.emplace_back();
             for (const std::string& name : info.choices) choice.push_back(name.c_str());
-            rows.push_back({info.id, info.label, info.help, kind_of(info.kind), info.low, info.high,
+            rows.push_back({info.id, info.label, info.help, static_cast<int>(info.kind), info.low, info.high,
                             info.value(defaults), choice.size(), choice.data()});
         }
     }
@@ -174,15 +166,12 @@ class CallersProgress : public Progress {
 public:
     CallersProgress(neural_mesh_progress call, void* context) : call_(call), context_(context) {}
     bool operator()(double fraction, const char* text) override {
-        // Not asked again once it wants to stop.
-        goes_on_ = goes_on_ && (call_ == nullptr || call_(context_, fraction, text) != 0);
-        return goes_on_;
+        return call_ == nullptr || call_(context_, fraction, text) != 0;
     }
 
 private:
     neural_mesh_progress call_;
     void* context_;
-    bool goes_on_ = true;
 };
 
 template <class T>

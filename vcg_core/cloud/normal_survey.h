@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "vcg_core/base/packed_normal.h"
+#include "vcg_core/base/colors_and_normals.h"
 #include "vcg_core/cloud/surface_survey.h"
 
 namespace neuralmesh {

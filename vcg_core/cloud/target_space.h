@@ -15,11 +15,10 @@
 #include <string>
 #include <vector>
 
-#include "vcg_core/base/color.h"
+#include "vcg_core/base/colors_and_normals.h"
 #include "vcg_core/base/error.h"
-#include "vcg_core/base/packed_normal.h"
+#include "vcg_core/base/indexed.h"
 #include "vcg_core/base/random.h"
-#include "vcg_core/base/span.h"
 #include "vcg_core/cloud/point_areas.h"
 
 namespace neuralmesh {

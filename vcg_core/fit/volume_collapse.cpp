@@ -11,6 +11,7 @@
 
 #include "vcg_core/base/cheapest_first.h"
 #include "vcg_core/fit/face_rules.h"
+#include "vcg_core/mesh/flips.h"
 
 namespace neuralmesh {
 
@@ -20,7 +21,6 @@ namespace {
 /// squared volumes. With 1e-3, 2,000 vertices have 1.02 times the error; with 1e-5, fandisk has 1.1, because
 /// the places follow what is uneven along its sharp edges.
 constexpr double kShape = 1e-4;
-constexpr int kMaxValence = 12;
 /// Weight of the squared length of an edge, up to that of short edges. Along a sharp edge the fitted vertices
 /// are close together and a little off it, so that it costs more to collapse them than flat faces. Without
 /// this, cubes of 400 and 600 vertices have doubled edges in 4 of 16 clouds, and corners cut off. With 0.1,
@@ -181,7 +181,7 @@ private:
     }
 
     bool may_collapse(VertexId gone, VertexId kept, const Vector3& where) const {
-        return network_.ring(gone).valence + network_.ring(kept).valence - 4 <= kMaxValence &&
+        return network_.ring(gone).valence + network_.ring(kept).valence - 4 <= kHighestValence &&
                network_.can_collapse(gone, kept) && faces_allow(gone, kept, where) &&
                faces_allow(kept, gone, where);
     }

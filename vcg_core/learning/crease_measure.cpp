@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "vcg_core/base/parallel_for.h"
-#include "vcg_core/learning/filtered_faces.h"
 #include "vcg_core/learning/two_planes.h"
 
 namespace neuralmesh {
@@ -84,10 +83,6 @@ void CreaseMeasure::add(const CreaseMeasure& other) {
     moments_ += other.moments_;
 }
 
-PerVertex<float> CreaseMeasure::values(const Network& learned, ThreadTeam& team) const {
-    return values(learned, learned, {}, team);
-}
-
 PerVertex<float> CreaseMeasure::values(const Network& learned, const Network& shown,
                                        const PerVertex<VertexId>& source, ThreadTeam& team) const {
     if (moments_ == 0) {
@@ -105,7 +100,7 @@ PerVertex<float> CreaseMeasure::values(const Network& learned, const Network& sh
         crease_strengths(learned, {learned, means, team}, shown, source, spreads, team);  // f
     if (!source.empty()) {
         const PerVertex<float> g =
-            crease_strengths(shown, FilteredFaces(shown, team), shown, {}, spreads, team);
+            crease_strengths(shown, {shown, shown.positions(), team}, shown, {}, spreads, team);
         for (VertexId v = 0; v < result.size(); ++v)
             result[v] = std::sqrt(result[v] * std::sqrt(result[v] * g[v]));
     }

@@ -41,12 +41,11 @@ public:
     void add(const CreaseMeasure& other);
     int moments() const { return moments_; }
 
-    /// The value of every slot of \p learned, the network observed; 0 for free slots. Without a moment, its
-    /// present positions count as one. Does not depend on the number of threads. O(vertices).
-    PerVertex<float> values(const Network& learned, ThreadTeam& team) const;
-    /// The values of \p shown, the network after the fit: its vertex v lies near the vertex source[v] of
-    /// \p learned. Distances are measured from the positions, and in the edges, of \p shown. If \p source is
-    /// empty, every vertex has the same id in both networks, and g = f. O(vertices).
+    /// The value of every slot of \p shown; 0 for free slots. \p learned is the network observed, \p shown
+    /// that after the fit: its vertex v lies near the vertex source[v] of \p learned. Distances are measured
+    /// from the positions, and in the edges, of \p shown. If \p source is empty, every vertex has the same id
+    /// in both networks, and g = f. Without a moment, the present positions of \p learned count as one. Does
+    /// not depend on the number of threads. O(vertices).
     PerVertex<float> values(const Network& learned, const Network& shown, const PerVertex<VertexId>& source,
                             ThreadTeam& team) const;
 

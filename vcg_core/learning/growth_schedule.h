@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// After how many signals the learning splits, collapses, settles and gives up.
+// After how many signals the learning splits, collapses, settles and gives up, and what tells that it may
+// end.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "vcg_core/learning/learner_options.h"
@@ -39,32 +41,30 @@ inline std::int64_t settling_signals(int per_vertex, int vertices) {
 /// When the steps of growth are due. All arguments count signals since the start of the learning.
 class GrowthSchedule {
 public:
+    /// Keeps a reference to \p options.
     GrowthSchedule(const LearnerOptions& options, int vertices)
-        : signals_per_split_(options.signals_per_split),
-          signals_per_collapse_(options.signals_per_collapse),
-          growth_budget_(growth_budget(options)),
-          signal_bound_(signal_bound(options)),
-          vertices_at_collapse_(vertices) {}
+        : options_(options), vertices_at_collapse_(vertices) {}
 
     /// Growth begins: the budget and the bound count from here.
     void begin(std::int64_t signals) { begin_ = signals; }
-    bool split_due(std::int64_t signals) const { return signals % signals_per_split_ == 0; }
+
+    bool split_due(std::int64_t signals) const { return signals % options_.signals_per_split == 0; }
+
     bool collapse_due(std::int64_t signals) const {
-        return signals - last_collapse_ >= std::int64_t{vertices_at_collapse_} * signals_per_collapse_;
+        return signals - last_collapse_ >=
+               std::int64_t{vertices_at_collapse_} * options_.signals_per_collapse;
     }
     void collapsed(std::int64_t signals, int vertices) {
         last_collapse_ = signals;
         vertices_at_collapse_ = vertices;
     }
     std::int64_t last_collapse() const { return last_collapse_; }
-    bool stalled(std::int64_t signals) const { return signals >= begin_ + growth_budget_; }
-    bool exhausted(std::int64_t signals) const { return signals >= begin_ + signal_bound_; }
+
+    bool stalled(std::int64_t signals) const { return signals >= begin_ + growth_budget(options_); }
+    bool exhausted(std::int64_t signals) const { return signals >= begin_ + signal_bound(options_); }
 
 private:
-    int signals_per_split_;
-    int signals_per_collapse_;
-    std::int64_t growth_budget_;
-    std::int64_t signal_bound_;
+    const LearnerOptions& options_;
     std::int64_t begin_ = 0;
     std::int64_t last_collapse_ = 0;
     int vertices_at_collapse_;
@@ -76,10 +76,10 @@ class Saturation {
 public:
     /// \param vertices after the collapses that end a period \param due splits so far, done or refused
     /// \return whether the network has grown by a tenth or less of the splits that were due in each of the
-    /// last periods. One is not enough: at first the vertices of the start mesh go that are not needed where
-    /// they are.
+    /// last periods.
     bool reached(int vertices, std::int64_t due) {
-        constexpr std::int64_t kLeastGrowth = 10;
+        constexpr std::int64_t kLeastGrowth = 10;  // splits that are due for a vertex more
+        // One is not enough: at first the vertices of the start mesh go that are not needed where they are.
         constexpr int kPeriods = 4;
         const bool grows = kLeastGrowth * (vertices - vertices_) > due - due_;
         vertices_ = vertices;
@@ -92,6 +92,42 @@ private:
     int vertices_ = 0;  ///< at the end of the last period
     std::int64_t due_ = 0;
     int periods_ = 0;  ///< without growth
+};
+
+/// Root mean square angle by which a Basic Step turns the winner's normal, over about the last ten signals
+/// per vertex.
+///
+/// It replaces the Mean(n_c) of eq 8, which cannot tell when to stop: its n_delta are normalised (see eq 3),
+/// so it stays near 1 for the counters of eq 6, and near 20 / vertices for those of eq 4, however far the
+/// mesh has converged. The deltas before normalisation do fall; degrees() is their mean, converted to an
+/// angle. In the dialog the bound is called stop_below_mean_counter.
+///
+/// The memory of ten signals per vertex is a compromise. A few vertices at the sharpest places have most of
+/// the sum, so a mean over few signals, such as C_delta = 1000, falls below a bound by chance long before the
+/// mesh does. A longer memory lags behind the growth, which doubles the vertices in 100 signals per vertex.
+class NormalTurn {
+public:
+    static constexpr int kSignalsPerVertex = 10;
+
+    /// Adds the \p delta of a signal (see eq 2) that a mesh of \p vertices vertices has learned. O(1).
+    void add(double delta, int vertices) {
+        ++signals_;
+        const double memory = std::max(kLeastMemory, static_cast<double>(kSignalsPerVertex) * vertices);
+        mean_ += (delta - mean_) / std::min(signals_, memory);
+    }
+
+    /// 0 before the first signal.
+    double degrees() const {
+        // delta = 1 - cos(angle), which for small angles is angle^2 / 2.
+        return kDegreesPerRadian * std::sqrt(2 * mean_);
+    }
+
+private:
+    static constexpr double kLeastMemory = 1000;  ///< signals, for small meshes
+    static constexpr double kDegreesPerRadian = 57.29577951308232;
+
+    double signals_ = 0;
+    double mean_ = 0;
 };
 
 }  // namespace neuralmesh

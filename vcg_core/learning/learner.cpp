@@ -15,8 +15,7 @@
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/learning/boundary_faces.h"
-#include "vcg_core/learning/half_edge_collapse.h"
-#include "vcg_core/learning/vertex_split.h"
+#include "vcg_core/learning/connectivity_steps.h"
 #include "vcg_core/topology/learned_topology.h"
 
 namespace neuralmesh {
@@ -42,10 +41,9 @@ Learner::Learner(const TargetSpace& target, const LearnerOptions& options, Netwo
       rates_{static_cast<float>(options.learning_rate), static_cast<float>(options.smoothing_rate),
              options.smoothing_steps},
       mean_delta_(options.normalization_window),
-      schedule_(options, state_.network.vertex_count()),
+      schedule_(state_.options, state_.network.vertex_count()),
       random_(stream_seed(options.random_seed, Stream::learning)),
       batch_(options.threads),
-      memory_order_(state_),
       topology_random_(stream_seed(options.random_seed, Stream::topology)) {}
 
 StopReason Learner::run(int landing_signals, Progress& progress) {
@@ -81,13 +79,16 @@ StopReason Learner::grow(Progress& progress) {
         });
         const bool collapses = !forced_ && schedule_.collapse_due(signals());
         if (collapses) half_edge_collapse();
-        memory_order_.update_while_growing();
+        state_.reorder_while_growing();
         PartOf standing(progress, done, done);
         if (state_.options.learn_topology && stages.pass(network().vertex_count()) &&
             !learn_topology(stages.over(), standing))
             return StopReason::cancelled;
 
-        if (!forced_ && schedule_.stalled(signals())) force_growth();
+        if (!forced_ && schedule_.stalled(signals())) {
+            forced_ = true;
+            state_.utility_counters.waive_maturity();
+        }
         if (schedule_.exhausted(signals())) return StopReason::cut_short;
         if (collapses &&
             saturation_.reached(network().vertex_count(), state_.splits + state_.splits_refused) &&
@@ -140,7 +141,7 @@ void Learner::learn_counters(const StepResult& step) {
     const double m_delta = mean_delta_.mean();
     // If no normal has turned (a plane learned by a plane), all vertices count the same.
     const double n_delta = m_delta > 0 ? delta / m_delta : 1;  // eq 3
-    const bool adaptive = state_.options.utility_increment == UtilityIncrement::n_delta;
+    const bool adaptive = state_.options.utility_counter == kNormalVariation;
     state_.utility_counters.win(step.winner, adaptive ? n_delta : 1);
     state_.feature_counters.win(step.winner, n_delta);
     normal_turn_.add(delta, network().vertex_count());
@@ -192,11 +193,6 @@ bool Learner::learn_topology(bool last, Progress& progress) {
     return goes_on;
 }
 
-void Learner::force_growth() {
-    forced_ = true;
-    state_.utility_counters.waive_maturity();
-}
-
 bool Learner::settle(int per_vertex, Progress& progress, bool observe) {
     if (!learn_at_rest(settling_signals(per_vertex, network().vertex_count()), progress, observe))
         return false;
@@ -205,7 +201,7 @@ bool Learner::settle(int per_vertex, Progress& progress, bool observe) {
 }
 
 bool Learner::learn_at_rest(std::int64_t count, Progress& progress, bool observe) {
-    memory_order_.finish();
+    state_.reorder_at_rest();
     crease_measure_ = CreaseMeasure();
     const std::int64_t begin = signals();
     const std::int64_t end = begin + count;

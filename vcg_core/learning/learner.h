@@ -18,9 +18,6 @@
 #include "vcg_core/learning/growth_schedule.h"
 #include "vcg_core/learning/learner_options.h"
 #include "vcg_core/learning/learning_state.h"
-#include "vcg_core/learning/memory_order.h"
-#include "vcg_core/learning/normal_turn.h"
-#include "vcg_core/learning/stop_reason.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
@@ -51,16 +48,16 @@ public:
     void learn_counters(const StepResult& step);
     /// Basic Step and counters of one signal.
     void basic_step(const vcg::Point3f& s) { learn_counters(basic_steps(&s, 1).front()); }
-    /// Number of signals in a batch of run(): vertices / kVerticesPerSignal, so that the steps of a batch
-    /// rarely overlap; smaller while they do. 1 if options.min_wins_per_split is 0, or the rates of the steps
-    /// are too high to add them up.
+    /// Number of signals in a batch of run(): vertices / kVerticesPerSignal, or fewer while the steps of a
+    /// batch overlap. 1 if options.min_wins_per_split is 0, or the rates of the steps are too high to add
+    /// them up.
     int batch_size() const;
-    static constexpr int kVerticesPerSignal = 32;
-    /// Vertex Split, see vertex_split.h. False if the network has options.grow_to vertices already, or if no
-    /// vertex can be split. O(log n).
+    static constexpr int kVerticesPerSignal = 32;  ///< so many that the steps of a batch rarely overlap
+    /// Vertex Split, see connectivity_steps.h. False if the network has options.grow_to vertices already, or
+    /// if no vertex can be split. O(log n).
     bool vertex_split();
     /// Half-Edge Collapse of all vertices that have been inactive since its last call, see
-    /// half_edge_collapse.h. Before, mends the faces along boundaries, see boundary_faces.h. \return the
+    /// connectivity_steps.h. Before, mends the faces along boundaries, see boundary_faces.h. \return the
     /// number of inactive vertices removed. O(n).
     int half_edge_collapse();
     /// Takes membranes out of the network, see topology/learned_topology.h, in rounds until none gains any
@@ -100,7 +97,6 @@ private:
     template <class AfterSignal>
     void learn_batch(int count, const AfterSignal& after_signal);
     StopReason grow(Progress& progress);
-    void force_growth();
     bool report_due();
     bool report(const char* doing, double fraction, Progress& progress) const;
 
@@ -118,7 +114,6 @@ private:
     std::vector<vcg::Point3f> drawn_;  ///< those of the last batch
     BasicStepBatch batch_;
     BatchLimit batch_limit_;
-    MemoryOrder memory_order_;
     Saturation saturation_;
     std::int64_t last_report_ = 0;
     Random topology_random_;

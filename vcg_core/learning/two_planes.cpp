@@ -5,6 +5,11 @@
 #include "vcg_core/learning/two_planes.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "vcg_core/base/median.h"
+#include "vcg_core/base/parallel_for.h"
 
 namespace neuralmesh {
 
@@ -13,13 +18,74 @@ namespace {
 using vcg::Point3f;
 
 // Chosen by tests/experiments/paper/features.py, whose results hardly change around these values.
+constexpr int kIterations = 4;
+constexpr float kWidth = 6;   ///< of the filter, in medians of the squared difference of adjacent normals
+constexpr float kWidest = 1;  ///< bound on the width, for meshes most of whose edges are creases
 constexpr float kPlaneReach = 1.5F;  ///< a face this many edges away has half the weight
 constexpr int kRefinements = 2;
 constexpr float kPlaneWidth = 0.05F;  ///< of similarity() within a plane, in squared differences of the two
 constexpr float kOpposite = -0.9F;    ///< cosine below which normals belong to the two sides of a thin part
 constexpr float kTiny = 1e-30F;       ///< keeps a vertex without edge length from dividing zero by zero
 
+constexpr int kChunk = 512;  // faces
+
+/// Weight of a normal whose squared difference from another is \p d: 1 at 0, falling with d / \p width. A
+/// rational stand-in for exp(-d / width), whose bits differ between mathematical libraries.
+float similarity(float d, float width) {
+    const float x = 1 + d / width;
+    return 1 / (x * x);
+}
+
 }  // namespace
+
+FilteredFaces::FilteredFaces(const Network& network, const PerVertex<Point3f>& positions, ThreadTeam& team)
+    : surface_(network) {
+    normals_.reserve(count());
+    centres_.reserve(count());
+    areas_.reserve(count());
+    for (const auto& [a, b, c] : surface_.faces) {
+        const Point3f n = (positions[b] - positions[a]) ^ (positions[c] - positions[a]);
+        areas_.push_back(n.Norm() / 2);
+        normals_.push_back(unit_or_zero(n));
+        centres_.push_back((positions[a] + positions[b] + positions[c]) / 3);
+    }
+    filter(team);
+}
+
+void FilteredFaces::filter(ThreadTeam& team) {
+    const float width = std::min(kWidest, kWidth * median_difference(team) + 1e-12F);
+    PerFace<Point3f> filtered(count(), Point3f(0, 0, 0));
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
+        parallel_for(count(), kChunk, team, [&](int f) { filtered[f] = filtered_normal(f, width); });
+        std::swap(normals_, filtered);
+    }
+}
+
+/// Mean normal of the faces around the corners of f, weighted by area and similarity. A face that shares an
+/// edge with f counts twice, f itself three times.
+Point3f FilteredFaces::filtered_normal(int f, float width) const {
+    Point3f sum(0, 0, 0);
+    for (const VertexId v : surface_.faces[f])
+        for (const int g : around(v)) {
+            const float d = (normals_[g] - normals_[f]).SquaredNorm();
+            sum += normals_[g] * (areas_[g] * similarity(d, width));
+        }
+    return unit_or_zero(sum);
+}
+
+/// Median over the inner edges of the squared difference of the normals on both sides.
+float FilteredFaces::median_difference(ThreadTeam& team) const {
+    const auto find = [&](int f, std::vector<float>& found) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const VertexId a = surface_.faces[f][k];
+            const VertexId b = surface_.faces[f][(k + 1) % 3];
+            for (const int g : around(a))
+                if (g > f && has_corner(g, b)) found.push_back((normals_[g] - normals_[f]).SquaredNorm());
+        }
+    };
+    std::vector<float> differences = parallel_collect<float>(count(), kChunk, team, find);
+    return differences.empty() ? 0.0F : median(std::move(differences));
+}
 
 float mean_edge_at(const Network& network, VertexId v) {
     float sum = 0;

@@ -69,13 +69,13 @@ float smallest_sphere_diameter(const std::vector<Point3f>& points) {
 
 HoleFiller::HoleFiller(IndexedMesh<float>& mesh, const std::vector<std::vector<VertexId>>& loops,
                        int most_neighbours)
-    : mesh_(mesh), most_neighbours_(most_neighbours), neighbours_(mesh.positions.size()) {
-    std::vector<char> on_loop(mesh.positions.size(), 0);
+    : mesh_(mesh), most_neighbours_(most_neighbours), neighbours_(static_cast<int>(mesh.positions.size())) {
+    PerVertex<char> on_loop(neighbours_.size(), 0);
     for (const auto& loop : loops)
-        for (const VertexId v : loop) on_loop[static_cast<std::size_t>(v)] = 1;
+        for (const VertexId v : loop) on_loop[v] = 1;
     const auto add = [&](VertexId a, VertexId b) {
-        if (on_loop[static_cast<std::size_t>(a)] == 0) return;
-        std::vector<VertexId>& around = neighbours(a);
+        if (on_loop[a] == 0) return;
+        std::vector<VertexId>& around = neighbours_[a];
         if (std::find(around.begin(), around.end(), b) == around.end()) around.push_back(b);
     };
     for (const Triangle& f : mesh.faces)
@@ -92,15 +92,15 @@ float HoleFiller::sharpness(const Filling& filling, std::size_t i) const {
     const VertexId a = rest[(i + rest.size() - 1) % rest.size()], b = rest[i],
                    c = rest[(i + 1) % rest.size()];
     // b comes to lie inside, where three neighbours are the least.
-    if (neighbours(b).size() < 3 || full(a) || full(c)) return kNever;
-    if (std::find(neighbours(a).begin(), neighbours(a).end(), c) != neighbours(a).end()) return kNever;
+    if (neighbours_[b].size() < 3 || full(a) || full(c)) return kNever;
+    if (std::find(neighbours_[a].begin(), neighbours_[a].end(), c) != neighbours_[a].end()) return kNever;
     const auto at = [this](VertexId v) { return mesh_.positions[static_cast<std::size_t>(v)]; };
     return cosine_at(at(a), at(b), at(c));
 }
 
 void HoleFiller::join(Filling& filling, VertexId a, VertexId b) {
-    neighbours(a).push_back(b);
-    neighbours(b).push_back(a);
+    neighbours_[a].push_back(b);
+    neighbours_[b].push_back(a);
     filling.edges.push_back({a, b});
 }
 
@@ -125,7 +125,7 @@ bool HoleFiller::cut_ear(Filling& filling) {
 /// Takes back what \p filling has done to the neighbours.
 void HoleFiller::undo(const Filling& filling) {
     for (auto edge = filling.edges.rbegin(); edge != filling.edges.rend(); ++edge)
-        for (const VertexId v : *edge) neighbours(v).pop_back();
+        for (const VertexId v : *edge) neighbours_[v].pop_back();
 }
 
 bool HoleFiller::fill(const std::vector<VertexId>& loop) {
@@ -135,7 +135,7 @@ bool HoleFiller::fill(const std::vector<VertexId>& loop) {
     }
     const std::vector<VertexId>& rest = filling.rest;
     const bool closes = rest.size() == 3 && std::all_of(rest.begin(), rest.end(), [&](VertexId v) {
-                            return neighbours(v).size() >= 3;
+                            return neighbours_[v].size() >= 3;
                         });
     if (!closes) {
         undo(filling);

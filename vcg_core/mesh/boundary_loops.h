@@ -42,11 +42,7 @@ private:
         std::vector<Triangle> faces;
         std::vector<std::array<VertexId, 2>> edges;
     };
-    std::vector<VertexId>& neighbours(VertexId v) { return neighbours_[static_cast<std::size_t>(v)]; }
-    const std::vector<VertexId>& neighbours(VertexId v) const {
-        return neighbours_[static_cast<std::size_t>(v)];
-    }
-    bool full(VertexId v) const { return static_cast<int>(neighbours(v).size()) >= most_neighbours_; }
+    bool full(VertexId v) const { return static_cast<int>(neighbours_[v].size()) >= most_neighbours_; }
     float sharpness(const Filling& filling, std::size_t i) const;
     bool cut_ear(Filling& filling);
     void undo(const Filling& filling);
@@ -54,7 +50,7 @@ private:
 
     IndexedMesh<float>& mesh_;
     int most_neighbours_;
-    std::vector<std::vector<VertexId>> neighbours_;  ///< of the vertices of loops; the others have none
+    PerVertex<std::vector<VertexId>> neighbours_;  ///< of the vertices of loops; the others have none
 };
 
 }  // namespace neuralmesh

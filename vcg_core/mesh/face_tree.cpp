@@ -11,7 +11,6 @@
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/base/z_order.h"
-#include "vcg_core/mesh/triangle_lanes.h"
 
 namespace neuralmesh {
 
@@ -27,21 +26,10 @@ std::vector<int> all_faces(const Surface& surface) {
 
 }  // namespace
 
-FaceTree::FaceTree(const Surface& surface) : FaceTree(surface, all_faces(surface)) {}
-
 FaceTree::FaceTree(const Surface& surface, ThreadTeam& team) : FaceTree(surface, all_faces(surface), team) {}
-
-FaceTree::FaceTree(const Surface& surface, std::vector<int> faces) : order_(std::move(faces)) {
-    ThreadTeam alone(1);
-    build(surface, alone);
-}
 
 FaceTree::FaceTree(const Surface& surface, std::vector<int> faces, ThreadTeam& team)
     : order_(std::move(faces)) {
-    build(surface, team);
-}
-
-void FaceTree::build(const Surface& surface, ThreadTeam& team) {
     if (order_.empty()) return;
     Indexed<Entry> entries(order_.size());
     parallel_for(entries.size(), kChunk, team, [&](int i) {

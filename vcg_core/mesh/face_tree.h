@@ -21,11 +21,8 @@ namespace neuralmesh {
 class FaceTree {
 public:
     /// O(faces log faces).
-    explicit FaceTree(const Surface& surface);
     FaceTree(const Surface& surface, ThreadTeam& team);
     /// Over the given \p faces of the surface only.
-    FaceTree(const Surface& surface, std::vector<int> faces);
-    /// The same, with the boxes computed on the threads of \p team.
     FaceTree(const Surface& surface, std::vector<int> faces, ThreadTeam& team);
 
     /// The nearest face of each of \p points, the one of smallest index among equals; face -1 if the tree is
@@ -87,7 +84,6 @@ private:
     };
 
     static Box box_of(const Surface& surface, int face);
-    void build(const Surface& surface, ThreadTeam& team);
     static int node_count(int faces);
     void divide(Indexed<Entry>& entries, const Part& part, int levels, std::vector<Part>& below);
     void set_boxes(const Surface& surface, ThreadTeam& team);

@@ -34,25 +34,6 @@ bool should_flip(const Network& network, VertexId a, VertexId b, const FlipRule&
                          {area_vector(pa, pd, pc), area_vector(pb, pc, pd)}});
 }
 
-int flip_edges(Network& network, VertexId v, VertexId least, const FlipRule& rule) {
-    return flip_edges_if(network, v, least,
-                         [&](VertexId a, VertexId b) { return should_flip(network, a, b, rule); });
-}
-
-}  // namespace
-
-int flip_edges_for_valence(Network& network, VertexId v, const FlipRule& rule) {
-    return flip_edges(network, v, 0, rule);
-}
-
-int flip_edges_for_valence(Network& network, const FlipRule& rule) {
-    int flips = 0;
-    for (const VertexId v : network.vertices()) flips += flip_edges(network, v, v, rule);
-    return flips;
-}
-
-namespace {
-
 /// A larger change, as a share of the new edge, may cut surface close by: of a scan of leaves 21 faces.
 constexpr float kFlat = 0.01F;
 
@@ -73,6 +54,17 @@ bool improves_shape(const Network& network, VertexId a, VertexId b, float most) 
 }
 
 }  // namespace
+
+int flip_edges_for_valence(Network& network, VertexId v, const FlipRule& rule, VertexId least) {
+    return flip_edges_if(network, v, least,
+                         [&](VertexId a, VertexId b) { return should_flip(network, a, b, rule); });
+}
+
+int flip_edges_for_valence(Network& network, const FlipRule& rule) {
+    int flips = 0;
+    for (const VertexId v : network.vertices()) flips += flip_edges_for_valence(network, v, rule, v);
+    return flips;
+}
 
 int flip_edges_for_shape(Network& network, float most) {
     // Each flip raises the smallest qualities, so flips end; far off, where rounding decides, they are ended.

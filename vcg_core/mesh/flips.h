@@ -24,18 +24,14 @@ struct FlipRule {
     int max_valence = Ring::kMaxValence;          ///< no flip raises a valence above it
 };
 
+/// Changes of a whole mesh raise no valence above it: that leaves room for those of learning and fit.
+constexpr int kHighestValence = 12;
 /// Valences in a regular triangulation, inside and on a boundary.
 constexpr int kRegularValence = 6, kRegularBoundaryValence = 4;
 
 /// (valence - 6)^2: 0 for a regular vertex.
 inline int valence_irregularity(int valence) {
     return (valence - kRegularValence) * (valence - kRegularValence);
-}
-
-/// The squared difference of the vertex's valence from the regular one.
-inline int valence_irregularity(const Ring& ring) {
-    const int excess = ring.valence - (ring.open != 0 ? kRegularBoundaryValence : kRegularValence);
-    return excess * excess;
 }
 
 /// Flips the edges of \p v to neighbours from \p least on that can be flipped and for which \p should(v,
@@ -52,10 +48,10 @@ int flip_edges_if(Network& network, VertexId v, VertexId least, const Should& sh
     return flips;
 }
 
-/// Flips every inner edge at \p v whose flip lowers the sum of the squared differences from the regular
-/// valences over the four vertices around it and is allowed by \p rule; positions stay. O(valence^2).
-/// \return the number of flips
-int flip_edges_for_valence(Network& network, VertexId v, const FlipRule& rule);
+/// Flips every inner edge from \p v to neighbours from \p least on whose flip lowers the sum of the squared
+/// differences from the regular valences over the four vertices around it and is allowed by \p rule;
+/// positions stay. O(valence^2). \return the number of flips
+int flip_edges_for_valence(Network& network, VertexId v, const FlipRule& rule, VertexId least = 0);
 
 /// The same for all edges of \p network, once each, in the order of their smaller vertices. O(vertices).
 int flip_edges_for_valence(Network& network, const FlipRule& rule);

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "vcg_core/base/platform.h"
+
 namespace neuralmesh {
 
 namespace {
@@ -60,7 +62,41 @@ int common_neighbours(const Ring& a, const Ring& b) {
 /// True if the edge to the neighbour at position i is a boundary edge.
 bool on_boundary_edge(const Ring& ring, int i) { return ring.open != 0 && (i == 0 || i + 1 == ring.valence); }
 
+/// Position of the set bit of \p word nearest to \p bit; of two, the higher. \pre word != 0
+int nearest(std::uint64_t word, int bit) {
+    const std::uint64_t above = word >> bit << bit;
+    const std::uint64_t below = word ^ above;
+    if (above == 0) return highest_bit(below);
+    if (below == 0) return lowest_bit(above);
+    return lowest_bit(above) - bit <= bit - highest_bit(below) ? lowest_bit(above) : highest_bit(below);
+}
+
 }  // namespace
+
+void FreeIds::add(std::int32_t id) {
+    const auto word = static_cast<std::size_t>(id) / 64;
+    if (word >= words_.size()) words_.resize(word + 1, 0);
+    words_[word] |= std::uint64_t{1} << (id % 64);
+    first_ = std::min(first_, word);
+    ++count_;
+}
+
+std::int32_t FreeIds::take(std::int32_t id) {
+    const auto word = static_cast<std::size_t>(id) / 64;
+    if (holds_any(word)) return take_bit(word, nearest(words_[word], id % 64));
+    for (std::size_t d = 1; d <= kWordsAround; ++d) {
+        if (holds_any(word + d)) return take_bit(word + d, lowest_bit(words_[word + d]));
+        if (word >= d && holds_any(word - d)) return take_bit(word - d, highest_bit(words_[word - d]));
+    }
+    while (words_[first_] == 0) ++first_;
+    return take_bit(first_, lowest_bit(words_[first_]));
+}
+
+std::int32_t FreeIds::take_bit(std::size_t word, int bit) {
+    words_[word] &= ~(std::uint64_t{1} << bit);
+    --count_;
+    return static_cast<std::int32_t>(64 * word) + bit;
+}
 
 void Network::reserve(int vertices) {
     rings_.reserve(static_cast<std::size_t>(vertices));
@@ -72,6 +108,12 @@ void Network::set_position(VertexId v, const vcg::Point3f& p) {
     slot.x = p[0];
     slot.y = p[1];
     slot.z = p[2];
+}
+
+PerVertex<vcg::Point3f> Network::positions() const {
+    PerVertex<vcg::Point3f> result(slot_count(), vcg::Point3f(0, 0, 0));
+    for (const VertexId v : vertices()) result[v] = position(v);
+    return result;
 }
 
 VertexId Network::new_vertex(VertexId parent, const vcg::Point3f& where) {
@@ -89,6 +131,14 @@ VertexId Network::new_vertex(VertexId parent, const vcg::Point3f& where) {
     set_position(v, where);
     ++vertex_count_;
     return v;
+}
+
+void Network::release(VertexId v) {
+    if (gaps_.count() > 0) {
+        gaps_.add(v);
+    } else {
+        free_.push_back(v);
+    }
 }
 
 bool Network::can_split(VertexId v, int first, int count) const {
@@ -179,11 +229,7 @@ void Network::collapse(VertexId gone, VertexId kept) {
     if (!can_collapse(gone, kept))
         throw TopologyError("This half-edge collapse would break the network; ask can_collapse() first.");
     // First, as it may throw std::bad_alloc.
-    if (gaps_.count() > 0) {
-        gaps_.add(gone);
-    } else {
-        free_.push_back(gone);
-    }
+    release(gone);
     Ring rg = ring(gone);
     const bool on_boundary = rg.open != 0;
     const int i = rg.find(kept);

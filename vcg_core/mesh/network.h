@@ -10,6 +10,7 @@
 
 #include <vcg/space/point3.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -17,7 +18,6 @@
 #include <vector>
 
 #include "vcg_core/base/error.h"
-#include "vcg_core/mesh/free_ids.h"
 #include "vcg_core/mesh/ring.h"
 
 namespace neuralmesh {
@@ -28,6 +28,29 @@ struct alignas(16) VertexRecord {
     VertexId link;  ///< free for the owner of the network; the mesh does not use it
 
     vcg::Point3f point() const { return {x, y, z}; }
+};
+
+/// A set of ids that can be searched for an id near a given one. If ids follow positions, a new vertex then
+/// shares cache lines with its neighbours.
+class FreeIds {
+public:
+    /// Words of 64 ids that take() searches on either side of the word of the given id.
+    static constexpr std::size_t kWordsAround = 2;
+
+    int count() const { return count_; }
+    /// Inserts \p id. Amortised O(1). \pre the set does not contain id
+    void add(std::int32_t id);
+    /// Removes and returns the nearest id in the word of \p id, else one from the nearest word within
+    /// kWordsAround, else the smallest. Amortised O(1). \pre count() > 0
+    std::int32_t take(std::int32_t id);
+
+private:
+    bool holds_any(std::size_t word) const { return word < words_.size() && words_[word] != 0; }
+    std::int32_t take_bit(std::size_t word, int bit);
+
+    std::vector<std::uint64_t> words_;
+    std::size_t first_ = 0;  ///< all words before this one are 0
+    int count_ = 0;
 };
 
 /// A simplicial, oriented 2-manifold with boundary. The id of a vertex stays the same until compact() or
@@ -55,6 +78,8 @@ public:
     bool adjacent(VertexId a, VertexId b) const { return ring(a).find(b) >= 0; }
     vcg::Point3f position(VertexId v) const { return slots()[v].point(); }
     void set_position(VertexId v, const vcg::Point3f& p);
+    /// By slot; the origin for free slots. O(slots).
+    PerVertex<vcg::Point3f> positions() const;
     /// The vertex slots. slots()[-1] is a sentinel: infinitely far, and the end of every list of links.
     VertexRecord* slots() { return slots_.data() + 1; }
     const VertexRecord* slots() const { return slots_.data() + 1; }
@@ -142,6 +167,7 @@ public:
 private:
     Ring& ring_of(VertexId v) { return rings_[static_cast<std::size_t>(v)]; }
     VertexId new_vertex(VertexId parent, const vcg::Point3f& where);
+    void release(VertexId v);
     void enter_fan(VertexId v, VertexId u, VertexId shared_begin, VertexId shared_end);
     std::string validate_edge(VertexId v, int i) const;
     /// Rings after an exchange of faces; those of vertices without faces have valence 0.

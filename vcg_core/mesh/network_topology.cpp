@@ -10,6 +10,7 @@
 #include <map>
 #include <utility>
 
+#include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/base/z_order.h"
 #include "vcg_core/mesh/network.h"
 
@@ -135,10 +136,6 @@ std::uint64_t cell_of(float coordinate) {
     return static_cast<std::uint64_t>((std::clamp(coordinate, -1.0F, 0.999F) + 1) * 0x1p20F);
 }
 
-std::uint64_t morton_code(const vcg::Point3f& p) {
-    return z_order(cell_of(p[0]), cell_of(p[1]), cell_of(p[2]));
-}
-
 }  // namespace
 
 Network::Network(const std::vector<vcg::Point3f>& positions, const std::vector<Triangle>& faces) {
@@ -204,13 +201,11 @@ void Network::exchange_faces(const std::vector<Triangle>& gone, const std::vecto
             "This exchange of faces would break the network; ask can_exchange_faces() first.");
     free_.reserve(free_.size() + changed.size());
     for (const auto& [v, after] : changed) {
-        if (after.valence == 0 && gaps_.count() > 0) {
-            gaps_.add(v);
-        } else if (after.valence == 0) {
-            free_.push_back(v);
+        if (after.valence == 0) {
+            release(v);
+            --vertex_count_;
         }
-        vertex_count_ -= after.valence == 0 ? 1 : 0;
-        ring_of(v) = after.valence == 0 ? Ring{} : after;
+        ring_of(v) = after;
     }
 }
 
@@ -238,23 +233,14 @@ std::vector<Triangle> Network::faces() const {
 }
 
 PerVertex<int> Network::components() const {
+    DisjointSets connected(slot_count());
+    for (const VertexId v : vertices())
+        for (const VertexId w : ring(v)) connected.join(v, w);
     PerVertex<int> component(slot_count(), -1);
-    std::vector<VertexId> stack;
     int count = 0;
-    for (const VertexId start : vertices()) {
-        if (component[start] >= 0) continue;
-        component[start] = count;
-        stack.push_back(start);
-        while (!stack.empty()) {
-            const VertexId v = stack.back();
-            stack.pop_back();
-            for (const VertexId w : ring(v)) {
-                if (component[w] >= 0) continue;
-                component[w] = count;
-                stack.push_back(w);
-            }
-        }
-        ++count;
+    for (const VertexId v : vertices()) {
+        const VertexId first = connected.find(v);
+        component[v] = first == v ? count++ : component[first];
     }
     return component;
 }
@@ -342,7 +328,10 @@ std::string Network::validate_edge(VertexId v, int i) const {
 std::vector<VertexId> morton_order(const Network& network) {
     std::vector<std::pair<std::uint64_t, VertexId>> codes;
     codes.reserve(static_cast<std::size_t>(network.vertex_count()));
-    for (const VertexId v : network.vertices()) codes.emplace_back(morton_code(network.position(v)), v);
+    for (const VertexId v : network.vertices()) {
+        const vcg::Point3f p = network.position(v);
+        codes.emplace_back(z_order(cell_of(p[0]), cell_of(p[1]), cell_of(p[2])), v);
+    }
     std::sort(codes.begin(), codes.end());
     std::vector<VertexId> order;
     order.reserve(codes.size());

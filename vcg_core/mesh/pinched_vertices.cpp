@@ -6,31 +6,11 @@
 #include <cstddef>
 #include <utility>
 
-#include "vcg_core/base/connected_groups.h"
+#include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/mesh/ring.h"
 
 namespace neuralmesh {
 namespace {
-
-/// The corners of the faces around each vertex, by vertex.
-struct CornersByVertex {
-    std::vector<int> first, corner;
-};
-
-CornersByVertex corners_of(const IndexedMesh<float>& mesh) {
-    CornersByVertex result;
-    result.first.assign(mesh.positions.size() + 1, 0);
-    for (const Triangle& f : mesh.faces)
-        for (const VertexId v : f) ++result.first[static_cast<std::size_t>(v) + 1];
-    for (std::size_t v = 1; v < result.first.size(); ++v) result.first[v] += result.first[v - 1];
-    result.corner.resize(3 * mesh.faces.size());
-    std::vector<int> next(result.first.begin(), result.first.end() - 1);
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-        for (std::size_t k = 0; k < 3; ++k)
-            result.corner[static_cast<std::size_t>(next[static_cast<std::size_t>(mesh.faces[f][k])]++)] =
-                static_cast<int>(3 * f + k);
-    return result;
-}
 
 /// The corners at one vertex, grouped by fans: faces that share edges at the vertex. Each fan begins with its
 /// first corner in the order of \p corners.
@@ -48,11 +28,11 @@ std::vector<std::vector<int>> fans_of(const IndexedMesh<float>& mesh, std::vecto
 }  // namespace
 
 void split_pinched_vertices(IndexedMesh<float>& mesh, std::vector<int>& source) {
-    const CornersByVertex corners = corners_of(mesh);
-    for (std::size_t v = 0; v + 1 < corners.first.size(); ++v) {
-        const auto begin = corners.corner.begin();
-        const std::vector<std::vector<int>> fans =
-            fans_of(mesh, {begin + corners.first[v], begin + corners.first[v + 1]});
+    std::vector<std::vector<int>> corners(mesh.positions.size());  // of the faces around each vertex
+    for (std::size_t c = 0; c < 3 * mesh.faces.size(); ++c)
+        corners[static_cast<std::size_t>(mesh.faces[c / 3][c % 3])].push_back(static_cast<int>(c));
+    for (std::size_t v = 0; v < corners.size(); ++v) {
+        const std::vector<std::vector<int>> fans = fans_of(mesh, std::move(corners[v]));
         for (std::size_t fan = 1; fan < fans.size(); ++fan) {
             const auto copy = static_cast<VertexId>(mesh.positions.size());
             const vcg::Point3f position = mesh.positions[v];

@@ -17,8 +17,7 @@ namespace {
 
 using vcg::Point3f;
 
-constexpr int kMaxValence = 12;
-/// Collapses leave this much below kMaxValence for flips and further collapses.
+/// Collapses leave this much below kHighestValence for flips and further collapses.
 constexpr int kSpareValence = 2;
 
 /// A network with the lengths that its edges are wanted to have, by vertex.
@@ -36,7 +35,7 @@ struct Scaled {
 /// True if moving \p v to \p where turns the normal of a face at v by more than about 72 degrees. Ignores the
 /// faces at \p except (-1: none).
 bool folds(const Network& net, VertexId v, const Point3f& where, VertexId except) {
-    constexpr float kSquaredCosine = 0.1F;
+    constexpr float kSquaredCosine = 0.1F;  // of that angle
     const Ring& ring = net.ring(v);
     for (int i = 0; i < ring.face_count(); ++i) {
         const VertexId a = ring[i];
@@ -51,13 +50,9 @@ bool folds(const Network& net, VertexId v, const Point3f& where, VertexId except
     return false;
 }
 
-bool result_valence_fits(const Network& net, VertexId gone, VertexId kept) {
-    return net.ring(gone).valence + net.ring(kept).valence - 4 <= kMaxValence - kSpareValence;
-}
-
 bool may_collapse(const Network& net, VertexId gone, VertexId kept, bool careful) {
-    return result_valence_fits(net, gone, kept) && net.can_collapse(gone, kept) &&
-           !(careful && folds(net, gone, net.position(kept), kept));
+    return net.ring(gone).valence + net.ring(kept).valence - 4 <= kHighestValence - kSpareValence &&
+           net.can_collapse(gone, kept) && !(careful && folds(net, gone, net.position(kept), kept));
 }
 
 /// Collapses \p v along its first edge that is not longer than the bound and may go.
@@ -158,14 +153,18 @@ void smooth_tangentially(Network& net) {
 }
 
 void make_even(Network& net) {
-    flip_edges_for_valence(net, {is_flat, kMaxValence});
+    flip_edges_for_valence(net, {is_flat, kHighestValence});
     smooth_tangentially(net);
 }
 
-void simplify_scaled(const Scaled& scaled, int vertices) {
-    Network& network = scaled.net;
+}  // namespace
+
+void simplify(Network& network, int vertices, const PerVertex<float>& lengths) {
     constexpr int kRounds = 3;
     constexpr int kSweepAbove = 6;  // times the wanted vertices
+    Scaled scaled{network, PerVertex<float>(lengths.size(), 0)};
+    for (VertexId v = 0; v < lengths.size(); ++v)
+        if (network.alive(v)) scaled.inverse_squared[v] = 1 / (lengths[v] * lengths[v]);
     if (network.vertex_count() > kSweepAbove * vertices) {
         collapse_in_sweeps(scaled, kSweepAbove * vertices, 0.5F * mean_squared_length(scaled));
         make_even(network);
@@ -177,16 +176,6 @@ void simplify_scaled(const Scaled& scaled, int vertices) {
     }
     if (network.vertex_count() > vertices) collapse_to(scaled, vertices, false);
     for (int i = 0; i < kRounds; ++i) make_even(network);
-}
-
-}  // namespace
-
-void simplify(Network& network, int vertices) { simplify_scaled({network, {}}, vertices); }
-
-void simplify(Network& network, int vertices, const PerVertex<float>& lengths) {
-    PerVertex<float> inverse_squared(lengths.size(), 0);
-    for (const VertexId v : network.vertices()) inverse_squared[v] = 1 / (lengths[v] * lengths[v]);
-    simplify_scaled({network, std::move(inverse_squared)}, vertices);
 }
 
 }  // namespace neuralmesh

@@ -10,11 +10,9 @@
 namespace neuralmesh {
 
 /// Reduces the closed mesh \p network to at most \p vertices vertices by half-edge collapses, the shortest
-/// edges first, and evens it by edge flips and tangential smoothing. Preserves the topology; if no further
+/// edges first, and evens it by edge flips and tangential smoothing: to equal edges, or to edges in
+/// proportion to \p lengths, one for each vertex, as far as it can be. Preserves the topology; if no further
 /// collapse does, more vertices remain. No valence rises above 12. O(n log n).
-void simplify(Network& network, int vertices);
-
-/// The same, with edges in proportion to \p lengths, one for each vertex, as far as it can be.
-void simplify(Network& network, int vertices, const PerVertex<float>& lengths);
+void simplify(Network& network, int vertices, const PerVertex<float>& lengths = {});
 
 }  // namespace neuralmesh

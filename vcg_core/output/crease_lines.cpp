@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "vcg_core/base/disjoint_sets.h"
-#include "vcg_core/learning/filtered_faces.h"
 #include "vcg_core/learning/two_planes.h"
 #include "vcg_core/mesh/surface.h"
 
@@ -307,7 +306,7 @@ Point3f place_on_line(const Network& network, const Surface& surface, TwoPlanes&
 
 CreaseGraph crease_lines(const Network& network, const PerVertex<float>& measure) {
     ThreadTeam alone(1);
-    const FilteredFaces faces(network, alone);
+    const FilteredFaces faces(network, network.positions(), alone);
     CreaseEdges chosen(network, faces, measure);
     chosen.add_sharp_edges();
     chosen.open_triangles();

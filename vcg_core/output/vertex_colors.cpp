@@ -93,10 +93,10 @@ private:
 /// that memory depends on the mesh alone.
 class ColorFit {
 public:
-    explicit ColorFit(const Network& network)
+    ColorFit(const Network& network, ThreadTeam& team)
         : network_(network),
           surface_(network),
-          tree_(surface_),
+          tree_(surface_, team),
           moments_(surface_.face_count(), Eigen::Matrix3f::Zero()),
           color_sums_(network.slot_count(), Vector3::Zero()) {}
 
@@ -203,7 +203,7 @@ PerVertex<Color> cloud_colors(const TargetSpace& target, const Network& network,
     const auto vertices = static_cast<std::size_t>(network.vertex_count());
     Batches batches(target, std::max(kFewestPoints, kPointsPerVertex * vertices), random);
     ThreadTeam team(thread_count(threads));
-    ColorFit fit(network);
+    ColorFit fit(network, team);
     for (std::size_t i = 0; i < batches.count(); ++i) {
         fit.add(batches.batch(i), team);
         if (!progress(1, "Colouring")) break;

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "vcg_core/base/color.h"
+#include "vcg_core/base/colors_and_normals.h"
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/cloud/target_space.h"

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "vcg_core/base/span.h"
+#include "vcg_core/base/indexed.h"
 #include "vcg_core/start/lattice.h"
 
 namespace neuralmesh {

@@ -15,6 +15,7 @@
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/base/text.h"
 #include "vcg_core/mesh/boundary_loops.h"
+#include "vcg_core/mesh/flips.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/pinched_vertices.h"
 #include "vcg_core/mesh/simplify.h"
@@ -32,7 +33,6 @@ namespace {
 using vcg::Box3f;
 using vcg::Point3f;
 
-constexpr int kHighestValence = 12;  // leaves room for what the reduction and the learning add
 /// The automatic bound for holes that are filled, in radii of the points around; and what is filled in any
 /// case, because it is a gap between points.
 constexpr float kGapRadii = 6, kLeastGapRadii = 4;

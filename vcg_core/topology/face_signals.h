@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "vcg_core/base/indexed.h"
 #include "vcg_core/base/random.h"
-#include "vcg_core/base/span.h"
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/cloud/target_space.h"
 #include "vcg_core/mesh/surface.h"

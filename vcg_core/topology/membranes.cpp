@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "vcg_core/base/connected_groups.h"
+#include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/base/logarithm.h"
 
 namespace neuralmesh {
@@ -127,15 +127,6 @@ std::vector<Rim> rims_of(const Surface& surface, const Members& members) {
     return rims;
 }
 
-void measure(const Surface& surface, const FaceSignals& signals, Membrane& membrane) {
-    membrane.missing = 0;
-    membrane.area = Vector3::Zero();
-    for (const int f : membrane.faces) {
-        membrane.missing += signals.expected[f] - static_cast<float>(signals.wins[f]);
-        membrane.area += area_vector(surface, f) / 2;
-    }
-}
-
 /// The faces without support that are connected with \p start.
 std::vector<int> region_of(const Surface& surface, const FaceSignals& signals, int start,
                            PerFace<char>& seen) {
@@ -153,17 +144,6 @@ std::vector<int> region_of(const Surface& surface, const FaceSignals& signals, i
 
 const Membrane& at(const std::vector<Membrane>& membranes, int i) {
     return membranes[static_cast<std::size_t>(i)];
-}
-
-/// Certain membranes that are near each other, or near to such that are.
-std::vector<std::vector<int>> connected(const Surface& surface, const std::vector<Membrane>& membranes,
-                                        float edge) {
-    std::vector<int> free;
-    for (int i = 0; i < static_cast<int>(membranes.size()); ++i)
-        if (at(membranes, i).certain) free.push_back(i);
-    return connected_groups(std::move(free), [&](int a, int b) {
-        return near_each_other(surface, at(membranes, a), at(membranes, b), edge);
-    });
 }
 
 }  // namespace
@@ -194,7 +174,12 @@ bool complete(const Surface& surface, const FaceSignals& signals, Membrane& memb
         if (++repair > kMostRepairs || members.faces().size() > kMostFaces) return false;
     membrane.faces = members.faces();
     membrane.rims = rims_of(surface, members);
-    measure(surface, signals, membrane);
+    membrane.missing = 0;
+    membrane.area = Vector3::Zero();
+    for (const int f : membrane.faces) {
+        membrane.missing += signals.expected[f] - static_cast<float>(signals.wins[f]);
+        membrane.area += area_vector(surface, f) / 2;
+    }
     return true;
 }
 
@@ -225,8 +210,14 @@ std::vector<Membrane> find_membranes(const Surface& surface, const FaceSignals& 
 
 std::vector<std::vector<int>> membrane_groups(const Surface& surface, const std::vector<Membrane>& membranes,
                                               float edge, std::size_t most_rims) {
+    std::vector<int> certain;
+    for (int i = 0; i < static_cast<int>(membranes.size()); ++i)
+        if (at(membranes, i).certain) certain.push_back(i);
+    const auto near = [&](int a, int b) {
+        return near_each_other(surface, at(membranes, a), at(membranes, b), edge);
+    };
     std::vector<std::vector<int>> groups;
-    for (std::vector<int>& group : connected(surface, membranes, edge)) {
+    for (std::vector<int>& group : connected_groups(std::move(certain), near)) {
         std::sort(group.begin(), group.end(), [&](int a, int b) {
             const float missing_a = at(membranes, a).missing, missing_b = at(membranes, b).missing;
             return missing_a != missing_b ? missing_a > missing_b : a < b;

@@ -31,18 +31,6 @@ private:
     std::vector<T> values_;
 };
 
-/// Squared lengths of the edges between vertices; kNever for edges that the network has.
-class Lengths {
-public:
-    Lengths(const PerVertex<Vector3>& positions, const Edges& edges) : positions_(positions), edges_(edges) {}
-    float between(VertexId a, VertexId b) const { return (positions_[a] - positions_[b]).squaredNorm(); }
-    float new_edge(VertexId a, VertexId b) const { return edges_.has(a, b) ? kNever : between(a, b); }
-
-private:
-    const PerVertex<Vector3>& positions_;
-    const Edges& edges_;
-};
-
 /// The faces between corners i and j of a polygon, by their indices, from the table of best third corners.
 void collect(Table<int>& third, int i, int j, std::vector<Triangle>& faces) {
     if (j - i < 2) return;
@@ -90,7 +78,7 @@ struct Slit {
 };
 
 /// The shortest bridges between rims, each between corners that have no other.
-Slit slit_between(std::vector<Rim> rims, const Lengths& lengths) {
+Slit slit_between(std::vector<Rim> rims, const Edges& edges) {
     Slit slit;
     slit.corners = std::move(rims.front());
     rims.erase(rims.begin());
@@ -102,7 +90,7 @@ Slit slit_between(std::vector<Rim> rims, const Lengths& lengths) {
             if (used.count(slit.corners[i]) != 0) continue;
             for (std::size_t r = 0; r < rims.size(); ++r)
                 for (std::size_t j = 0; j < rims[r].size(); ++j) {
-                    const float length = lengths.new_edge(slit.corners[i], rims[r][j]);
+                    const float length = edges.new_edge(slit.corners[i], rims[r][j]);
                     if (length >= least) continue;
                     least = length;
                     from = i, rim = r, to = j;
@@ -133,10 +121,10 @@ struct Zip {
 class Zipper {
 public:
     /// \p a runs forwards, \p b, already reversed, runs beside it; both return to where they begin.
-    Zipper(const Rim& a, const Rim& b, const Lengths& lengths)
+    Zipper(const Rim& a, const Rim& b, const Edges& edges)
         : a_(a),
           b_(b),
-          lengths_(lengths),
+          edges_(edges),
           n_(static_cast<int>(a.size())),
           m_(static_cast<int>(b.size())),
           runs_(longest_run()),
@@ -155,7 +143,7 @@ private:
     void reach(int i, int j, int direction);
 
     const Rim &a_, &b_;
-    const Lengths& lengths_;
+    const Edges& edges_;
     int n_, m_;
     int runs_;           ///< longest run
     Table<float> best_;  ///< by cell, and by direction and length of the last run
@@ -166,9 +154,9 @@ private:
 void Zipper::reach(int i, int j, int direction) {
     const int before_i = i - (direction == 0 ? 1 : 0), before_j = j - direction;
     if (before_i < 0 || before_j < 0) return;
-    const float along = direction == 0 ? lengths_.between(in(a_, before_i), in(a_, i))
-                                       : lengths_.between(in(b_, before_j), in(b_, j));
-    const float edge = along + lengths_.new_edge(in(a_, i), in(b_, j));
+    const float along = direction == 0 ? edges_.squared_length(in(a_, before_i), in(a_, i))
+                                       : edges_.squared_length(in(b_, before_j), in(b_, j));
+    const float edge = along + edges_.new_edge(in(a_, i), in(b_, j));
     for (int state = 0; state < 2 * runs_; ++state) {
         const bool goes_on = state / runs_ == direction;
         const int run = goes_on ? state % runs_ + 1 : 0;
@@ -202,13 +190,13 @@ Zip Zipper::best() {
 
 /// The places of \p rim that may get an edge from \p v: all of a short rim, of a long one the nearest, in the
 /// order of the rim.
-std::vector<std::size_t> turns_to_try(VertexId v, const Rim& rim, const Lengths& lengths) {
+std::vector<std::size_t> turns_to_try(VertexId v, const Rim& rim, const Edges& edges) {
     constexpr std::size_t kAllOf = 24, kNearest = 12;
     std::vector<std::size_t> turns(rim.size());
     std::iota(turns.begin(), turns.end(), std::size_t{0});
     if (rim.size() <= kAllOf) return turns;
     std::stable_sort(turns.begin(), turns.end(), [&](std::size_t i, std::size_t j) {
-        return lengths.between(v, rim[i]) < lengths.between(v, rim[j]);
+        return edges.squared_length(v, rim[i]) < edges.squared_length(v, rim[j]);
     });
     turns.resize(kNearest);
     std::sort(turns.begin(), turns.end());
@@ -232,7 +220,7 @@ Pairs repeated(const std::vector<Triangle>& faces, const Rim& corners) {
 }
 
 /// Of the diagonals that would have the same ends all but one are forbidden, until there are none.
-std::vector<Triangle> triangulate(const Slit& slit, const Lengths& lengths) {
+std::vector<Triangle> triangulate(const Slit& slit, const Edges& edges) {
     constexpr int kMostTries = 8;
     const auto at = [&](int i) { return slit.corners[static_cast<std::size_t>(i)]; };
     Pairs forbidden;
@@ -240,7 +228,7 @@ std::vector<Triangle> triangulate(const Slit& slit, const Lengths& lengths) {
         const auto faces = least_triangulation(size_of(slit.corners), [&](int i, int j) {
             const bool bridge = slit.bridges.count(std::minmax(at(i), at(j))) != 0;
             const bool possible = at(i) != at(j) && !bridge && forbidden.count({i, j}) == 0;
-            return possible ? lengths.new_edge(at(i), at(j)) : kNever;
+            return possible ? edges.new_edge(at(i), at(j)) : kNever;
         });
         const Pairs twice = repeated(faces, slit.corners);
         if (twice.empty()) return with_vertices(faces, slit.corners);
@@ -250,20 +238,18 @@ std::vector<Triangle> triangulate(const Slit& slit, const Lengths& lengths) {
 }
 
 /// A ring of faces from \p a to \p b.
-std::vector<Triangle> zip(const Rim& a, const Rim& b, const PerVertex<Vector3>& positions,
-                          const Edges& edges) {
+std::vector<Triangle> zip(const Rim& a, const Rim& b, const Edges& edges) {
     const auto longest = static_cast<std::size_t>(kLongestRim);
     if (a.size() > longest || b.size() > longest) return {};
     for (const VertexId v : a)
         if (std::find(b.begin(), b.end(), v) != b.end()) return {};
-    const Lengths lengths(positions, edges);
     const Rim back(b.rbegin(), b.rend());
     Zip best;
     Rim best_beside;
-    for (const std::size_t turn : turns_to_try(a.front(), back, lengths)) {
+    for (const std::size_t turn : turns_to_try(a.front(), back, edges)) {
         Rim beside = back;
         std::rotate(beside.begin(), beside.begin() + static_cast<std::ptrdiff_t>(turn), beside.end());
-        Zip next = Zipper(a, beside, lengths).best();
+        Zip next = Zipper(a, beside, edges).best();
         if (next.cost < best.cost) {
             best = std::move(next);
             best_beside = std::move(beside);
@@ -284,23 +270,26 @@ std::vector<Triangle> zip(const Rim& a, const Rim& b, const PerVertex<Vector3>& 
 
 }  // namespace
 
-bool Edges::has(VertexId a, VertexId b) const {
-    if (!network_.adjacent(a, b)) return false;
-    for (const int f : surface_.faces_around(a)) {
-        const Triangle& face = surface_.faces[f];
-        if (left_out_[f] == 0 && std::find(face.begin(), face.end(), b) != face.end()) return true;
-    }
-    return false;
+float Edges::squared_length(VertexId a, VertexId b) const {
+    return (surface_.positions[a] - surface_.positions[b]).squaredNorm();
 }
 
-std::vector<Triangle> closing_patches(const std::vector<Rim>& rims, const PerVertex<Vector3>& positions,
-                                      const Edges& edges) {
-    const Lengths lengths(positions, edges);
+float Edges::new_edge(VertexId a, VertexId b) const {
+    const Span<const int> around = surface_.faces_around(a);
+    const auto has_edge = [&](int f) {
+        const Triangle& face = surface_.faces[f];
+        return left_out_[f] == 0 && std::find(face.begin(), face.end(), b) != face.end();
+    };
+    const bool exists = network_.adjacent(a, b) && std::any_of(around.begin(), around.end(), has_edge);
+    return exists ? kNever : squared_length(a, b);
+}
+
+std::vector<Triangle> closing_patches(const std::vector<Rim>& rims, const Edges& edges) {
     std::vector<Triangle> all;
     for (const Rim& rim : rims) {
         if (rim.size() > static_cast<std::size_t>(kLongestRim)) return {};
         const auto at = [&](int i) { return rim[static_cast<std::size_t>(i)]; };
-        const auto diagonal = [&](int i, int j) { return lengths.new_edge(at(i), at(j)); };
+        const auto diagonal = [&](int i, int j) { return edges.new_edge(at(i), at(j)); };
         const std::vector<Triangle> faces = with_vertices(least_triangulation(size_of(rim), diagonal), rim);
         if (faces.empty()) return {};
         all.insert(all.end(), faces.begin(), faces.end());
@@ -308,9 +297,8 @@ std::vector<Triangle> closing_patches(const std::vector<Rim>& rims, const PerVer
     return all;
 }
 
-std::vector<Triangle> joining_patch(const std::vector<Rim>& rims, const PerVertex<Vector3>& positions,
-                                    const Edges& edges) {
-    if (rims.size() == 2) return zip(rims[0], rims[1], positions, edges);
+std::vector<Triangle> joining_patch(const std::vector<Rim>& rims, const Edges& edges) {
+    if (rims.size() == 2) return zip(rims[0], rims[1], edges);
     std::set<VertexId> distinct;
     std::size_t corners = 0;
     for (const Rim& rim : rims) {
@@ -318,8 +306,7 @@ std::vector<Triangle> joining_patch(const std::vector<Rim>& rims, const PerVerte
         corners += rim.size();
     }
     if (distinct.size() != corners || corners > 2 * static_cast<std::size_t>(kLongestRim)) return {};
-    const Lengths lengths(positions, edges);
-    return triangulate(slit_between(rims, lengths), lengths);
+    return triangulate(slit_between(rims, edges), edges);
 }
 
 }  // namespace neuralmesh

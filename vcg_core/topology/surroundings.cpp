@@ -15,19 +15,14 @@ constexpr float kFar = 0.5F;
 /// Faces up to here are counted, with their signals, in mean edges.
 constexpr float kMargin = 3;
 
-Box grown(const Box& box, float by) {
-    const Vector3 margin = Vector3::Constant(by);
-    return {box.min() - margin, box.max() + margin};
-}
+}  // namespace
 
-Box box_of(const Surface& surface, const std::vector<int>& faces) {
+Box box_around(const Surface& surface, const std::vector<int>& faces, float margin) {
     Box box;
     for (const int f : faces)
         for (const VertexId v : surface.faces[f]) box.extend(surface.positions[v]);
-    return box;
+    return {box.min() - Vector3::Constant(margin), box.max() + Vector3::Constant(margin)};
 }
-
-}  // namespace
 
 /// The bounding boxes of the faces of a patch, and of all.
 class Surroundings::PatchBoxes {
@@ -64,7 +59,7 @@ Surroundings::Surroundings(const Surface& surface, const FaceTree& tree, const F
     : surface_(surface), support_(support), far_(kFar * edge * kFar * edge) {
     std::vector<int> out = left_out;
     std::sort(out.begin(), out.end());
-    tree.for_overlapping(grown(box_of(surface, left_out), kMargin * edge), [&](int f) {
+    tree.for_overlapping(box_around(surface, left_out, kMargin * edge), [&](int f) {
         if (!std::binary_search(out.begin(), out.end(), f)) kept_.push_back(f);
     });
     std::sort(kept_.begin(), kept_.end());
@@ -73,7 +68,7 @@ Surroundings::Surroundings(const Surface& surface, const FaceTree& tree, const F
     for (const int f : left_out)
         for (const FaceSignals::Assigned& s : support.of(f)) points.push_back(s.point);
     ThreadTeam alone(1);
-    const std::vector<Hit> hits = FaceTree(surface, kept_).nearest(points, alone);
+    const std::vector<Hit> hits = FaceTree(surface, kept_, alone).nearest(points, alone);
     auto next = hits.begin();
     for (const int f : left_out) {
         int won = support.wins[f];
@@ -118,7 +113,7 @@ float Surroundings::gain(const std::vector<Triangle>& patch) const {
     std::vector<int> won(patch.size(), 0), kept_won(kept_.size(), 0);
     double gain = lack_;
     for (std::size_t k = 0; k < kept_.size(); ++k) {
-        if (!boxes.may_attract(box_of(surface_, {kept_[k]}), support_.farthest[kept_[k]])) continue;
+        if (!boxes.may_attract(box_around(surface_, {kept_[k]}, 0), support_.farthest[kept_[k]])) continue;
         for (const FaceSignals::Assigned& s : support_.of(kept_[k])) {
             float least = s.squared_distance;
             const std::size_t face = winner(boxes, patch, s.point, least);

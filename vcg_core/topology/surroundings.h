@@ -11,6 +11,9 @@
 
 namespace neuralmesh {
 
+/// The bounding box of \p faces, \p margin wider on all sides. O(faces)
+Eigen::AlignedBox3f box_around(const Surface& surface, const std::vector<int>& faces, float margin);
+
 /// The signals around some faces that may be exchanged, and their distances from the rest of the surface.
 /// Keeps references to the surface and the signals.
 class Surroundings {

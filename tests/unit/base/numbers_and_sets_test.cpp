@@ -6,10 +6,10 @@
 #include "tests/unit/support/prelude.h"
 #include "tests/unit/support/shapes.h"
 #include "vcg_core/base/cheapest_first.h"
+#include "vcg_core/base/colors_and_normals.h"
 #include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/base/lanes.h"
 #include "vcg_core/base/logarithm.h"
-#include "vcg_core/base/packed_normal.h"
 #include "vcg_core/base/platform.h"
 #include "vcg_core/base/simd.h"
 

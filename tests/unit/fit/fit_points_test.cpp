@@ -108,7 +108,7 @@ TEST(PointsByFace, WeighPointsByTheirInfluence) {
 
 TEST(PointsByFace, HaveEveryPointWithItsNearestFace) {
     const FitScene scene(network_of(shapes::torus_grid(20, 10), 0.02), shapes::torus_cloud(2000, 0.02));
-    const FaceTree tree(scene.surface);
+    const FaceTree tree(scene.surface, one_thread());
     std::size_t i = 0;
     for (int f = 0; f < scene.surface.face_count(); ++f)
         for (const PointsByFace::Assignment& a : scene.points.of(f)) {

@@ -4,9 +4,8 @@
 // Counters, the turn of normals, and saturation.
 #include "tests/unit/support/prelude.h"
 #include "vcg_core/base/random.h"
+#include "vcg_core/learning/counters.h"
 #include "vcg_core/learning/growth_schedule.h"
-#include "vcg_core/learning/normal_turn.h"
-#include "vcg_core/learning/utility_counter.h"
 
 namespace neuralmesh::counters_test {
 

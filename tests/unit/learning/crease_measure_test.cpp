@@ -14,7 +14,7 @@ namespace neuralmesh::crease_measure_test {
 struct Learned {
     Learned(const Cloud& cloud, int vertices) : target(target_of(cloud)) {
         options.grow_to = vertices;
-        options.utility_increment = UtilityIncrement::one;
+        options.utility_counter = kSignalCount;
         options.settling_signals_per_vertex = 0;
         Learner learner(target, options, network_of(shapes::scaled(shapes::icosphere(1), 0.3)));
         learner.run(100, unwatched());
@@ -25,7 +25,7 @@ struct Learned {
             if (sweep >= 6) measure.observe(learner.network(), one_thread());
         }
         network = learner.network();
-        values = measure.values(network, one_thread());
+        values = measure.values(network, network, {}, one_thread());
     }
 
     TargetSpace target;
@@ -96,7 +96,7 @@ TEST(CreaseMeasure, FindsNothingOnAPlane) {
     const Network network = network_of(shapes::grid(12, 9));
     CreaseMeasure measure;
     measure.observe(network, one_thread());
-    for (const float value : measure.values(network, one_thread())) EXPECT_LT(value, 1e-3F);
+    for (const float value : measure.values(network, network, {}, one_thread())) EXPECT_LT(value, 1e-3F);
 }
 
 TEST(CreaseMeasure, IsIndifferentToScale) {
@@ -108,8 +108,8 @@ TEST(CreaseMeasure, IsIndifferentToScale) {
     of_small.observe(run.network, one_thread());
     of_large.observe(large, one_thread());
     EXPECT_EQ(of_small.moments(), 1);
-    const PerVertex<float> a = of_small.values(run.network, one_thread());
-    const PerVertex<float> b = of_large.values(large, one_thread());
+    const PerVertex<float> a = of_small.values(run.network, run.network, {}, one_thread());
+    const PerVertex<float> b = of_large.values(large, large, {}, one_thread());
     EXPECT_GT(*std::max_element(a.begin(), a.end()), 1.0F);
     for (VertexId v = 0; v < a.size(); ++v) EXPECT_NEAR(a[v], b[v], 1e-4F);
 }
@@ -119,9 +119,9 @@ TEST(CreaseMeasure, IsTheSameWithOneOfNoMoments) {
     const Network network = network_of(shapes::icosphere(2));
     CreaseMeasure moments;
     moments.observe(network, one_thread());
-    const PerVertex<float> before = moments.values(network, one_thread());
+    const PerVertex<float> before = moments.values(network, network, {}, one_thread());
     moments.add(CreaseMeasure());
-    const PerVertex<float> after = moments.values(network, one_thread());
+    const PerVertex<float> after = moments.values(network, network, {}, one_thread());
     EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin(), after.end()));
 }
 
@@ -134,8 +134,10 @@ TEST(CreaseMeasure, MeasuresAMovedVertexWhereItLies) {
     CreaseMeasure one, by_three;
     one.observe(run.network, team);
     by_three.observe(run.network, three);
-    EXPECT_EQ(one.values(run.network, team), by_three.values(run.network, three));
-    EXPECT_EQ(none.values(run.network, team), one.values(run.network, team));
+    EXPECT_EQ(one.values(run.network, run.network, {}, team),
+              by_three.values(run.network, run.network, {}, three));
+    EXPECT_EQ(none.values(run.network, run.network, {}, team),
+              one.values(run.network, run.network, {}, team));
 
     const double half = 0.5 / std::sqrt(3.0);
     PerVertex<VertexId> source(run.network.slot_count());
@@ -153,7 +155,7 @@ TEST(CreaseMeasure, MeasuresAMovedVertexWhereItLies) {
     Network moved = run.network;
     moved.set_position(nearest,
                        moved.position(nearest) - vcg::Point3f(0, mean_edge_length(Surface(moved)), 0));
-    const float there = one.values(run.network, team)[nearest];
+    const float there = one.values(run.network, run.network, {}, team)[nearest];
     const float aside = one.values(run.network, moved, source, team)[nearest];
     EXPECT_GT(there, 1.0F);
     EXPECT_LT(aside, 0.5F * there);

@@ -76,7 +76,7 @@ TEST(Learner, IsTheReferenceOnASphere) {
 
 TEST(Learner, IsTheReferenceOnATorusWithTheSignalCounter) {
     LearnerOptions options;
-    options.utility_increment = UtilityIncrement::one;
+    options.utility_counter = kSignalCount;
     options.signals_per_split = 40;
     compare_runs(shapes::torus_cloud(2000, 0.02), start_of(shapes::torus_grid(10, 6), 0.3), options, 4000);
 }
@@ -91,7 +91,7 @@ TEST(Learner, IsTheReferenceToTheLetterOfThePaper) {
 
 TEST(Learner, IsTheReferenceFromATetrahedron) {
     LearnerOptions options;
-    options.utility_increment = UtilityIncrement::one;
+    options.utility_counter = kSignalCount;
     compare_runs(shapes::sphere_cloud(2000, 0.01), start_of(shapes::tetrahedron(), 0.1), options, 1500);
 }
 

@@ -12,7 +12,11 @@ bool always(const FlipNormals& /*normals*/) { return true; }
 
 int irregularity(const Network& network) {
     int sum = 0;
-    for (const VertexId v : network.vertices()) sum += valence_irregularity(network.ring(v));
+    for (const VertexId v : network.vertices()) {
+        const Ring& ring = network.ring(v);
+        const int excess = ring.valence - (ring.open != 0 ? kRegularBoundaryValence : kRegularValence);
+        sum += excess * excess;
+    }
     return sum;
 }
 

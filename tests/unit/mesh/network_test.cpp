@@ -3,7 +3,6 @@
 
 // Construction, counts, numbering, order and validation of a network.
 #include "tests/unit/support/network_starts.h"
-#include "vcg_core/mesh/free_ids.h"
 
 namespace neuralmesh::network_test {
 

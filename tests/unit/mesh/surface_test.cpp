@@ -6,9 +6,7 @@
 #include "tests/unit/support/prelude.h"
 #include "tests/unit/support/referee.h"
 #include "vcg_core/mesh/face_tree.h"
-#include "vcg_core/mesh/face_walk.h"
 #include "vcg_core/mesh/triangle.h"
-#include "vcg_core/mesh/triangle_lanes.h"
 
 namespace neuralmesh::surface_test {
 
@@ -223,9 +221,10 @@ void expect_same(const Hit& found, const Hit& expected) {
 TEST(FaceTree, FindsTheNearestFace) {
     const Surface surface(network_of(shapes::torus_grid(20, 10), 0.05));
     Random random(5);
+    ThreadTeam team(1);
     for (int step : {1, 3, 5, 50, 120, 399}) {  // leaves of 1 to 4 faces, on one or two levels
         const std::vector<int> faces = every(step, surface);
-        const FaceTree tree(surface, faces);
+        const FaceTree tree(surface, faces, team);
         for (int i = 0; i < 300; ++i) {
             const Vector3 p = 1.5F * in_cube(random);
             expect_same(tree.nearest(p), nearest_of(surface, faces, p));
@@ -263,7 +262,7 @@ std::vector<Vector3> probes(const Surface& surface, std::size_t count, Random& r
 TEST(FaceTree, FindsTheNearestFaceWhereRoundingDecides) {
     Random random(9);
     const Surface surface(network_of(shapes::cube()));
-    const FaceTree tree(surface);
+    const FaceTree tree(surface, one_thread());
     const std::vector<Vector3> points = probes(surface, 4000, random);
     const std::vector<Hit> hits = tree.nearest(points, one_thread());
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -275,7 +274,7 @@ TEST(FaceTree, FindsTheNearestFaceWhereRoundingDecides) {
 
 TEST(FaceTree, FindsNothingWithoutFaces) {
     const Surface surface(network_of(shapes::cube()));
-    const FaceTree tree(surface, {});
+    const FaceTree tree(surface, {}, one_thread());
     EXPECT_EQ(tree.nearest({0, 0, 0}).face, -1);
     EXPECT_EQ(tree.nearest({{0, 0, 0}}, one_thread()).at(0).face, -1);
     tree.for_overlapping(surface, 0, [](int) { ADD_FAILURE(); });
@@ -287,7 +286,8 @@ TEST(FaceTree, FindsAllPairsOfOverlappingBoxesOnce) {
     for (int f = 0; f < surface.face_count(); ++f)
         for (int g = f + 1; g < surface.face_count(); ++g)
             if (boxes_touch(surface, f, g)) expected.emplace(f, g);
-    const FaceTree tree(surface);
+    ThreadTeam team(1);
+    const FaceTree tree(surface, team);
     std::set<std::pair<int, int>> found;
     for (int i = 0; i < tree.group_count(); ++i)
         tree.for_overlapping_pairs(i, [&](int f, int g) {

@@ -57,7 +57,7 @@ public:
         const double mean =
             std::accumulate(from, deltas_.end(), 0.0) / static_cast<double>(deltas_.end() - from);
         const double n_delta = mean > 0 ? deltas_.back() / mean : 1;                          // eq 3
-        utility[w] += options_.utility_increment == UtilityIncrement::n_delta ? n_delta : 1;  // eq 4
+        utility[w] += options_.utility_counter == kNormalVariation ? n_delta : 1;             // eq 4
         for (double& counter : utility) counter *= options_.counter_decay;
         feature[w] = options_.feature_decay * feature[w] + (1 - options_.feature_decay) * n_delta;  // eq 6
         ++wins[w];

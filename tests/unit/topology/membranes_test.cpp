@@ -211,15 +211,14 @@ void expect_the_plain_gain(bool deep) {
         PerFace<char> out(surface.face_count(), 0);
         std::vector<Triangle> patched;
         for (const int f : membrane.faces) out[f] = 1;
-        const auto patch =
-            closing_patches({membrane.rims.front()}, surface.positions, {network, surface, out});
+        const auto patch = closing_patches({membrane.rims.front()}, {network, surface, out});
         ASSERT_GT(patch.size(), 8U);
         for (int f = 0; f < surface.face_count(); ++f)
             if (out[f] == 0) patched.push_back(surface.faces[f]);
         patched.insert(patched.end(), patch.begin(), patch.end());
         std::vector<Triangle> whole;
         for (int f = 0; f < surface.face_count(); ++f) whole.push_back(surface.faces[f]);
-        const Surroundings around(surface, FaceTree(surface), support, membrane.faces, edge);
+        const Surroundings around(surface, FaceTree(surface, one_thread()), support, membrane.faces, edge);
         const double plain =
             plain_cost(surface, support, whole, edge) - plain_cost(surface, support, patched, edge);
         EXPECT_GT(std::abs(plain), 0.5);

@@ -17,10 +17,10 @@ struct Scene {
     explicit Scene(const Shape& shape, double noise = 0) : Scene(network_of(shape, noise)) {}
     std::vector<Rim> rims() const { return boundary_loops(network.slot_count(), network.faces()); }
     std::vector<Triangle> closing(const Rim& rim) const {
-        return closing_patches({rim}, surface.positions, {network, surface, none});
+        return closing_patches({rim}, {network, surface, none});
     }
     std::vector<Triangle> joining(const std::vector<Rim>& rims) const {
-        return joining_patch(rims, surface.positions, {network, surface, none});
+        return joining_patch(rims, {network, surface, none});
     }
 
     Network network;

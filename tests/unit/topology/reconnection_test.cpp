@@ -2,12 +2,11 @@
 // Copyright the Neural Mesh authors
 
 // Membranes that are found, and what takes their place: bridges are cut, tubes with plugs are joined.
-#include "vcg_core/topology/reconnection.h"
+#include "vcg_core/topology/learned_topology.h"
 
 #include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/runs.h"
 #include "vcg_core/mesh/boundary_loops.h"
-#include "vcg_core/topology/learned_topology.h"
 
 namespace neuralmesh::reconnection_test {
 
@@ -34,7 +33,7 @@ Network swept(const TargetSpace& target, const std::vector<Hoop>& hoops, int aro
     for (const Rim& rim : boundary_loops(network.slot_count(), network.faces())) {
         const Surface surface(network);
         const PerFace<char> none(surface.face_count(), 0);
-        network.exchange_faces({}, closing_patches({rim}, surface.positions, {network, surface, none}));
+        network.exchange_faces({}, closing_patches({rim}, {network, surface, none}));
     }
     return network;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Unit normals in three bytes, for clouds of many points.
+// What points carry beside their coordinates: colours, and unit normals, in three bytes each.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -12,6 +12,8 @@
 #include <cstdint>
 
 namespace neuralmesh {
+
+using Color = std::array<unsigned char, 3>;  ///< red, green, blue, as files and screens have them
 
 /// The coordinates times 127; {0, 0, 0}: there is no normal.
 using PackedNormal = std::array<std::int8_t, 3>;
