@@ -28,10 +28,11 @@ constexpr std::size_t kMinReducingVertices = 1000;
 /// instead of 8 %. Clean, bunny, koala, fandisk, block, kitten and feline then have .98, 1.01 and 1.00 of the
 /// error at 500, 1,000 and 2,000 vertices. From twice the vertices on, 10,000 would have 1.01.
 constexpr int kDenseFrom = 2;
-/// Before that, solutions with edge flips between them go on while each lowers the error to less than this
-/// share. The learned mesh lags behind the points and has its vertices beside sharp edges, and the collapses
-/// keep what it shows. Thin walls take five or six, 10,000 vertices of clean models three; with three for
-/// all, walls have 1.09 times the error.
+/// Before that, solutions with edge flips between them, three at least, go on while each lowers the error to
+/// less than this share. The learned mesh lags behind the points and has its vertices beside sharp edges, and
+/// the collapses keep what it shows. Thin walls take five or six; with three for all, walls have 1.09 times
+/// the error.
+constexpr int kLeastSolutions = 3;
 constexpr double kLags = 0.85;
 
 }  // namespace
@@ -60,7 +61,7 @@ bool Fitter::reduce_by_volume(int vertices, double error, Surface& surface, Poin
     PartOf fitting(progress, 0, 0.9);
     PartOf rest(progress, 0.9, 1);
     double before = std::numeric_limits<double>::infinity();
-    for (int found = 1; error < kLags * before; ++found) {
+    for (int found = 1; found < kLeastSolutions || error < kLags * before; ++found) {
         if (!fitting(1 - 1.0 / found, "Fitting to the points, before the reduction")) return false;
         flip_edges(surface, points);
         surface = Surface(network_);
