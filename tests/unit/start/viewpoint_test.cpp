@@ -10,8 +10,6 @@
 #include "tests/unit/support/referee.h"
 #include "vcg_core/mesh/triangle.h"
 #include "vcg_core/start/facing.h"
-#include "vcg_core/start/normal_orientation.h"
-#include "vcg_core/start/sensor_place.h"
 #include "vcg_core/start/viewpoint.h"
 
 namespace neuralmesh {
