@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The mesh of the solid that has the topology voted for.
+// From a solid on a lattice to a triangle mesh of the same topology.
 #pragma once
 
+#include "vcg_core/mesh/indexed_mesh.h"
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/start/lattice.h"
 #include "vcg_core/start/lattice_survey.h"
-#include "vcg_core/start/region.h"
 
 namespace neuralmesh {
+
+/// The surface between the nodes with value < 0 (the solid) and the others, on the Freudenthal subdivision:
+/// closed, oriented, simplicial, of exactly the solid's topology, all valences from 4 to 12. Vertices lie on
+/// lattice edges, where linear interpolation of the values is 0, but at least a tenth of the edge away from
+/// its ends.
+/// \pre no value is 0; nodes on the walls of the lattice are positive
+/// O(nodes + faces log faces). Source: Doi and Koide 1991. (Marching cubes' tables may join or cut what the
+/// lattice counts otherwise.)
+IndexedMesh<float> marching_tetrahedra(const Lattice& lattice, const PerNode<float>& values);
 
 /// A closed mesh, and the solid on the region's lattice that it bounds.
 struct ClosedMesh {

@@ -31,6 +31,8 @@ using NodeSet = PerNode<std::uint8_t>;
 /// Nodes at equal distances along three axes; node (x, y, z) has the id (z * ny + y) * nx + x. At most 2^31 -
 /// 1 nodes.
 struct Lattice {
+    static constexpr float kRayStride = 0.5F;  ///< between two looks at the nodes along a ray, in steps
+
     int nx = 0, ny = 0, nz = 0;
     float step = 1;                ///< distance between nodes
     vcg::Point3f corner{0, 0, 0};  ///< position of node (0, 0, 0)

@@ -25,7 +25,6 @@
 #include "vcg_core/start/closed_mesh.h"
 #include "vcg_core/start/lattice_survey.h"
 #include "vcg_core/start/local_width.h"
-#include "vcg_core/start/outliers.h"
 #include "vcg_core/start/region.h"
 
 namespace neuralmesh {
@@ -219,7 +218,7 @@ Shell::Shell(const std::vector<Point3f>& points, Surveys& surveys, const ShellOp
     ThreadTeam team(thread_count(options.threads));
     const std::vector<LayerPlace> places = layer_places(surveys.points(), team);
     PartOf counting(progress, 0.2, 0.7);
-    survey_ = survey_lattices(points, places, box, options.threads, counting);
+    survey_ = survey_lattices(points, places, box, team, counting);
     enclosure_ = enclosure_of(survey_, places, surveys);
 }
 

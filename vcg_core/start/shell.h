@@ -8,9 +8,9 @@
 // 2. The solid at radius r is the set of nodes that the centre of a ball of radius r cannot reach from
 //    outside without the ball touching a point. Spaces much wider than their opening are sealed: they are
 //    the inside of a surface with gaps between its points (clearance.h, region.h). Those that a wall
-//    separates from the outside are hollows, and not of the solid (hollows.h).
+//    separates from the outside are hollows, and not of the solid (region.h).
 // 3. From several radii on the solid is grown to twice the radius without bridging gaps, which tells
-//    handles from gaps between points and from parts that nearly touch (bridgeless_growth.h). The topology
+//    handles from gaps between points and from parts that nearly touch (lattice_survey.h). The topology
 //    that persists over the largest range of radii is chosen (lattice_survey.h).
 // 4. If the vote is unclear, finer and coarser lattices are asked.
 // 5. Marching tetrahedra turn the chosen solid into a mesh (closed_mesh.h). Half-edge collapses, which keep

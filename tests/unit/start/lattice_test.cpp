@@ -15,10 +15,9 @@
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/small_lattice.h"
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/start/bridgeless_growth.h"
+#include "vcg_core/start/closed_mesh.h"
 #include "vcg_core/start/components.h"
 #include "vcg_core/start/lattice.h"
-#include "vcg_core/start/marching_tetrahedra.h"
 
 namespace neuralmesh {
 namespace {

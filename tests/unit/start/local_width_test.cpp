@@ -8,7 +8,7 @@
 
 #include <functional>
 
-#include "vcg_core/start/marching_tetrahedra.h"
+#include "vcg_core/start/closed_mesh.h"
 
 namespace neuralmesh {
 namespace {

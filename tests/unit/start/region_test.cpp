@@ -14,7 +14,6 @@
 #include "vcg_core/start/clearance.h"
 #include "vcg_core/start/components.h"
 #include "vcg_core/start/lattice_survey.h"
-#include "vcg_core/start/outliers.h"
 #include "vcg_core/start/region.h"
 
 namespace neuralmesh {
