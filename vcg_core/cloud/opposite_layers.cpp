@@ -97,9 +97,8 @@ void find_opposite_layers(const NearestPoints& cloud, float radius, LayerPlace& 
 
 }  // namespace
 
-std::vector<LayerPlace> layer_places(const CloudSurvey& survey, ThreadTeam& team) {
+std::vector<LayerPlace> layer_places(const NearestPoints& cloud, ThreadTeam& team) {
     constexpr int kPlacesAtATime = 16;
-    const NearestPoints& cloud = survey.cloud;
     const std::size_t step = std::max<std::size_t>(1, cloud.size() / kLayerPlaces);
     const std::size_t count = (cloud.size() + step - 1 - step / 2) / step;
     return parallel_collect<LayerPlace>(

@@ -106,7 +106,8 @@ ConsolidatedPoints consolidated_points(const NearestPoints& cloud, const Surface
     for (const Place place : shuffled(cloud.size(), random)) {
         if (gone[place] != 0) continue;
         kept.push_back(place);
-        cloud.any_within(place, std::max(least, thinning_radius(survey.places()[place_of[place]])),
+        cloud.any_within(cloud.point(place),
+                         std::max(least, thinning_radius(survey.places()[place_of[place]])),
                          [&](Place other) {
                              gone[other] = 1;
                              return false;

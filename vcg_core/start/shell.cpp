@@ -216,7 +216,7 @@ Shell::Shell(const std::vector<Point3f>& points, Surveys& surveys, const ShellOp
     for (const Point3f& p : points) box.Add(p);
     progress(0.2, "Start mesh: counting components and handles");
     ThreadTeam team(thread_count(options.threads));
-    const std::vector<LayerPlace> places = layer_places(surveys.points(), team);
+    const std::vector<LayerPlace> places = layer_places(surveys.points().cloud, team);
     PartOf counting(progress, 0.2, 0.7);
     survey_ = survey_lattices(points, places, box, team, counting);
     enclosure_ = enclosure_of(survey_, places, surveys);

@@ -44,7 +44,7 @@ std::vector<Point3f> sheet(int count, float bend, const Deviation& deviation) {
 
 SurfaceSurvey survey_of(const std::vector<Point3f>& points, int threads = 1) {
     ThreadTeam team(threads);
-    return SurfaceSurvey(CloudSurvey(points, threads), team);
+    return SurfaceSurvey(NearestPoints(points), team);
 }
 
 TEST(LocalQuadric, FollowsAParaboloid) {
@@ -199,7 +199,7 @@ double share_of(const shapes::Cloud& cloud) {
     const std::vector<Point3f> points = shapes::in_float(cloud);  // which the surveys refer to
     ThreadTeam team(1);
     Surveys surveys(points, 1);
-    return share_on_thin_walls(layer_places(surveys.points(), team), surveys);
+    return share_on_thin_walls(layer_places(surveys.points().cloud, team), surveys);
 }
 
 /// A sphere of \p kPointsOfWall points and another one within it, \p spacings spacings of the points away.

@@ -14,7 +14,7 @@
 
 #include "tests/unit/support/sentences.h"
 #include "tests/unit/support/targets.h"
-#include "vcg_core/cloud/cloud_survey.h"
+#include "vcg_core/cloud/surface_survey.h"
 
 namespace neuralmesh {
 namespace {
