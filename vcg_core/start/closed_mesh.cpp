@@ -10,8 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "vcg_core/start/components.h"
-
 namespace neuralmesh {
 namespace {
 
@@ -86,9 +84,9 @@ struct StridedValues {
     PerNode<float> values;
 };
 
-/// Signed distances in lattice steps from the surface of \p solid, negative inside.
-StridedValues signed_distances(const Region& region, const NodeSet& solid, int level, int stride) {
-    const float radius = std::sqrt(static_cast<float>(level) + 0.5F);  // between this level and the next
+/// Signed distances in lattice steps from the surface of closed.solid, negative inside.
+StridedValues signed_distances(const Region& region, const ClosedMesh& closed, int stride) {
+    const float radius = closed.radius();
     const Lattice& lattice = region.lattice;
     const auto nodes = [&](int n) { return (n + 2 + stride - 1) / stride + 1; };
     StridedValues strided{lattice, {}};
@@ -105,7 +103,7 @@ StridedValues signed_distances(const Region& region, const NodeSet& solid, int l
         const NodeId i = lattice.index(fx, fy, fz);
         const float d = std::sqrt(static_cast<float>(region.distances[i])) - radius;
         strided.values[coarse.index(x, y, z)] =
-            solid[i] != 0 ? std::min(d, -kMinDistance) : std::max(d, kMinDistance);
+            closed.solid[i] != 0 ? std::min(d, -kMinDistance) : std::max(d, kMinDistance);
     });
     return strided;
 }
@@ -122,7 +120,7 @@ bool make_mesh(NodeSet solid, int level, const Region& region, const TopologyVot
                ClosedMesh& closed) {
     closed = {Network(), std::move(solid), level};
     for (const int stride : {3, 2, 1}) {
-        const StridedValues strided = signed_distances(region, closed.solid, level, stride);
+        const StridedValues strided = signed_distances(region, closed, stride);
         const bool right = has_euler_characteristic(vote, strided);
         if (!right && !(whatever && stride == 1)) continue;
         const IndexedMesh<float> mesh = marching_tetrahedra(strided.lattice, strided.values);

@@ -4,6 +4,8 @@
 // From a solid on a lattice to a triangle mesh of the same topology.
 #pragma once
 
+#include <cmath>
+
 #include "vcg_core/mesh/indexed_mesh.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/start/lattice_survey.h"
@@ -24,6 +26,9 @@ struct ClosedMesh {
     Network network;
     NodeSet solid;
     int level = 0;  ///< of the solid
+
+    /// In lattice steps: that of the balls whose solid ends between this level and the next.
+    float radius() const { return std::sqrt(static_cast<float>(level) + 0.5F); }
 };
 
 /// A mesh of the grown solid of \p vote, from the lattice of \p region. It is made on every third or second

@@ -15,8 +15,6 @@
 
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/base/parallel_for.h"
-#include "vcg_core/start/components.h"
-
 namespace neuralmesh {
 namespace {
 

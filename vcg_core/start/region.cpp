@@ -12,8 +12,6 @@
 #include <utility>
 
 #include "vcg_core/base/ablation.h"
-#include "vcg_core/start/components.h"
-
 namespace neuralmesh {
 namespace {
 

@@ -81,8 +81,6 @@ struct StartMesh : IndexedMesh<float>, Enclosure {
     int fewest_vertices = 0;  ///< that its components and handles need
     WallSides walls;
     double confidence = 0;         ///< share of the votes for components and genus, in [0, 1]
-    double radius = 0;             ///< of the ball; the mesh lies about this far outside the points
-    double resolution = 0;         ///< distance of the lattice nodes
     long long ignored_points = 0;  ///< outliers: the mesh leaves them out
     /// 1 for each outlier of the cloud. Empty if all points are to be learned: there are no outliers, or
     /// they exceed kMaxOutlierShare.

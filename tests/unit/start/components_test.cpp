@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Components by runs against the union of all adjacent nodes.
-#include "vcg_core/start/components.h"
+#include "vcg_core/start/lattice.h"
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,6 @@
 #include "tests/unit/support/small_lattice.h"
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/start/closed_mesh.h"
-#include "vcg_core/start/components.h"
 #include "vcg_core/start/lattice.h"
 
 namespace neuralmesh {
