@@ -19,15 +19,12 @@ using Place = NearestPoints::Place;
 constexpr std::size_t kPointsPerCell = 4;   ///< finer levels part the points of a surface
 constexpr float kConnected = 0.5F;          ///< distance of the points of two cells over the side of cells
 constexpr std::size_t kSmallest = 6;        ///< points of a group; fewer are suspects by their spacing
-constexpr double kLargestShare = 0.01;      ///< of all points
 constexpr double kMostInClumps = 0.05;      ///< of all points; above, the cloud as a whole consists of clumps
-constexpr int kNeighbours = 10;
 /// Noise as wide as the spacing fills the space between so few neighbours, also on a sheet. Larger groups
 /// have to fill the space between more of them, too.
 constexpr int kManyNeighbours = 40;
 constexpr std::size_t kLargeGroup = 320;
-constexpr double kFillsSpace = 0.08;  ///< mean surface variation; surfaces have .00 to .05, balls .11 to .17
-constexpr double kThickGroup = 0.1;   ///< surface variation of a group as a whole
+constexpr double kFillsSpace = 0.08;  ///< surface variation: surfaces have .00 to .05, balls .11 to .17
 constexpr double kThinPlane = 0.05;   ///< of the variances across a plane and along it
 constexpr float kGap = 2.2F;  ///< distance to the rest in the group's own spacings, to the tenth neighbour
 
@@ -126,16 +123,16 @@ double mean_variation(const NearestPoints& group, int neighbours) {
 /// Is \p group a clump? Its spacing is the median distance to the tenth neighbour within it.
 bool is_clump(const NearestPoints& cloud, const std::vector<Place>& group,
               const std::vector<std::uint8_t>& out) {
-    if (Extent(cloud, group).variation() < kThickGroup) return false;
+    if (Extent(cloud, group).variation() < kFillsSpace) return false;
     std::vector<vcg::Point3f> points;
     for (const Place p : group) points.push_back(cloud.point(p));
     const NearestPoints inner(points);
-    if (mean_variation(inner, kNeighbours) < kFillsSpace) return false;
+    if (mean_variation(inner, CloudSurvey::kNeighbour) < kFillsSpace) return false;
     if (group.size() >= kLargeGroup && mean_variation(inner, kManyNeighbours) < kFillsSpace) return false;
     std::vector<NearestPoints::Neighbour> near;
     std::vector<float> spacings;
     for (Place p = 0; p < inner.size(); ++p) {
-        inner.nearest(p, kNeighbours, near);
+        inner.nearest(p, CloudSurvey::kNeighbour, near);
         spacings.push_back(std::sqrt(near.back().squared_distance));
     }
     const float gap = kGap * median(std::move(spacings));
@@ -172,7 +169,7 @@ double Extent::height(const vcg::Point3f& p) const {
 void mark_isolated_clumps(const NearestPoints& cloud, std::vector<std::uint8_t>& out) {
     if (skips("clumps")) return;
     const auto points = static_cast<double>(cloud.size());
-    const auto largest = static_cast<std::size_t>(kLargestShare * points);
+    const auto largest = static_cast<std::size_t>(kComponentShare * points);
     std::vector<std::uint8_t> marked = out;
     std::size_t in_clumps = 0;
     for (int level = 1; level <= cloud.finest_level(); ++level) {

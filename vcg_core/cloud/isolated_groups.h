@@ -8,9 +8,12 @@
 #include <vector>
 
 #include "vcg_core/base/small_matrices.h"
-#include "vcg_core/cloud/nearest_points.h"
+#include "vcg_core/cloud/surface_survey.h"
 
 namespace neuralmesh {
+
+/// An isolated group with a larger share of all points is a component of the surface.
+constexpr double kComponentShare = 0.01;
 
 /// How some points, given by their places, lie about their mean.
 class Extent {

@@ -144,12 +144,11 @@ IndexedMesh<float> marching_tetrahedra(const Lattice& lattice, const PerNode<flo
         for (const std::array<int, 4>& corners : kTetrahedra)
             add_tetrahedron(lattice, node, corners, solid, keys);
     });
-    constexpr int kNone = -1, kNext = -2;
-    std::vector<int> vertex(8 * static_cast<std::size_t>(lattice.size()), kNone);
-    for (const EdgeKey key : keys) vertex[key] = kNext;
+    std::vector<int> vertex(8 * static_cast<std::size_t>(lattice.size()), -1);  // by key; none if negative
+    for (const EdgeKey key : keys) vertex[key] = 0;
     IndexedMesh<float> result;
     for (EdgeKey key = 0; key < vertex.size(); ++key) {
-        if (vertex[key] == kNone) continue;
+        if (vertex[key] < 0) continue;
         vertex[key] = static_cast<int>(result.positions.size());
         result.positions.push_back(point_on(lattice, values, key));
     }

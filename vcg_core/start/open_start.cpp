@@ -47,8 +47,6 @@ constexpr int kEdgesOfHandle = 8;
 constexpr double kMostAway = 0.02;
 /// The neighbours that normals are turned by.
 constexpr int kNeighbours = 12;
-/// Points belong to a vertex that is not farther than so many of its radii.
-constexpr float kBelongs = 3;
 /// Scans miss up to .03 of their points, slabs as thick as their points are apart .09 and .16; a tree misses
 /// .14, and has .35 of clutter, which is not sharply told from its surface.
 constexpr double kMostMissed = 0.05;
@@ -91,7 +89,7 @@ std::vector<std::pair<int, int>> neighbours_of(const ConsolidatedPoints& points)
         const std::size_t own = index.index(place);
         index.nearest(place, kNeighbours, near);
         for (const NearestPoints::Neighbour& n : near)
-            if (n.squared_distance < kBelongs * kBelongs * points.radii[own] * points.radii[own])
+            if (n.squared_distance < kStarReach * kStarReach * points.radii[own] * points.radii[own])
                 pairs.emplace_back(static_cast<int>(own), static_cast<int>(index.index(n.place)));
     }
     return pairs;
@@ -126,7 +124,7 @@ std::vector<VertexId> vertices_of_points(Surveys& surveys, const Sheet& sheet, T
         const std::size_t nearest = index.index(index.nearest_to(p));
         const std::size_t source = at(sheet.source[nearest]);
         const Point3f way = p - sheet.mesh.positions[nearest];
-        if (way.Norm() > kBelongs * sheet.points.radii[source]) return;
+        if (way.Norm() > kStarReach * sheet.points.radii[source]) return;
         if (survey.at(p).clutter &&
             std::abs(way * sheet.points.normals[source]) > sheet.points.tolerances[source])
             return;

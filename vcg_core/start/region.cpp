@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "vcg_core/base/ablation.h"
+#include "vcg_core/cloud/isolated_groups.h"
 namespace neuralmesh {
 namespace {
 
@@ -160,8 +161,7 @@ constexpr int kSingleLayerSquaredDepth = 4 * 4;
 constexpr double kCoarseSteps = 40;
 constexpr int kCoarseMaxRadius = 18;
 
-/// A component holds at least this share of the points, and so many of them.
-constexpr double kComponentShare = 0.01;
+/// A component holds at least so many points.
 constexpr long long kSpeckPoints = 20;
 
 // A node is fringe if its density is below this share of the highest density close by ...

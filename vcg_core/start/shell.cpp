@@ -51,7 +51,7 @@ constexpr double kWalled = 0.35;
 constexpr double kWallsFound = 0.67;
 // A warning is due from here on, in steps of the first lattice and of the chosen one. Gaps between points are
 // narrower.
-constexpr double kCoarseRadius = 5, kWideOpening = 4;
+constexpr double kWide = 4;
 
 double area_around(const Network& network, VertexId v) {
     const Ring& ring = network.ring(v);
@@ -177,7 +177,7 @@ void warn_of_outliers(std::size_t all, const Region& region, StartMesh& result) 
 void warn_of_uncertain_topology(const LatticeSurvey& survey, int level, StartMesh& result) {
     const double step = static_cast<double>(survey.region.lattice.step),
                  first = static_cast<double>(survey.step);
-    const bool coarser = step > first || step * std::sqrt(static_cast<double>(level)) > kCoarseRadius * first;
+    const bool coarser = step > first || step * std::sqrt(static_cast<double>(level)) > kWide * first;
     if (coarser)
         result.warnings.push_back(
             "The cloud is too sparse or too noisy for a start mesh at full resolution. A coarser one was made, which may miss thin gaps and small handles.");
@@ -192,7 +192,7 @@ void warn_of_open_surface(const Lattice& lattice, StartMesh& result) {
     if (!result.encloses_space)
         result.warnings.push_back(
             "The points enclose no space wider than the gaps between them, as in a single scan, a sheet or a thin wall. The surface was closed around both of their sides. Choose surface 2 (open) for one layer that ends where the points end.");
-    if (result.widest_opening > kWideOpening * static_cast<double>(lattice.step))
+    if (result.widest_opening > kWide * static_cast<double>(lattice.step))
         result.warnings.push_back(
             "The cloud is open: holes up to " + percent(2 * result.widest_opening) +
             " of the bounding-box diagonal wide were closed. Choose surface 2 (open) to keep those that are much wider than the gaps between the points.");

@@ -187,10 +187,6 @@ constexpr double kMostTurnedAway = 0.15;
 /// wider.
 constexpr float kHalfView = 0.5F;
 
-/// A surface that is seen at a lower angle than this cosine, 6 degrees, may be turned either way: its normals
-/// are not more exact. So are walls, seen from above.
-constexpr double kGrazing = 0.1;
-
 /// What is turned to a viewpoint, of an area.
 struct Turned {
     double front = 0;  ///< the part that is turned to it less the part that is turned away
@@ -201,7 +197,7 @@ struct Turned {
     /// How sure its side is, in points that are seen from straight ahead, up to 1.
     float sureness() const {
         const double to_its_side = front < 0 ? -cosines : cosines;
-        return static_cast<float>(std::clamp(to_its_side - kGrazing * points, 0.0, 1.0));
+        return static_cast<float>(std::clamp(to_its_side - static_cast<double>(kGrazing) * points, 0.0, 1.0));
     }
     bool is_single_valued() const { return std::abs(front) > (1 - 2 * kMostTurnedAway) * all; }
 };

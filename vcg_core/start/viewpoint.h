@@ -15,6 +15,10 @@
 
 namespace neuralmesh {
 
+/// A surface that is seen at a lower angle than this cosine, 6 degrees, may be turned either way: its normals
+/// are not more exact. So are walls, seen from above.
+constexpr float kGrazing = 0.1F;
+
 struct Orientation {
     /// For each point the first one of its part: of those that pairs which surely continue each other
     /// connect.
