@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "vcg_core/base/z_order.h"
+#include "vcg_core/cloud/box_of_most.h"
 
 namespace neuralmesh {
 namespace {

@@ -16,9 +16,11 @@ namespace {
 
 using vcg::Point3f;
 
+/// The standard error of a share of so many places is .016 at most.
 constexpr std::size_t kLayerPlaces = 1000;
+/// The circle around so many and the point itself has a radius of about two spacings.
 constexpr int kLayerNeighbours = 12;
-/// In radii of the circle around the neighbours, which is about two spacings wide: how far the other layer is
+/// In these radii: how far the other layer is
 /// looked for, and on thin walls, how wide the column is in which it is, and how much of the column is empty
 /// between the layers.
 constexpr float kFarthest = 10, kThin = 5, kColumn = 0.75F;

@@ -20,6 +20,8 @@ namespace {
 using Place = NearestPoints::Place;
 using Neighbours = std::vector<NearestPoints::Neighbour>;
 
+/// The neighbours that a point is told from, on two scales; outlier_removal.h says how its thresholds were
+/// found.
 constexpr int kWideCount = 48, kNarrowCount = 16;
 constexpr float kSparse = 2;   ///< suspects are sparser than usual by this factor
 constexpr Place kWindow = 64;  ///< places to each side that are looked at before a search
@@ -122,11 +124,11 @@ void Suspects::find() {
         });
 }
 
-/// Points that are a little sparser than usual and off the plane of their neighbours. In a cloud with hardly
-/// any outliers they are part of the surface more often than not.
+/// In a cloud with hardly any outliers they are part of the surface more often than not.
 std::vector<Place> Suspects::lifted() const {
-    constexpr float kSparser = 1.35F;
+    constexpr float kSparser = 1.35F;  // than usual, by this factor
     constexpr double kSpacing = 1.78;  // that of even points on a plane in distances to the tenth neighbour
+    // From the plane of its neighbours so many times as far as these are, or as .3 spacings.
     constexpr double kLeast = 0.3, kLifted = 4;
     return parallel_collect<Place>(
         static_cast<int>(cloud_.size()), kChunk, team_, [&](int i, std::vector<Place>& found) {
@@ -175,9 +177,9 @@ void Suspects::measure() {
     });
 }
 
-/// The evidence against a suspect without that of the suspects around it. The weights separate, by logistic
-/// regression, outliers from points of room and building scans.
+/// The evidence against a suspect without that of the suspects around it.
 double Suspects::evidence_alone(std::size_t suspect) const {
+    // These weights separate, by logistic regression, outliers from points of room and building scans.
     constexpr double kFill = 37, kDensest = 1.6, kUsual = 3.5, kInPlane = -4, kOffset = -5.3;
     double narrow = narrow_[suspect], wide = wide_[suspect];
     int count = 1;
@@ -202,8 +204,9 @@ double Suspects::evidence_alone(std::size_t suspect) const {
            kUsual * log_ratio(usual) + kInPlane * in_plane_[suspect] + kOffset;
 }
 
-/// The evidence against each suspect, with that of the suspects around it. Weights as in evidence_alone().
+/// The evidence against each suspect, with that of the suspects around it.
 void Suspects::combine() {
+    // Weights by logistic regression, as those of the evidence alone.
     constexpr double kOwn = 0.7, kAround = 0.5, kCompany = 2, kCompanyOffset = -1;
     std::vector<double> alone(suspects_.size());
     for (std::size_t i = 0; i < suspects_.size(); ++i) alone[i] = evidence_alone(i);
@@ -225,6 +228,8 @@ void Suspects::combine() {
 /// The lowest evidence where next to none of the points lies: the gap between orderly points and outliers,
 /// most of which have much evidence against them.
 double Suspects::threshold() const {
+    // From the lowest evidence to the strict threshold, in steps. At least half of the points beyond the gap
+    // have more evidence than where orderly and wild ones mix.
     constexpr double kLowest = -2, kStrict = 3.5, kMixed = 2.5, kStep = 0.5;
     constexpr double kEmptyShare = 0.0006, kEmptyOfSuspects = 0.05;  // of the points, of the suspects
     const double empty = std::min(kEmptyShare * static_cast<double>(cloud_.size()),

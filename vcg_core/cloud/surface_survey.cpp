@@ -19,6 +19,8 @@ namespace {
 using vcg::Point3f;
 using Place = NearestPoints::Place;
 
+/// The quadrics of neighbouring places, which have 32 points on the least radius, hardly overlap. More places
+/// than the most would take longer than .2 s.
 constexpr std::size_t kPointsPerPlace = 60, kFewestPlaces = 500, kMostPlaces = 4000;
 /// The circle through the seventh neighbour holds seven points.
 constexpr int kNeighbour = 7;
@@ -66,11 +68,13 @@ void find_radius(const NearestPoints& cloud, const DepthSteps& steps, std::vecto
     }
 }
 
-/// For every place those around it, and itself, whose density is no other. A place is sparser than its
-/// surroundings by right if two others are so, too; one alone lies between two depths.
+/// For every place those around it, and itself, whose density is no other.
 std::vector<std::vector<Place>> places_around(const NearestPoints& index,
                                               const std::vector<SurveyedPlace>& places, ThreadTeam& team) {
-    constexpr int kAtATime = 64, kCompany = 2;
+    constexpr int kAtATime = 64;
+    // A place is sparser than its surroundings by right if two others are so, too; one alone lies between two
+    // depths.
+    constexpr int kCompany = 2;
     constexpr float kOtherDensity = 3;  // in spacings
     std::vector<std::vector<Place>> around(places.size());
     parallel_for(static_cast<int>(places.size()), kAtATime, team, [&](int i) {
@@ -91,6 +95,7 @@ std::vector<std::vector<Place>> places_around(const NearestPoints& index,
 /// above the ground say nothing of it. Where only clutter is around, by that of all.
 void smooth(const std::vector<std::vector<Place>>& around, std::vector<SurveyedPlace>& places,
             float SurveyedPlace::*number) {
+    // The median of fewer is one of them.
     constexpr std::size_t kFewest = 3;
     std::vector<float> smoothed, values, orderly;
     for (const std::vector<Place>& of_place : around) {
@@ -105,9 +110,9 @@ void smooth(const std::vector<std::vector<Place>>& around, std::vector<SurveyedP
     for (std::size_t i = 0; i < places.size(); ++i) places[i].*number = smoothed[i];
 }
 
-/// The radius by its spacing alone that a quarter of the surface, its sparsest part, exceeds.
+/// See SurfaceSurvey::sparse_radius().
 float radius_of_sparse_part(const std::vector<SurveyedPlace>& places) {
-    constexpr double kBelow = 0.75;
+    constexpr double kBelow = 0.75;  // all but a quarter of the surface
     std::vector<float> spacings;
     double all = 0, below = 0;
     for (const SurveyedPlace& p : places) {
@@ -128,6 +133,7 @@ std::vector<Point3f> positions_of(const NearestPoints& cloud) {
     return positions;
 }
 
+/// They have 32 runs, and three of these tell the tenth with the least areas.
 constexpr std::size_t kFewestPoints = 1024;
 /// A cloud is uneven if a fifth of its surface has more than kUneven times the area per point that a tenth of
 /// its points have. Even random clouds of the models of tests/experiments/accuracy, 2,000 to 100,000 points

@@ -16,11 +16,11 @@
 
 namespace neuralmesh {
 
-/// A cloud indexed by place, with its spacing at samples. The squared distance to the tenth neighbour varies
-/// by a third by chance, and is in the middle of each run of 32 consecutive places about what it is in all of
-/// the run.
+/// A cloud indexed by place, with its spacing at samples.
 struct CloudSurvey {
+    /// The squared distance to the tenth neighbour varies by a third by chance.
     static constexpr int kNeighbour = 10;
+    /// It is in the middle of each run of so many consecutive places about what it is in all of the run.
     static constexpr std::size_t kRun = 32;
 
     /// Of at least two points. Does not depend on \p threads (0: all cores).

@@ -20,6 +20,7 @@
 #include "vcg_core/base/packed_normal.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/base/span.h"
+#include "vcg_core/cloud/box_of_most.h"
 #include "vcg_core/cloud/surface_survey.h"
 
 namespace neuralmesh {
