@@ -77,9 +77,11 @@ struct Sample {
 };
 
 /// The place with the points on a unit of area around it; none at the edge of what is seen, where a part of
-/// the area is empty. The sphere is so wide that noise hardly leaves it.
+/// the area is empty, and where points repeat each other and have no density. The sphere is so wide that
+/// noise hardly leaves it.
 std::optional<Sample> sample_of(const NearestPoints& cloud, const SurveyedPlace& place) {
     const float reach = kSupport * place.radius;
+    if (!(reach > 0)) return std::nullopt;
     int count = 0;
     Point3f sum(0, 0, 0);
     cloud.any_within(place.position, reach, [&](NearestPoints::Place other) {
@@ -122,7 +124,7 @@ public:
     std::optional<Point3f> best() {
         Guess best{even_, {}};
         for (const Guess& guess : guesses()) best = std::min(best, descent(guess), cheaper);
-        if (best.cost > kMostLeft * even_) return std::nullopt;
+        if (!(best.cost < kMostLeft * even_)) return std::nullopt;
         return best.place;
     }
 

@@ -313,6 +313,9 @@ TEST(SensorPlace, IsNoneForEvenPoints) {
     EXPECT_FALSE(found(sensors::aerial_scan(20000, 10)));
     EXPECT_FALSE(found(shapes::sphere_cloud(20000)));
     EXPECT_FALSE(found(shapes::plane_cloud(30)));
+    Cloud repeated = shapes::plane_cloud(8000);
+    repeated.resize(8200, Point3d(0.2, 0.3, 0.2));
+    EXPECT_FALSE(found(repeated));
 }
 
 }  // namespace
