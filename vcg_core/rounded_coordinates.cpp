@@ -14,7 +14,7 @@
 #include "vcg_core/base/even_mesh.h"
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/text.h"
-#include "vcg_core/cloud/cloud_survey.h"
+#include "vcg_core/cloud/surface_survey.h"
 
 namespace neuralmesh {
 

@@ -60,7 +60,7 @@ struct Settings : LearningConstants {
     bool draw_from_faces = true;
     bool selected_only = false;
     bool remove_outliers = true;  ///< only of points; see cloud/outlier_removal.h
-    bool even_sampling = true;    ///< only of points; see cloud/point_areas.h
+    bool even_sampling = true;    ///< only of points; see CloudSurvey
     bool use_normals = true;      ///< only of points; see layer_normals.h
     int vertex_color = kCloudColors;
     bool select_features = false;

@@ -39,6 +39,7 @@ std::vector<float> shared_values(const NearestPoints& cloud, int axis, Place str
 
 /// Whether a sample of the points has values in common.
 bool has_steps(const NearestPoints& cloud, int axis) {
+    // Some eight points for each of 510 values.
     constexpr Place kSample = 4000;
     return shared_values(cloud, axis, std::max<Place>(1, cloud.size() / kSample)).size() >= kFewestValues;
 }

@@ -10,7 +10,6 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/base/median.h"
-#include "vcg_core/base/small_matrices.h"
 
 namespace neuralmesh {
 namespace {
@@ -20,36 +19,18 @@ using Place = NearestPoints::Place;
 constexpr std::size_t kPointsPerCell = 4;   ///< finer levels part the points of a surface
 constexpr float kConnected = 0.5F;          ///< distance of the points of two cells over the side of cells
 constexpr std::size_t kSmallest = 6;        ///< points of a group; fewer are suspects by their spacing
-constexpr double kLargestShare = 0.01;      ///< of all points
 constexpr double kMostInClumps = 0.05;      ///< of all points; above, the cloud as a whole consists of clumps
-constexpr int kNeighbours = 10;
 /// Noise as wide as the spacing fills the space between so few neighbours, also on a sheet. Larger groups
 /// have to fill the space between more of them, too.
 constexpr int kManyNeighbours = 40;
 constexpr std::size_t kLargeGroup = 320;
-constexpr double kFillsSpace = 0.08;  ///< mean surface variation; surfaces have .00 to .05, balls .11 to .17
-constexpr double kThickGroup = 0.1;   ///< surface variation of a group as a whole
+constexpr double kFillsSpace = 0.08;  ///< surface variation: surfaces have .00 to .05, balls .11 to .17
+constexpr double kThinPlane = 0.05;   ///< of the variances across a plane and along it
 constexpr float kGap = 2.2F;  ///< distance to the rest in the group's own spacings, to the tenth neighbour
 
-Eigen::Vector3d position(const NearestPoints& cloud, Place p) {
-    const vcg::Point3f& q = cloud.point(p);
-    return {static_cast<double>(q[0]), static_cast<double>(q[1]), static_cast<double>(q[2])};
+Eigen::Vector3d in_double(const vcg::Point3f& p) {
+    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
-
-/// Mean and covariance (times the number) of some points.
-struct Extent {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-
-    Extent(const NearestPoints& cloud, const std::vector<Place>& points) {
-        for (const Place p : points) mean += position(cloud, p);
-        mean /= static_cast<double>(points.size());
-        for (const Place p : points) {
-            const Eigen::Vector3d d = position(cloud, p) - mean;
-            covariance += d * d.transpose();
-        }
-    }
-};
 
 /// Consecutive places in one octree cell.
 struct Cell {
@@ -134,7 +115,7 @@ double mean_variation(const NearestPoints& group, int neighbours) {
         group.nearest(p, neighbours, near);
         places.assign(1, p);
         for (const NearestPoints::Neighbour& n : near) places.push_back(n.place);
-        sum += surface_variation(group, places);
+        sum += Extent(group, places).variation();
     }
     return sum / static_cast<double>(group.size());
 }
@@ -142,60 +123,53 @@ double mean_variation(const NearestPoints& group, int neighbours) {
 /// Is \p group a clump? Its spacing is the median distance to the tenth neighbour within it.
 bool is_clump(const NearestPoints& cloud, const std::vector<Place>& group,
               const std::vector<std::uint8_t>& out) {
-    if (surface_variation(cloud, group) < kThickGroup) return false;
+    if (Extent(cloud, group).variation() < kFillsSpace) return false;
     std::vector<vcg::Point3f> points;
     for (const Place p : group) points.push_back(cloud.point(p));
     const NearestPoints inner(points);
-    if (mean_variation(inner, kNeighbours) < kFillsSpace) return false;
+    if (mean_variation(inner, CloudSurvey::kNeighbour) < kFillsSpace) return false;
     if (group.size() >= kLargeGroup && mean_variation(inner, kManyNeighbours) < kFillsSpace) return false;
     std::vector<NearestPoints::Neighbour> near;
     std::vector<float> spacings;
     for (Place p = 0; p < inner.size(); ++p) {
-        inner.nearest(p, kNeighbours, near);
+        inner.nearest(p, CloudSurvey::kNeighbour, near);
         spacings.push_back(std::sqrt(near.back().squared_distance));
     }
     const float gap = kGap * median(std::move(spacings));
     const auto other = [&](Place p) {
         return out[p] == 0 && !std::binary_search(group.begin(), group.end(), p);
     };
-    return std::none_of(group.begin(), group.end(), [&](Place p) { return cloud.any_within(p, gap, other); });
+    return std::none_of(group.begin(), group.end(),
+                        [&](Place p) { return cloud.any_within(cloud.point(p), gap, other); });
 }
 
 }  // namespace
 
-double surface_variation(const NearestPoints& cloud, const std::vector<Place>& points) {
-    const Extent extent(cloud, points);
-    const double all = extent.covariance.trace();
-    if (!(all > 0)) return 0;
-    const PrincipalAxes spread = principal_axes(extent.covariance);
-    return std::max(spread.values[0], 0.0) / all;
+Extent::Extent(const NearestPoints& cloud, const std::vector<Place>& points)
+    : count_(static_cast<double>(points.size())) {
+    for (const Place p : points) mean_ += in_double(cloud.point(p));
+    mean_ /= count_;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (const Place p : points) {
+        const Eigen::Vector3d d = in_double(cloud.point(p)) - mean_;
+        covariance += d * d.transpose();
+    }
+    trace_ = covariance.trace();
+    spread_ = principal_axes(covariance);
 }
 
-bool continues_plane(const NearestPoints& cloud, Place place, const std::vector<Place>& others) {
-    constexpr double kThin = 0.05;     // of the variances across and along the plane
-    constexpr double kInPlane = 0.35;  // sine of the angle between plane and offset
-    const Extent extent(cloud, others);
-    const PrincipalAxes spread = principal_axes(extent.covariance);
-    const Eigen::Vector3d offset = position(cloud, place) - extent.mean;
-    return spread.values[0] < kThin * spread.values[1] &&
-           std::abs(offset.dot(spread.axes.col(0))) < kInPlane * offset.norm();
-}
-
-double relative_plane_distance(const NearestPoints& cloud, Place place, const std::vector<Place>& others,
-                               double at_least) {
-    constexpr double kThin = 0.1;  // of the variances across and along the plane
-    const Extent extent(cloud, others);
-    const PrincipalAxes spread = principal_axes(extent.covariance);
-    if (!(spread.values[0] < kThin * spread.values[1])) return 0;
-    const double own = std::sqrt(std::max(spread.values[0], 0.0) / static_cast<double>(others.size()));
-    const Eigen::Vector3d offset = position(cloud, place) - extent.mean;
-    return std::abs(offset.dot(spread.axes.col(0))) / std::sqrt(own * own + at_least * at_least);
+double Extent::variation() const { return trace_ > 0 ? std::max(spread_.values[0], 0.0) / trace_ : 0; }
+bool Extent::is_plane() const { return spread_.values[0] < kThinPlane * spread_.values[1]; }
+double Extent::thickness() const { return std::sqrt(std::max(spread_.values[0], 0.0) / count_); }
+double Extent::distance(const vcg::Point3f& p) const { return (in_double(p) - mean_).norm(); }
+double Extent::height(const vcg::Point3f& p) const {
+    return std::abs((in_double(p) - mean_).dot(spread_.axes.col(0)));
 }
 
 void mark_isolated_clumps(const NearestPoints& cloud, std::vector<std::uint8_t>& out) {
     if (skips("clumps")) return;
     const auto points = static_cast<double>(cloud.size());
-    const auto largest = static_cast<std::size_t>(kLargestShare * points);
+    const auto largest = static_cast<std::size_t>(kComponentShare * points);
     std::vector<std::uint8_t> marked = out;
     std::size_t in_clumps = 0;
     for (int level = 1; level <= cloud.finest_level(); ++level) {

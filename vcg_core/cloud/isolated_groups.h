@@ -7,22 +7,36 @@
 #include <cstdint>
 #include <vector>
 
-#include "vcg_core/cloud/nearest_points.h"
+#include "vcg_core/base/small_matrices.h"
+#include "vcg_core/cloud/surface_survey.h"
 
 namespace neuralmesh {
 
-/// The share of a neighbourhood's extent that is across it, in [0, 1/3]: 0 for points of a plane or a line,
-/// 1/3 for a ball (the surface variation of Pauly et al. 2002). \p points are the places looked at.
-double surface_variation(const NearestPoints& cloud, const std::vector<NearestPoints::Place>& points);
+/// An isolated group with a larger share of all points is a component of the surface.
+constexpr double kComponentShare = 0.01;
 
-/// Does \p place lie in the plane of \p others, which are all near one plane?
-bool continues_plane(const NearestPoints& cloud, NearestPoints::Place place,
-                     const std::vector<NearestPoints::Place>& others);
+/// How some points, given by their places, lie about their mean.
+class Extent {
+public:
+    Extent(const NearestPoints& cloud, const std::vector<NearestPoints::Place>& points);
 
-/// How far \p place is from the plane of \p others: its distance over the greater of their own (root mean
-/// square) and \p at_least. 0 if they are not near one plane.
-double relative_plane_distance(const NearestPoints& cloud, NearestPoints::Place place,
-                               const std::vector<NearestPoints::Place>& others, double at_least);
+    /// The share of the extent that is across it, in [0, 1/3]: 0 for points of a plane or a line, 1/3 for a
+    /// ball (the surface variation of Pauly et al. 2002).
+    double variation() const;
+    /// Whether the points are near a plane: the variance across it beside the least along it.
+    bool is_plane() const;
+    /// Root mean square distance of the points from that plane.
+    double thickness() const;
+    /// The distances of \p p from that plane, and from the mean.
+    double height(const vcg::Point3f& p) const;
+    double distance(const vcg::Point3f& p) const;
+
+private:
+    double count_;
+    Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();
+    double trace_ = 0;
+    PrincipalAxes spread_;  ///< of the covariance, times the number of points
+};
 
 /// Sets \p out at the places of clumps that fill space and are isolated. Places where \p out is set already
 /// count as absent. O(n), and O(m log m) for candidates of m points together.

@@ -22,7 +22,7 @@ struct LocalQuadric {
     float width = 0;      ///< smaller spread along the plane over the larger one, 0 to 1; a line has 0
     vcg::Point3f foot;    ///< of the place, along the normal of the plane
     vcg::Point3f normal;  ///< of the quadric at the foot, of length 1, to either side
-    static constexpr int kLeastPoints = 12;
+    static constexpr int kLeastPoints = 12;  ///< two for each coefficient
     bool holds() const { return points >= kLeastPoints; }
 };
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "vcg_core/base/z_order.h"
+#include "vcg_core/cloud/box_of_most.h"
 
 namespace neuralmesh {
 namespace {
@@ -27,24 +28,14 @@ NearestPoints::NearestPoints(const std::vector<vcg::Point3f>& points) {
     build_boxes();
 }
 
-/// A few points very far away must not make all cells too large for the others. Where most points are is told
-/// by about a thousand of them.
+/// A few points very far away must not make all cells too large for the others.
 void NearestPoints::place_cube(const std::vector<vcg::Point3f>& points) {
-    constexpr std::size_t kLooked = 1000;
     constexpr float kSmallPart = 1e-2F;
     constexpr float kMargin = 1.2F;  // leaves border cells empty, so that opposite borders do not touch
-    const std::size_t stride = points.size() / kLooked + 1;
     vcg::Box3f whole;
     for (const vcg::Point3f& p : points) whole.Add(p);
-    vcg::Box3f middle;
-    for (int k = 0; k < 3; ++k) {
-        std::vector<float> along;
-        for (std::size_t i = 0; i < points.size(); i += stride) along.push_back(points[i][k]);
-        std::sort(along.begin(), along.end());
-        const std::size_t end = along.size() / 20;
-        middle.min[k] = along[end];
-        middle.max[k] = along[along.size() - 1 - end];
-    }
+    const auto middle = vcg::Box3f::Construct(
+        box_of_most(points.size(), [&](std::size_t i) { return vcg::Point3d::Construct(points[i]); }));
     const auto longest = [](const vcg::Box3f& box) { return std::max({box.DimX(), box.DimY(), box.DimZ()}); };
     side_ = 2 * longest(middle);
     vcg::Point3f centre = middle.Center();
@@ -112,13 +103,10 @@ void NearestPoints::nearest(Place place, int k, std::vector<Neighbour>& result) 
 void NearestPoints::within(const vcg::Point3f& centre, float radius, std::size_t most,
                            std::vector<vcg::Point3f>& result) const {
     std::vector<Place> places;
-    const float limit = radius * radius;
-    visit_near(
-        centre,
-        [&](Place p, float d) {
-            if (d <= limit) places.push_back(p);
-        },
-        [&] { return limit; });
+    any_within(centre, radius, [&](Place p) {
+        places.push_back(p);
+        return false;
+    });
     std::sort(places.begin(), places.end());
     std::size_t stride = 1;
     while (places.size() / stride > most) stride *= 2;

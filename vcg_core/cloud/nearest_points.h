@@ -16,7 +16,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace neuralmesh {
@@ -48,10 +47,7 @@ public:
     /// many. O(k^2 + log n) for most points. \p result is overwritten.
     void nearest(Place place, int k, std::vector<Neighbour>& result) const;
 
-    /// Is a point that \p counts (called with its place) within \p radius of that at \p place?
-    template <class Predicate>
-    bool any_within(Place place, float radius, const Predicate& counts) const;
-    /// The same around any place in space.
+    /// Is a point that \p counts (called with its place) within \p radius of \p centre?
     template <class Predicate>
     bool any_within(const vcg::Point3f& centre, float radius, const Predicate& counts) const;
 
@@ -84,6 +80,8 @@ private:
     void place_cube(const std::vector<vcg::Point3f>& points);
     void sort_points(const std::vector<vcg::Point3f>& points);
     void build_boxes();
+    template <class Measure, class Visit, class Bound>
+    void visit_boxes(const Measure& measure, const Visit& visit, const Bound& bound) const;
     template <class Visit, class Bound>
     void visit_near(const vcg::Point3f& centre, const Visit& visit, const Bound& bound) const;
 
@@ -105,12 +103,12 @@ inline float squared_distance(const vcg::Box3f& box, const vcg::Point3f& p) {
     return sum;
 }
 
-/// Calls visit(place, squared distance) for the points of every box that is not farther than bound(), near
-/// boxes first.
-template <class Visit, class Bound>
-void NearestPoints::visit_near(const vcg::Point3f& centre, const Visit& visit, const Bound& bound) const {
+/// Calls visit(begin, end) for the places of every box of the lowest level whose measure(box), as that of the
+/// boxes above it, is not larger than bound(). Of the boxes below one, those of small measure come first.
+template <class Measure, class Visit, class Bound>
+void NearestPoints::visit_boxes(const Measure& measure, const Visit& visit, const Bound& bound) const {
     struct Node {
-        float squared_distance;
+        float measure;
         std::uint32_t level, box;
     };
     Node stack[12 * kBranch];
@@ -119,28 +117,35 @@ void NearestPoints::visit_near(const vcg::Point3f& centre, const Visit& visit, c
     stack[height++] = {0, top, 0};
     while (height > 0) {
         const Node node = stack[--height];
-        if (node.squared_distance > bound()) continue;
+        if (node.measure > bound()) continue;
         if (node.level == 0) {
             const std::size_t begin = node.box * kLeaf;
-            const std::size_t count = std::min<std::size_t>(points_.size() - begin, kLeaf);
-            std::array<float, kLeaf> squared;
-            for (std::size_t i = 0; i < count; ++i) squared[i] = (points_[begin + i] - centre).SquaredNorm();
-            for (std::size_t i = 0; i < count; ++i) visit(static_cast<Place>(begin + i), squared[i]);
+            visit(begin, std::min(begin + kLeaf, points_.size()));
             continue;
         }
         const std::vector<vcg::Box3f>& below = boxes_[node.level - 1];
         const std::size_t end = std::min(below.size(), (node.box + 1) * kBranch);
         const std::size_t first = height;
         for (std::size_t b = node.box * kBranch; b < end; ++b) {
-            const Node child{squared_distance(below[b], centre), node.level - 1,
-                             static_cast<std::uint32_t>(b)};
-            if (child.squared_distance > bound()) continue;
-            std::size_t at = height++;  // farthest first, so that the nearest is popped first
-            for (; at > first && stack[at - 1].squared_distance < child.squared_distance; --at)
-                stack[at] = stack[at - 1];
+            const Node child{measure(below[b]), node.level - 1, static_cast<std::uint32_t>(b)};
+            if (child.measure > bound()) continue;
+            std::size_t at = height++;  // largest first, so that the smallest is popped first
+            for (; at > first && stack[at - 1].measure < child.measure; --at) stack[at] = stack[at - 1];
             stack[at] = child;
         }
     }
+}
+
+/// Calls visit(place, squared distance) for the points of every box that is not farther than bound(), near
+/// boxes first.
+template <class Visit, class Bound>
+void NearestPoints::visit_near(const vcg::Point3f& centre, const Visit& visit, const Bound& bound) const {
+    const auto visit_points = [&](std::size_t begin, std::size_t end) {
+        std::array<float, kLeaf> squared;
+        for (std::size_t i = begin; i < end; ++i) squared[i - begin] = (points_[i] - centre).SquaredNorm();
+        for (std::size_t i = begin; i < end; ++i) visit(static_cast<Place>(i), squared[i - begin]);
+    };
+    visit_boxes([&](const vcg::Box3f& box) { return squared_distance(box, centre); }, visit_points, bound);
 }
 
 template <class Predicate>
@@ -156,31 +161,17 @@ bool NearestPoints::any_within(const vcg::Point3f& centre, float radius, const P
 template <class Visit>
 void NearestPoints::along(const vcg::Point3f& centre, const vcg::Point3f& direction, float farthest,
                           float radius, const Visit& visit) const {
-    std::vector<std::pair<std::size_t, std::size_t>> stack{{boxes_.size() - 1, 0}};  // levels and boxes
-    while (!stack.empty()) {
-        const auto [level, box] = stack.back();
-        stack.pop_back();
-        const vcg::Box3f& bounds = boxes_[level][box];
-        const vcg::Point3f d = bounds.Center() - centre;
-        const float height = d * direction, margin = 0.501F * bounds.Diag();  // with room for rounding
+    const auto is_off = [&](const vcg::Box3f& box) {
+        const vcg::Point3f d = box.Center() - centre;
+        const float height = d * direction, margin = 0.501F * box.Diag();  // with room for rounding
         const float beside = radius + margin;
-        if (std::abs(height) > farthest + margin || d.SquaredNorm() - height * height > beside * beside)
-            continue;
-        const std::size_t size = level > 0 ? kBranch : kLeaf, begin = box * size;
-        const std::size_t end = std::min(begin + size, level > 0 ? boxes_[level - 1].size() : points_.size());
-        for (std::size_t i = begin; i < end; ++i) {
-            if (level > 0) {
-                stack.emplace_back(level - 1, i);
-            } else {
-                visit(points_[i]);
-            }
-        }
-    }
-}
-
-template <class Predicate>
-bool NearestPoints::any_within(Place place, float radius, const Predicate& counts) const {
-    return any_within(point(place), radius, counts);
+        return std::abs(height) > farthest + margin || d.SquaredNorm() - height * height > beside * beside;
+    };
+    const auto visit_points = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) visit(points_[i]);
+    };
+    visit_boxes([&](const vcg::Box3f& box) { return is_off(box) ? 1.0F : 0.0F; }, visit_points,
+                [] { return 0.0F; });
 }
 
 }  // namespace neuralmesh

@@ -9,26 +9,24 @@
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/base/small_matrices.h"
+#include "vcg_core/cloud/local_quadric.h"
 
 namespace neuralmesh {
 namespace {
 
 using vcg::Point3f;
 
+/// The standard error of a share of so many places is .016 at most.
 constexpr std::size_t kLayerPlaces = 1000;
+/// The circle around so many and the point itself has a radius of about two spacings.
 constexpr int kLayerNeighbours = 12;
-/// In radii of the circle around the neighbours, which is about two spacings wide: how far the other layer is
+/// In these radii: how far the other layer is
 /// looked for, and on thin walls, how wide the column is in which it is, and how much of the column is empty
 /// between the layers.
-constexpr float kFarthest = 10, kThin = 5, kColumn = 0.75F, kEmpty = 0.75F;
+constexpr float kFarthest = 10, kThin = 5, kColumn = 0.75F;
 /// The other layer has this share of the points that the own layer has in the column, and this many.
 constexpr double kLeastShare = 0.3;
 constexpr int kLeastPoints = 3;
-
-/// Thicker neighbourhoods, beside their width, are noise, or leaves: layers in them are no sides of a wall.
-constexpr double kThickest = 0.4;
-/// Narrower ones, beside their length, are on one scan line, and the plane through them has any direction.
-constexpr double kLine = 0.1;
 
 /// Sum of the outer products of the differences of the point at \p place and those \p near it to their mean.
 Eigen::Matrix3d scatter(const NearestPoints& cloud, NearestPoints::Place place,
@@ -52,7 +50,10 @@ LayerPlace place_at(const NearestPoints& cloud, NearestPoints::Place place,
     LayerPlace result;
     result.position = cloud.point(place);
     result.normal = {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])};
-    result.flat = spread[0] < kThickest * kThickest * spread[1] && spread[1] > kLine * kLine * spread[2];
+    // Thick neighbourhoods are noise, or leaves: layers in them are no sides of a wall. Narrow ones are on
+    // one scan line, and the plane through them has any direction.
+    const auto thick = static_cast<double>(kThick), narrow = static_cast<double>(kNarrow);
+    result.flat = spread[0] < thick * thick * spread[1] && spread[1] > narrow * narrow * spread[2];
     return result;
 }
 
@@ -87,8 +88,8 @@ void find_opposite_layers(const NearestPoints& cloud, float radius, LayerPlace& 
     };
     const auto layer = [&](const std::vector<float>& heights, const std::vector<float>& others,
                            float farthest) {
-        return layer_among(heights, up_to(heights, farthest * radius), kEmpty * radius,
-                           up_to(others, kEmpty * radius));
+        return layer_among(heights, up_to(heights, farthest * radius), kColumn * radius,
+                           up_to(others, kColumn * radius));
     };
     result.above = layer(above, below, kFarthest);
     result.below = layer(below, above, kFarthest);
@@ -97,9 +98,8 @@ void find_opposite_layers(const NearestPoints& cloud, float radius, LayerPlace& 
 
 }  // namespace
 
-std::vector<LayerPlace> layer_places(const CloudSurvey& survey, ThreadTeam& team) {
+std::vector<LayerPlace> layer_places(const NearestPoints& cloud, ThreadTeam& team) {
     constexpr int kPlacesAtATime = 16;
-    const NearestPoints& cloud = survey.cloud;
     const std::size_t step = std::max<std::size_t>(1, cloud.size() / kLayerPlaces);
     const std::size_t count = (cloud.size() + step - 1 - step / 2) / step;
     return parallel_collect<LayerPlace>(

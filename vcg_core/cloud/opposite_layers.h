@@ -30,7 +30,7 @@ struct LayerPlace {
 /// spacings away: the other side of a wall, or of a gap. Layers less than some three spacings apart, or
 /// closer than the noise lets tell, count as one. Points with too few neighbours for a plane are no places.
 /// Does not depend on the number of threads. O(places x 2,000 points).
-std::vector<LayerPlace> layer_places(const CloudSurvey& survey, ThreadTeam& team);
+std::vector<LayerPlace> layer_places(const NearestPoints& cloud, ThreadTeam& team);
 
 /// The share of \p places on thin walls. A layer within the radius on which the survey finds a surface is
 /// noise of that surface, such as a step of a depth sensor, unless the points there lie in two layers alone.

@@ -20,9 +20,9 @@ namespace {
 using Place = NearestPoints::Place;
 using Neighbours = std::vector<NearestPoints::Neighbour>;
 
-constexpr int kSpacingNeighbour = CloudSurvey::kNeighbour;  ///< the distance to it is a point's spacing
+/// The neighbours that a point is told from, on two scales; outlier_removal.h says how its thresholds were
+/// found.
 constexpr int kWideCount = 48, kNarrowCount = 16;
-constexpr Place kSampleStride = CloudSurvey::kRun;  ///< one of so many points tells the usual spacing
 constexpr float kSparse = 2;   ///< suspects are sparser than usual by this factor
 constexpr Place kWindow = 64;  ///< places to each side that are looked at before a search
 constexpr int kChunk = 1024;
@@ -56,7 +56,7 @@ private:
         float spacing;
     };
     static constexpr double kFew = 0.002;  ///< of the points
-    static constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+    static constexpr Place kNobody = static_cast<Place>(-1);
 
     void note_spacings(const CloudSurvey& survey);
     void find();
@@ -67,25 +67,13 @@ private:
     void combine();
     double threshold() const;
 
-    float spacing(Place place, Neighbours& scratch) const {
-        cloud_.nearest(place, kSpacingNeighbour, scratch);
-        return std::sqrt(scratch.back().squared_distance);
-    }
     Place neighbour(std::size_t suspect, int rank) const {
         return neighbours_[suspect * kWideCount + static_cast<std::size_t>(rank)];
     }
     /// The spacing at \p place: its own if it is a suspect, else that around it.
     float spacing_at(Place place) const {
-        const std::size_t suspect = suspect_at(place);
-        return suspect == kNobody ? around_[place / kSampleStride] : suspects_[suspect].spacing;
-    }
-    /// The rank of \p place among the suspects, or kNobody.
-    std::size_t suspect_at(Place place) const {
-        if (is_suspect_[place] == 0) return kNobody;
-        return static_cast<std::size_t>(
-            std::lower_bound(suspects_.begin(), suspects_.end(), place,
-                             [](const Suspect& s, Place key) { return s.place < key; }) -
-            suspects_.begin());
+        const Place suspect = rank_[place];
+        return suspect == kNobody ? around_[place / CloudSurvey::kRun] : suspects_[suspect].spacing;
     }
 
     const NearestPoints& cloud_;
@@ -93,7 +81,7 @@ private:
     std::vector<float> around_;             ///< median spacing around each sample
     float of_all_ = 0;                      ///< median spacing of the cloud
     std::vector<Suspect> suspects_;         ///< by ascending place
-    std::vector<std::uint8_t> is_suspect_;  ///< by place
+    std::vector<Place> rank_;               ///< of each place among the suspects, or kNobody
     std::vector<Place> neighbours_;         ///< kWideCount for each suspect, nearest first
     std::vector<std::uint8_t> in_plane_;    ///< 1 for suspects in the plane of their neighbours
     std::vector<double> narrow_, wide_;     ///< surface variations
@@ -108,8 +96,8 @@ void Suspects::note_spacings(const CloudSurvey& survey) {
     around_ = running_median(samples);
 }
 
-/// Are there kSpacingNeighbour points within \p radius, among those of nearby places? True for nearly all
-/// points of a surface, at a small part of what a search costs.
+/// Are there CloudSurvey::kNeighbour points within \p radius, among those of nearby places? True for nearly
+/// all points of a surface, at a small part of what a search costs.
 bool Suspects::has_close_neighbours(Place place, float radius) const {
     const vcg::Point3f& centre = cloud_.point(place);
     const float limit = radius * radius;
@@ -118,7 +106,7 @@ bool Suspects::has_close_neighbours(Place place, float radius) const {
         if (place >= d) close += (cloud_.point(place - d) - centre).SquaredNorm() <= limit ? 1 : 0;
         if (place + d < cloud_.size())
             close += (cloud_.point(place + d) - centre).SquaredNorm() <= limit ? 1 : 0;
-        if (close >= kSpacingNeighbour) return true;
+        if (close >= CloudSurvey::kNeighbour) return true;
     }
     return false;
 }
@@ -127,38 +115,43 @@ void Suspects::find() {
     suspects_ = parallel_collect<Suspect>(
         static_cast<int>(cloud_.size()), kChunk, team_, [&](int i, std::vector<Suspect>& found) {
             const auto place = static_cast<Place>(i);
-            const float radius = kSparse * std::min(of_all_, around_[place / kSampleStride]);
+            const float radius = kSparse * std::min(of_all_, around_[place / CloudSurvey::kRun]);
             if (has_close_neighbours(place, radius)) return;
-            Neighbours scratch;
-            const float own = spacing(place, scratch);
+            Neighbours near;
+            cloud_.nearest(place, CloudSurvey::kNeighbour, near);
+            const float own = std::sqrt(near.back().squared_distance);
             if (own > radius) found.push_back({place, own});
         });
 }
 
-/// Points that are a little sparser than usual and off the plane of their neighbours. In a cloud with hardly
-/// any outliers they are part of the surface more often than not.
+/// In a cloud with hardly any outliers they are part of the surface more often than not.
 std::vector<Place> Suspects::lifted() const {
-    constexpr float kSparser = 1.35F;
+    constexpr float kSparser = 1.35F;  // than usual, by this factor
     constexpr double kSpacing = 1.78;  // that of even points on a plane in distances to the tenth neighbour
+    // From the plane of its neighbours so many times as far as these are, or as .3 spacings.
     constexpr double kLeast = 0.3, kLifted = 4;
     return parallel_collect<Place>(
         static_cast<int>(cloud_.size()), kChunk, team_, [&](int i, std::vector<Place>& found) {
             const auto place = static_cast<Place>(i);
-            const float usual = std::min(of_all_, around_[place / kSampleStride]);
+            const float usual = std::min(of_all_, around_[place / CloudSurvey::kRun]);
             if (has_close_neighbours(place, kSparser * usual)) return;
             Neighbours near;
             cloud_.nearest(place, kNarrowCount, near);
-            if (std::sqrt(near[kSpacingNeighbour - 1].squared_distance) <= kSparser * usual) return;
+            if (std::sqrt(near[CloudSurvey::kNeighbour - 1].squared_distance) <= kSparser * usual) return;
             std::vector<Place> places;
             for (const NearestPoints::Neighbour& n : near) places.push_back(n.place);
             const double least = kLeast * static_cast<double>(usual) / kSpacing;
-            if (relative_plane_distance(cloud_, place, places, least) > kLifted) found.push_back(place);
+            const Extent around(cloud_, places);
+            const double spread = std::sqrt(around.thickness() * around.thickness() + least * least);
+            if (around.is_plane() && around.height(cloud_.point(place)) / spread > kLifted)
+                found.push_back(place);
         });
 }
 
 void Suspects::measure() {
-    is_suspect_.assign(cloud_.size(), 0);
-    for (const Suspect& s : suspects_) is_suspect_[s.place] = 1;
+    constexpr double kContinues = 0.35;  // sine of the angle between a plane and the way to a point of it
+    rank_.assign(cloud_.size(), kNobody);
+    for (std::size_t i = 0; i < suspects_.size(); ++i) rank_[suspects_[i].place] = static_cast<Place>(i);
     neighbours_.resize(suspects_.size() * kWideCount);
     in_plane_.resize(suspects_.size());
     narrow_.resize(suspects_.size());
@@ -173,22 +166,25 @@ void Suspects::measure() {
                   neighbours_.begin() + static_cast<std::ptrdiff_t>(i * kWideCount));
         const std::vector<Place> wide = around;
         around.resize(kNarrowCount);
-        in_plane_[i] = continues_plane(cloud_, suspects_[i].place, around) ? 1 : 0;
+        const Extent neighbours(cloud_, around);
+        const vcg::Point3f& own = cloud_.point(suspects_[i].place);
+        in_plane_[i] =
+            neighbours.is_plane() && neighbours.height(own) < kContinues * neighbours.distance(own) ? 1 : 0;
         around.push_back(suspects_[i].place);
-        narrow_[i] = surface_variation(cloud_, around);
+        narrow_[i] = Extent(cloud_, around).variation();
         around.insert(around.end(), wide.begin() + kNarrowCount, wide.end());
-        wide_[i] = surface_variation(cloud_, around);
+        wide_[i] = Extent(cloud_, around).variation();
     });
 }
 
-/// The evidence against a suspect without that of the suspects around it. The weights separate, by logistic
-/// regression, outliers from points of room and building scans.
+/// The evidence against a suspect without that of the suspects around it.
 double Suspects::evidence_alone(std::size_t suspect) const {
+    // These weights separate, by logistic regression, outliers from points of room and building scans.
     constexpr double kFill = 37, kDensest = 1.6, kUsual = 3.5, kInPlane = -4, kOffset = -5.3;
     double narrow = narrow_[suspect], wide = wide_[suspect];
     int count = 1;
-    for (int k = 0; k < kSpacingNeighbour; ++k) {
-        const std::size_t other = suspect_at(neighbour(suspect, k));
+    for (int k = 0; k < CloudSurvey::kNeighbour; ++k) {
+        const Place other = rank_[neighbour(suspect, k)];
         if (other == kNobody) continue;
         narrow += narrow_[other];
         wide += wide_[other];
@@ -202,14 +198,15 @@ double Suspects::evidence_alone(std::size_t suspect) const {
         return portable_log(
             static_cast<double>(std::min(kMostRatio, own / std::max(other, own / kMostRatio))));
     };
-    const float usual = median<float>({spacings.begin(), spacings.begin() + kSpacingNeighbour});
+    const float usual = median<float>({spacings.begin(), spacings.begin() + CloudSurvey::kNeighbour});
     std::nth_element(spacings.begin(), spacings.begin() + kWideCount / 10, spacings.end());
     return kFill * std::min(narrow, wide) / count + kDensest * log_ratio(spacings[kWideCount / 10]) +
            kUsual * log_ratio(usual) + kInPlane * in_plane_[suspect] + kOffset;
 }
 
-/// The evidence against each suspect, with that of the suspects around it. Weights as in evidence_alone().
+/// The evidence against each suspect, with that of the suspects around it.
 void Suspects::combine() {
+    // Weights by logistic regression, as those of the evidence alone.
     constexpr double kOwn = 0.7, kAround = 0.5, kCompany = 2, kCompanyOffset = -1;
     std::vector<double> alone(suspects_.size());
     for (std::size_t i = 0; i < suspects_.size(); ++i) alone[i] = evidence_alone(i);
@@ -218,7 +215,7 @@ void Suspects::combine() {
         double sum = 0;
         int count = 0;
         for (int k = 0; k < kWideCount; ++k) {
-            const std::size_t other = suspect_at(neighbour(i, k));
+            const Place other = rank_[neighbour(i, k)];
             if (other == kNobody) continue;
             sum += alone[other];
             ++count;
@@ -231,6 +228,8 @@ void Suspects::combine() {
 /// The lowest evidence where next to none of the points lies: the gap between orderly points and outliers,
 /// most of which have much evidence against them.
 double Suspects::threshold() const {
+    // From the lowest evidence to the strict threshold, in steps. At least half of the points beyond the gap
+    // have more evidence than where orderly and wild ones mix.
     constexpr double kLowest = -2, kStrict = 3.5, kMixed = 2.5, kStep = 0.5;
     constexpr double kEmptyShare = 0.0006, kEmptyOfSuspects = 0.05;  // of the points, of the suspects
     const double empty = std::min(kEmptyShare * static_cast<double>(cloud_.size()),

@@ -31,7 +31,7 @@
 #include <functional>
 #include <vector>
 
-#include "vcg_core/cloud/cloud_survey.h"
+#include "vcg_core/cloud/surface_survey.h"
 
 namespace neuralmesh {
 
@@ -40,7 +40,7 @@ constexpr std::size_t kFewestForOutliers = 128;
 
 /// 1 for each outlier among the points of \p survey, of which few may repeat others, in the order in which
 /// they were given; empty if there is none. The result does not depend on \p threads (0: all cores). Cost: as
-/// much as the survey for an even cloud, ten times that with one outlier in a hundred points. Memory: 12
+/// much as the survey for an even cloud, ten times that with one outlier in a hundred points. Memory: 15
 /// bytes per point beside \p points, 400 more per suspect.
 /// \p beat is called about every tenth of a second; what it throws ends the search.
 std::vector<std::uint8_t> find_outliers(const CloudSurvey& survey, int threads,

@@ -7,13 +7,33 @@
 
 #include <vcg/space/point3.h>
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
 #include "vcg_core/base/thread_team.h"
-#include "vcg_core/cloud/cloud_survey.h"
+#include "vcg_core/cloud/nearest_points.h"
 
 namespace neuralmesh {
+
+/// A cloud indexed by place, with its spacing at samples.
+struct CloudSurvey {
+    /// The squared distance to the tenth neighbour varies by a third by chance.
+    static constexpr int kNeighbour = 10;
+    /// It is in the middle of each run of so many consecutive places about what it is in all of the run.
+    static constexpr std::size_t kRun = 32;
+
+    /// Of at least two points. Does not depend on \p threads (0: all cores).
+    /// O(n log n): 0.015 s for 100,000 points on one thread. Memory: 22 bytes per point.
+    CloudSurvey(const std::vector<vcg::Point3f>& points, int threads);
+
+    /// The area that each point of a run stands for, 1 in the mean over the points; empty if their density is
+    /// even but for chance, or if they are too few to tell. O(n).
+    std::vector<float> areas_if_uneven() const;
+
+    NearestPoints cloud;
+    std::vector<float> squared_spacings;  ///< of each run, to neighbour kNeighbour
+};
 
 /// Neighbourhoods that are as thick as this beside their width show no surface.
 constexpr float kThick = 0.55F;
@@ -69,7 +89,7 @@ class SurfaceSurvey {
 public:
     /// Of the points of \p cloud. Fewer than LocalQuadric::kLeastPoints are clutter. Does not depend on the
     /// number of threads. O(places x neighbours): 0.2 s.
-    SurfaceSurvey(const CloudSurvey& cloud, ThreadTeam& team);
+    SurfaceSurvey(const NearestPoints& cloud, ThreadTeam& team);
 
     const std::vector<SurveyedPlace>& places() const { return places_; }
     /// The surveyed place nearest to \p p. O(log places).
@@ -119,7 +139,7 @@ public:
     const SurfaceSurvey& surface() {
         if (!surface_) {
             ThreadTeam team(thread_count(threads_));
-            surface_.emplace(points(), team);
+            surface_.emplace(points().cloud, team);
         }
         return *surface_;
     }

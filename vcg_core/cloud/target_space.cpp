@@ -58,6 +58,29 @@ vcg::Point3f interpolated(const vcg::Point3f& a, const vcg::Point3f& b, const vc
 
 }  // namespace
 
+AliasTable::AliasTable(const std::vector<double>& weights) : columns_(weights.size()) {
+    const double mean =
+        std::accumulate(weights.begin(), weights.end(), 0.0) / static_cast<double>(weights.size());
+    std::vector<double> left(weights.size());  // of the probability, in columns
+    std::vector<std::uint32_t> small;
+    std::vector<std::uint32_t> large;
+    for (std::uint32_t i = 0; i < weights.size(); ++i) {
+        left[i] = weights[i] / mean;
+        columns_[i] = {0xffffffffU, i};
+        (left[i] < 1 ? small : large).push_back(i);
+    }
+    while (!small.empty() && !large.empty()) {
+        const std::uint32_t filled = small.back();
+        const std::uint32_t giver = large.back();
+        small.pop_back();
+        columns_[filled] = {static_cast<std::uint32_t>(std::min(left[filled] * 0x1p32, 0x1p32 - 1)), giver};
+        left[giver] -= 1 - left[filled];
+        if (left[giver] >= 1) continue;
+        large.pop_back();
+        small.push_back(giver);
+    }
+}
+
 vcg::Point3f Frame::inside(const vcg::Point3d& p) const {
     return vcg::Point3f::Construct((p - centre) / diagonal);
 }
@@ -183,19 +206,19 @@ std::optional<TargetSpace> TargetSpace::each_place_once() const {
 }
 
 std::optional<TargetSpace> TargetSpace::evenly(const CloudSurvey& survey) const {
-    std::optional<PointAreas> areas = areas_if_uneven(survey);
-    if (!areas) return std::nullopt;
-    TargetSpace even;
-    even.frame_ = frame_;
-    even.positions_ = std::move(areas->points);
-    even.weights_ = std::move(areas->of_run);
+    std::vector<float> areas = survey.areas_if_uneven();
+    if (areas.empty()) return std::nullopt;
     std::vector<std::size_t> order;
     for (NearestPoints::Place p = 0; p < survey.cloud.size(); ++p) order.push_back(survey.cloud.index(p));
+    TargetSpace even;
+    even.frame_ = frame_;
+    even.weights_ = std::move(areas);
+    even.positions_ = taken(positions_, order);
     even.colors_ = taken(colors_, order);
     even.normals_ = taken(normals_, order);
     std::vector<double> of_runs;
-    for (std::size_t i = 0; i < even.positions_.size(); i += PointAreas::kRun) {
-        const std::size_t points = std::min(PointAreas::kRun, even.positions_.size() - i);
+    for (std::size_t i = 0; i < even.positions_.size(); i += CloudSurvey::kRun) {
+        const std::size_t points = std::min(CloudSurvey::kRun, even.positions_.size() - i);
         of_runs.push_back(static_cast<double>(even.weight(i)) * static_cast<double>(points));
     }
     even.runs_ = AliasTable(of_runs);
@@ -240,8 +263,8 @@ void TargetSpace::sample(Random& random, int count, std::vector<vcg::Point3f>& s
 
 std::size_t TargetSpace::draw_point(Random& random) const {
     if (!is_weighted()) return random.below(static_cast<std::uint32_t>(positions_.size()));
-    const std::size_t first = runs_.draw(random) * PointAreas::kRun;
-    const std::size_t points = std::min(PointAreas::kRun, positions_.size() - first);
+    const std::size_t first = runs_.draw(random) * CloudSurvey::kRun;
+    const std::size_t points = std::min(CloudSurvey::kRun, positions_.size() - first);
     return first + random.below(static_cast<std::uint32_t>(points));
 }
 

@@ -19,9 +19,36 @@
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/indexed.h"
 #include "vcg_core/base/random.h"
-#include "vcg_core/cloud/point_areas.h"
+#include "vcg_core/cloud/box_of_most.h"
+#include "vcg_core/cloud/surface_survey.h"
 
 namespace neuralmesh {
+
+/// Draws numbers with given probabilities in constant time (Walker 1974; built as by Vose, "A linear
+/// algorithm for generating random numbers with a given distribution", 1991). Eight bytes per number.
+class AliasTable {
+public:
+    AliasTable() = default;
+    /// \param weights positive, fewer than 2^32; number i is drawn in proportion to weights[i]. O(n).
+    explicit AliasTable(const std::vector<double>& weights);
+
+    bool empty() const { return columns_.empty(); }
+    /// A random number in [0, size of the weights). O(1), one draw of 32 bits. The probabilities are exact to
+    /// about size / 2^32. \pre !empty()
+    std::uint32_t draw(Random& random) const {
+        const std::uint64_t product = std::uint64_t{random.bits()} * columns_.size();
+        const auto number = static_cast<std::uint32_t>(product >> 32);
+        const Column& column = columns_[number];
+        return static_cast<std::uint32_t>(product) < column.own ? number : column.other;
+    }
+
+private:
+    struct Column {
+        std::uint32_t own;    ///< share of the column that is its own number, in 2^-32
+        std::uint32_t other;  ///< the number of the rest
+    };
+    std::vector<Column> columns_;
+};
 
 /// The frame of the core: the centre of the bounding box is the origin, its diagonal has length 1. Converted
 /// in double, so the precision of learning in float does not depend on the position and the size of the
@@ -109,12 +136,12 @@ public:
     std::optional<TargetSpace> each_place_once() const;
 
     /// The cloud with weights by which signals are even over the surface, in another order and the same
-    /// frame, if its density is uneven: see point_areas.h. Nothing otherwise. O(points). \pre \p survey is
+    /// frame, if its density is uneven. Nothing otherwise. O(points). \pre \p survey is
     /// that of positions(), and !has_faces()
     std::optional<TargetSpace> evenly(const CloudSurvey& survey) const;
     bool is_weighted() const { return !weights_.empty(); }
     /// The area that point \p i stands for; 1 in the mean. \pre !has_faces()
-    float weight(std::size_t i) const { return weights_.empty() ? 1.0F : weights_[i / PointAreas::kRun]; }
+    float weight(std::size_t i) const { return weights_.empty() ? 1.0F : weights_[i / CloudSurvey::kRun]; }
 
     const Frame& frame() const { return frame_; }
     bool has_faces() const { return !cumulative_area_.empty(); }
@@ -132,8 +159,6 @@ public:
 private:
     template <class PointAt>
     void take(std::size_t count, const PointAt& point_at);
-    template <class PointAt>
-    static vcg::Box3d box_of_most(std::size_t count, const PointAt& point_at);
     void centre_on(const vcg::Box3d& most);
     void set_frame(const vcg::Box3d& box, std::size_t not_finite, std::size_t count);
     /// A sentence if the points span no surface, empty if they do.
@@ -197,23 +222,6 @@ void TargetSpace::take(std::size_t count, const PointAt& point_at) {
     centre_on(box_of_most(count, point_at));
     positions_.reserve(count);
     for (std::size_t i = 0; i < count; ++i) positions_.push_back(frame_.inside(point_at(i)));
-}
-
-/// The box between the 5th and the 95th percentile of each coordinate, estimated from about 1000 points.
-template <class PointAt>
-vcg::Box3d TargetSpace::box_of_most(std::size_t count, const PointAt& point_at) {
-    constexpr std::size_t kSampled = 1000;
-    const std::size_t stride = count / kSampled + 1;
-    vcg::Box3d box;
-    for (int k = 0; k < 3; ++k) {
-        std::vector<double> along;
-        for (std::size_t i = 0; i < count; i += stride) along.push_back(vcg::Point3d(point_at(i))[k]);
-        std::sort(along.begin(), along.end());
-        const std::size_t outside = along.size() / 20;
-        box.min[k] = along[outside];
-        box.max[k] = along[along.size() - 1 - outside];
-    }
-    return box;
 }
 
 }  // namespace neuralmesh

@@ -59,9 +59,9 @@ double factor_for(const TargetSpace& target, std::size_t wanted) {
     for (int step = 0; step < kSteps; ++step) {
         const double middle = (low + high) / 2;
         double sum = 0;
-        for (std::size_t i = 0; i < points; i += PointAreas::kRun)
+        for (std::size_t i = 0; i < points; i += CloudSurvey::kRun)
             sum += std::min(1.0, middle * static_cast<double>(target.weight(i))) *
-                   static_cast<double>(std::min(PointAreas::kRun, points - i));
+                   static_cast<double>(std::min(CloudSurvey::kRun, points - i));
         (sum < static_cast<double>(wanted) ? low : high) = middle;
     }
     return high;

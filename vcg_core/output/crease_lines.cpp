@@ -63,7 +63,7 @@ public:
             if (degree(v) == 1) ends.push_back(v);
         for (const VertexId end : ends) {
             if (degree(end) != 1) continue;
-            const std::vector<VertexId> path = path_ahead(end, {reach, kLeastOfGap, kStraight});
+            const Line path = path_ahead(end, {reach, kLeastOfGap, kStraight});
             for (std::size_t i = 0; i + 1 < path.size(); ++i) join(path[i], path[i + 1]);
         }
     }
@@ -72,7 +72,7 @@ public:
     void drop_spurs() {
         for (const VertexId v : network_.vertices()) {
             if (degree(v) != 1) continue;
-            const std::vector<VertexId> line = line_from(v, joined_[v].front());
+            const Line line = line_from(v, joined_[v].front());
             const int least = degree(line.back()) == 1 ? kShortLine : kSpur;
             if (static_cast<int>(line.size()) <= least) cut(line);
         }
@@ -110,7 +110,7 @@ public:
     void join_ends(float reach) {
         for (const VertexId end : network_.vertices()) {
             if (degree(end) != 1) continue;
-            const std::vector<VertexId> path = path_ahead(end, {reach, 0, 0});
+            const Line path = path_ahead(end, {reach, 0, 0});
             if (!path.empty() && !are_joined(end, path.front())) join(end, path.front());
         }
     }
@@ -181,11 +181,11 @@ private:
 
     /// Cuts one of two short lines from \p a to the same other corner. \return whether there were two
     bool drop_double_at(VertexId a) {
-        std::vector<std::vector<VertexId>> lines;
+        std::vector<Line> lines;
         for (const VertexId next : joined_[a]) {
-            std::vector<VertexId> line = line_from(a, next);
+            Line line = line_from(a, next);
             if (static_cast<int>(line.size()) > kLongestDouble + 1) continue;
-            for (const std::vector<VertexId>& other : lines) {
+            for (const Line& other : lines) {
                 if (other.back() != line.back()) continue;
                 cut(mean_measure(line) < mean_measure(other) ? line : other);
                 return true;
@@ -236,25 +236,27 @@ private:
     /// The shortest path over vertices that lie ahead of \p end to one of another line, at most \p reach
     /// long. In reverse order; empty if there is none.
     Line path_ahead(VertexId end, const Search& search) const {
-        std::map<VertexId, VertexId> parents{{end, end}};
+        struct Way {
+            float length;
+            VertexId before;
+        };
+        std::map<VertexId, Way> ways{{end, {0, end}}};
         std::set<std::pair<float, VertexId>> frontier{{0.0F, end}};
-        std::map<VertexId, float> distances{{end, 0.0F}};
         while (!frontier.empty()) {
             const auto [distance, v] = *frontier.begin();
             frontier.erase(frontier.begin());
             if (v != end && degree(v) > 0) {
-                std::vector<VertexId> path{v};
-                while (path.back() != end) path.push_back(parents.at(path.back()));
+                Line path{v};
+                while (path.back() != end) path.push_back(ways.at(path.back()).before);
                 return path;
             }
             for (const VertexId u : network_.ring(v)) {
                 const float there = distance + length(v, u);
                 if (there > search.reach || !is_ahead(end, u, search)) continue;
-                const auto known = distances.find(u);
-                if (known != distances.end() && known->second <= there) continue;
-                if (known != distances.end()) frontier.erase({known->second, u});
-                distances[u] = there;
-                parents[u] = v;
+                const auto [known, is_new] = ways.insert({u, {there, v}});
+                if (!is_new && known->second.length <= there) continue;
+                frontier.erase({known->second.length, u});
+                known->second = {there, v};
                 frontier.insert({there, u});
             }
         }

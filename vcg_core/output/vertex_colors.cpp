@@ -39,8 +39,8 @@ Color on_ramp(float t) {
     return color;
 }
 
-constexpr std::size_t kFewestPoints = 100000;
-constexpr std::size_t kPointsPerVertex = 30;
+/// Means of so many points have less than a fifth of the deviation of their colours. Few vertices have more.
+constexpr std::size_t kPointsPerVertex = 30, kFewestPoints = 100000;
 /// Points between two reports of progress: about .02 s of one thread.
 constexpr std::size_t kInBatch = 20000;
 constexpr float kWhite = 255;

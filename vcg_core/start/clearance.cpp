@@ -10,8 +10,6 @@
 #include <numeric>
 #include <vector>
 
-#include "vcg_core/start/components.h"
-
 namespace neuralmesh {
 namespace {
 

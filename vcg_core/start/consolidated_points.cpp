@@ -22,15 +22,15 @@ constexpr int kPasses = 2;
 /// Steps of the radius, to 2.5 times at most.
 constexpr int kSteps = 4;
 
-/// Without noise points may be closer than the radius of a quadric, which needs a dozen of them.
 float thinning_radius(const SurveyedPlace& place) {
+    // Without noise points may be closer than the radius of a quadric, which needs a dozen of them.
     constexpr float kSpacings = 1.5F;
     return std::min(place.radius, std::max(kSpacings * place.spacing, kLeastDeviations * place.deviation));
 }
 
-/// The radius above which \p most points are left: discs thrown at random until no more fit cover .55 of a
-/// plane, so there are .7 of them per squared radius.
+/// The radius above which \p most points are left.
 float least_radius(const NearestPoints& cloud, const SurfaceSurvey& survey, int most) {
+    // Discs thrown at random until no more fit cover .55 of a plane.
     constexpr double kPerSquaredRadius = 0.7;
     const double points_per_place =
         static_cast<double>(cloud.size()) / static_cast<double>(survey.places().size());
@@ -106,7 +106,8 @@ ConsolidatedPoints consolidated_points(const NearestPoints& cloud, const Surface
     for (const Place place : shuffled(cloud.size(), random)) {
         if (gone[place] != 0) continue;
         kept.push_back(place);
-        cloud.any_within(place, std::max(least, thinning_radius(survey.places()[place_of[place]])),
+        cloud.any_within(cloud.point(place),
+                         std::max(least, thinning_radius(survey.places()[place_of[place]])),
                          [&](Place other) {
                              gone[other] = 1;
                              return false;

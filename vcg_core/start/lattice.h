@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A regular lattice of nodes over a box: indices, adjacency, and passes of separable sums, maxima
-// and distances.
+// A regular lattice of nodes over a box: indices, adjacency, passes of separable sums, maxima and distances,
+// and the topology of sets of nodes.
 #pragma once
 
 #include <vcg/space/box3.h>
@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <vector>
 
 #include "vcg_core/base/indexed.h"
@@ -31,6 +32,8 @@ using NodeSet = PerNode<std::uint8_t>;
 /// Nodes at equal distances along three axes; node (x, y, z) has the id (z * ny + y) * nx + x. At most 2^31 -
 /// 1 nodes.
 struct Lattice {
+    static constexpr float kRayStride = 0.5F;  ///< between two looks at the nodes along a ray, in steps
+
     int nx = 0, ny = 0, nz = 0;
     float step = 1;                ///< distance between nodes
     vcg::Point3f corner{0, 0, 0};  ///< position of node (0, 0, 0)
@@ -195,5 +198,30 @@ void combine_across_rows(const Lattice& l, int reach, const Combine& combine, Pe
     for (int y = 0; y < l.ny; ++y)
         combine_rows(values.data() + y * row, l.nz, slice, l.nx, reach, combine, scratch);
 }
+
+/// Consecutive nodes of a row along x.
+struct Run {
+    NodeId begin, end;
+
+    /// Their range of \p values.
+    template <class T>
+    auto begin_in(T& values) const {
+        return values.begin() + begin;
+    }
+    template <class T>
+    auto end_in(T& values) const {
+        return values.begin() + end;
+    }
+};
+
+/// Calls visit(runs) for each connected component of the nodes i with nodes[i] = \p value, 0 or 1, in order
+/// of their smallest nodes; the runs are in ascending order. \p visit may change \p nodes. O(nodes), a
+/// hundred at a time, + O(runs).
+void for_each_component(const Lattice& lattice, const NodeSet& nodes, std::uint8_t value,
+                        const std::function<void(Span<const Run>)>& visit);
+
+/// Euler characteristic of the simplices all of whose nodes are in \p solid: components - handles + cavities.
+/// O(nodes), 64 at a time.
+int euler_characteristic(const Lattice& lattice, const NodeSet& solid);
 
 }  // namespace neuralmesh

@@ -12,8 +12,6 @@ namespace {
 
 using vcg::Point3f;
 
-/// Between two looks at the lattice, in its steps.
-constexpr float kRayStride = 0.5F;
 /// The shell may be that many steps from where the nodes of the solid end: it is made on every third node.
 constexpr float kSkin = 3;
 /// No smaller width can be told.
@@ -49,7 +47,7 @@ PerVertex<Point3f> smooth_normals(const Network& network) {
 /// true; \p farthest if there is none before.
 float way_to_end(const Lattice& lattice, const NodeSet& solid, bool inside, const Point3f& p,
                  const Point3f& direction, float farthest) {
-    for (float way = kSkin * lattice.step; way < farthest; way += kRayStride * lattice.step) {
+    for (float way = kSkin * lattice.step; way < farthest; way += Lattice::kRayStride * lattice.step) {
         const NodeId node = lattice.node_of(p + direction * way);
         const bool in_solid = node < solid.size() && solid[node] != 0;
         if (in_solid != inside) return way;

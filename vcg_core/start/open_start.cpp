@@ -4,7 +4,6 @@
 #include "vcg_core/start/open_start.h"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -21,9 +20,7 @@
 #include "vcg_core/mesh/simplify.h"
 #include "vcg_core/start/consolidated_points.h"
 #include "vcg_core/start/facing.h"
-#include "vcg_core/start/normal_orientation.h"
 #include "vcg_core/start/point_triangulation.h"
-#include "vcg_core/start/sensor_place.h"
 #include "vcg_core/start/short_handles.h"
 #include "vcg_core/start/viewpoint.h"
 
@@ -50,8 +47,9 @@ constexpr int kEdgesOfHandle = 8;
 constexpr double kMostAway = 0.02;
 /// The neighbours that normals are turned by.
 constexpr int kNeighbours = 12;
-/// Points belong to a vertex that is not farther than so many of its radii.
-constexpr float kBelongs = 3;
+/// Scans miss up to .03 of their points, slabs as thick as their points are apart .09 and .16; a tree misses
+/// .14, and has .35 of clutter, which is not sharply told from its surface.
+constexpr double kMostMissed = 0.05;
 
 /// The points that a part has at least. In a single view of 20,000 points a strip beside an occluded place
 /// has some hundred, and islands seen by two views have 50; clumps of outliers have no faces.
@@ -59,15 +57,6 @@ constexpr int kPointsOfPart = 40;
 /// Their least share of all points, times the vertices asked for. A part takes three of them, so more small
 /// parts than that would leave none for the others.
 constexpr double kLeastPartVertices = 0.3;
-
-long long points_of_part(std::size_t points, const OpenStartOptions& options) {
-    const double carrying = kLeastPartVertices * static_cast<double>(points) / options.target_vertices;
-    return std::max<long long>(kPointsOfPart, static_cast<long long>(carrying));
-}
-
-int wanted_vertices(std::size_t points, const OpenStartOptions& options) {
-    return std::min(options.wanted_vertices, static_cast<int>(points / OpenStartOptions::kPointsPerVertex));
-}
 
 /// \throws NoSurfaceError if most places show none
 void check_for_surface(const SurfaceSurvey& survey) {
@@ -81,31 +70,15 @@ void check_for_surface(const SurfaceSurvey& survey) {
             "Choose surface 1 (closed), or remove the scattered points first.");
 }
 
-/// The parts of a mesh that hang together, by vertex, from 0.
-struct Parts {
-    PerVertex<int> of;
-    int count = 0;
-};
-
-Parts parts_of(const IndexedMesh<float>& mesh) {
-    const int n = static_cast<int>(mesh.positions.size());
-    Parts parts{PerVertex<int>(n, -1), 0};
-    DisjointSets sets(n);
-    for (const Triangle& f : mesh.faces) {
-        sets.join(f[0], f[1]);
-        sets.join(f[0], f[2]);
-    }
-    for (VertexId v = 0; v < n; ++v) parts.of[v] = sets.find(v) == v ? parts.count++ : parts.of[sets.find(v)];
-    return parts;
-}
-
-/// The surface while it is put together, with the radius of the points at every vertex.
+/// The surface while it is put together.
 struct Sheet {
     IndexedMesh<float> mesh;
-    std::vector<Point3f> normals;
-    std::vector<float> radii, tolerances;  ///< as in ConsolidatedPoints
-    std::vector<Point3f> contradictions;   ///< where its two sides could not be told apart
-    std::optional<Point3f> viewer;         ///< see turn_to_viewer()
+    std::vector<int> source;  ///< of each vertex its point
+    ConsolidatedPoints points;
+    std::vector<Point3f> contradictions;  ///< where its two sides could not be told apart
+    std::optional<Point3f> viewer;        ///< see turn_to_viewer()
+
+    float radius(VertexId v) const { return points.radii[at(source[at(v)])]; }
 };
 
 std::vector<std::pair<int, int>> neighbours_of(const ConsolidatedPoints& points) {
@@ -116,7 +89,7 @@ std::vector<std::pair<int, int>> neighbours_of(const ConsolidatedPoints& points)
         const std::size_t own = index.index(place);
         index.nearest(place, kNeighbours, near);
         for (const NearestPoints::Neighbour& n : near)
-            if (n.squared_distance < kBelongs * kBelongs * points.radii[own] * points.radii[own])
+            if (n.squared_distance < kStarReach * kStarReach * points.radii[own] * points.radii[own])
                 pairs.emplace_back(static_cast<int>(own), static_cast<int>(index.index(n.place)));
     }
     return pairs;
@@ -131,93 +104,81 @@ Sheet sheet_of(ConsolidatedPoints points, const Point3f& origin, const std::opti
     Orientation orientation = orient_normals(points.positions, neighbours, {}, points.normals);
     sheet.contradictions = std::move(orientation.contradictions);
     sheet.viewer = turn_to_viewer(neighbours, orientation.parts, origin, sensor, points);
-    std::vector<int> source;
-    sheet.mesh = triangulation(points.positions, points.normals, points.radii, team, source);
-    cut_short_handles(sheet.mesh, kEdgesOfHandle, source);
-    for (const int i : source) {
-        sheet.normals.push_back(points.normals[at(i)]);
-        sheet.radii.push_back(points.radii[at(i)]);
-        sheet.tolerances.push_back(points.tolerances[at(i)]);
-    }
+    sheet.mesh = triangulation(points.positions, points.normals, points.radii, team, sheet.source);
+    cut_short_handles(sheet.mesh, kEdgesOfHandle, sheet.source);
+    sheet.points = std::move(points);
     return sheet;
-}
-
-/// Replaces \p values by those at \p source.
-void take(std::vector<float>& values, const std::vector<int>& source) {
-    std::vector<float> taken;
-    for (const int i : source) taken.push_back(values[at(i)]);
-    values = std::move(taken);
 }
 
 /// The vertex of \p sheet that each point of the cloud belongs to, by place; -1: none. Clutter belongs to one
 /// only where it is as close as the noise there.
-std::vector<int> vertices_of_points(Surveys& surveys, const Sheet& sheet, ThreadTeam& team) {
+std::vector<VertexId> vertices_of_points(Surveys& surveys, const Sheet& sheet, ThreadTeam& team) {
     const NearestPoints& cloud = surveys.points().cloud;
     const SurfaceSurvey& survey = surveys.surface();
     constexpr int kAtATime = 1024;
-    std::vector<int> vertices(cloud.size(), -1);
+    std::vector<VertexId> vertices(cloud.size(), -1);
     if (sheet.mesh.positions.empty()) return vertices;
     const NearestPoints index(sheet.mesh.positions);
     parallel_for(static_cast<int>(cloud.size()), kAtATime, team, [&](int i) {
         const Point3f& p = cloud.point(static_cast<NearestPoints::Place>(i));
         const std::size_t nearest = index.index(index.nearest_to(p));
+        const std::size_t source = at(sheet.source[nearest]);
         const Point3f way = p - sheet.mesh.positions[nearest];
-        if (way.Norm() > kBelongs * sheet.radii[nearest]) return;
-        if (survey.at(p).clutter && std::abs(way * sheet.normals[nearest]) > sheet.tolerances[nearest])
+        if (way.Norm() > kStarReach * sheet.points.radii[source]) return;
+        if (survey.at(p).clutter &&
+            std::abs(way * sheet.points.normals[source]) > sheet.points.tolerances[source])
             return;
-        vertices[at(i)] = static_cast<int>(nearest);
+        vertices[at(i)] = static_cast<VertexId>(nearest);
     });
     return vertices;
 }
 
-/// Drops the parts of \p sheet that have fewer than \p least points, and those not wider than the usual
-/// radius: however many points they have, such as repeated readings, they are one place beside the rest.
-/// \return for each point, in the order given, 1 if it belongs to nothing that is kept, and 2 if that is such
-/// a place
-std::vector<std::uint8_t> drop_small_parts(Surveys& surveys, long long least, ThreadTeam& team,
-                                           Sheet& sheet) {
-    const Parts parts = parts_of(sheet.mesh);
-    const std::vector<int> vertices = vertices_of_points(surveys, sheet, team);
-    std::vector<long long> points(at(parts.count), 0);
-    for (const int v : vertices)
-        if (v >= 0) ++points[at(parts.of[v])];
-    std::vector<Box3f> boxes(points.size());
-    for (VertexId v = 0; v < parts.of.size(); ++v) boxes[at(parts.of[v])].Add(sheet.mesh.positions[at(v)]);
-    const double narrow = surveys.surface().usual_radius();
-    const auto left_out = [&](int part) {
-        const std::uint8_t one_place = static_cast<double>(boxes[at(part)].Diag()) <= narrow ? 2 : 0;
-        return points[at(part)] < least ? std::uint8_t{1} : one_place;
-    };
-    std::vector<Triangle>& faces = sheet.mesh.faces;
-    faces.erase(std::remove_if(faces.begin(), faces.end(),
-                               [&](const Triangle& f) { return left_out(parts.of[f[0]]) != 0; }),
-                faces.end());
-    std::vector<int> source(sheet.radii.size());
-    std::iota(source.begin(), source.end(), 0);
-    drop_unused_vertices(sheet.mesh, source);
-    take(sheet.radii, source);
-    const NearestPoints& cloud = surveys.points().cloud;
-    std::vector<std::uint8_t> out(cloud.size(), 0);
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const int v = vertices[i];
-        out[cloud.index(static_cast<NearestPoints::Place>(i))] =
-            v < 0 ? std::uint8_t{1} : left_out(parts.of[v]);
+/// The vertices of the parts that hang together.
+DisjointSets parts_of(const IndexedMesh<float>& mesh) {
+    DisjointSets parts(static_cast<int>(mesh.positions.size()));
+    for (const Triangle& f : mesh.faces) {
+        parts.join(f[0], f[1]);
+        parts.join(f[0], f[2]);
     }
-    return out;
+    return parts;
 }
 
-/// \param out as drop_small_parts() returns it
-bool misses_surface(Surveys& surveys, const std::vector<std::uint8_t>& out) {
-    // Scans miss up to .03, slabs as thick as their points are apart .09 and .16; a tree misses .14, and has
-    // .35 of clutter, which is not sharply told from its surface.
-    constexpr double kMost = 0.05;
+/// Drops the parts of \p sheet that have too few points, and those not wider than the usual radius: however
+/// many points they have, such as repeated readings, they are one place beside the rest. Sets
+/// result.misses_surface, and result.outliers to the points that belong to nothing that is kept.
+void drop_small_parts(Surveys& surveys, int target_vertices, ThreadTeam& team, Sheet& sheet,
+                      OpenStart& result) {
+    IndexedMesh<float>& mesh = sheet.mesh;
     const NearestPoints& cloud = surveys.points().cloud;
     const SurfaceSurvey& survey = surveys.surface();
-    std::size_t count = 0;
-    for (NearestPoints::Place place = 0; place < cloud.size(); ++place)
-        if (out[cloud.index(place)] == 1 && !survey.at(cloud.point(place)).clutter) ++count;
-    const double share = static_cast<double>(count) / static_cast<double>(cloud.size());
-    return share > std::max(kMost, survey.clutter());
+    const double carrying = kLeastPartVertices * static_cast<double>(cloud.size()) / target_vertices;
+    const long long least = std::max<long long>(kPointsOfPart, static_cast<long long>(carrying));
+    DisjointSets parts = parts_of(mesh);
+    const std::vector<VertexId> vertices = vertices_of_points(surveys, sheet, team);
+    std::vector<long long> points(mesh.positions.size(), 0);  // of each part, by its find()
+    std::vector<Box3f> boxes(points.size());
+    const double narrow = survey.usual_radius();
+    for (const VertexId v : vertices)
+        if (v >= 0) ++points[at(parts.find(v))];
+    for (std::size_t v = 0; v < boxes.size(); ++v)
+        boxes[at(parts.find(static_cast<VertexId>(v)))].Add(mesh.positions[v]);
+    const auto has_few = [&](VertexId v) { return points[at(parts.find(v))] < least; };
+    const auto is_dropped = [&](VertexId v) {
+        return has_few(v) || static_cast<double>(boxes[at(parts.find(v))].Diag()) <= narrow;
+    };
+    std::size_t missed = 0;
+    result.outliers.assign(cloud.size(), 0);
+    for (NearestPoints::Place place = 0; place < cloud.size(); ++place) {
+        const VertexId v = vertices[place];
+        if (v < 0 || is_dropped(v)) result.outliers[cloud.index(place)] = 1;
+        if ((v < 0 || has_few(v)) && !survey.at(cloud.point(place)).clutter) ++missed;
+    }
+    const double share = static_cast<double>(missed) / static_cast<double>(cloud.size());
+    result.misses_surface = share > std::max(kMostMissed, survey.clutter());
+    mesh.faces.erase(std::remove_if(mesh.faces.begin(), mesh.faces.end(),
+                                    [&](const Triangle& f) { return is_dropped(f[0]); }),
+                     mesh.faces.end());
+    drop_unused_vertices(mesh, sheet.source);
 }
 
 double diameter_of(const std::vector<VertexId>& loop, const std::vector<Point3f>& positions) {
@@ -242,7 +203,7 @@ void fill_small_holes(Sheet& sheet, const OpenStartOptions& options, OpenStart& 
     double widest = 0;
     for (const std::vector<VertexId>& loop : loops) {
         float radius = 0;
-        for (const VertexId v : loop) radius += sheet.radii[at(v)] / static_cast<float>(loop.size());
+        for (const VertexId v : loop) radius += sheet.radius(v) / static_cast<float>(loop.size());
         const double gap = static_cast<double>(kLeastGapRadii * radius);
         const double most = options.close_holes_up_to >= 0 ? std::max(options.close_holes_up_to, gap)
                                                            : static_cast<double>(kGapRadii * radius);
@@ -257,16 +218,18 @@ void fill_small_holes(Sheet& sheet, const OpenStartOptions& options, OpenStart& 
     for (const auto* loop : left) filler.fill(*loop);
 }
 
-void set_outliers(std::vector<std::uint8_t> outliers, bool learn, OpenStart& result) {
-    std::replace(outliers.begin(), outliers.end(), 2, 1);
-    const auto ignored = static_cast<std::size_t>(std::count(outliers.begin(), outliers.end(), 1));
-    result.left_out = static_cast<double>(ignored) / static_cast<double>(outliers.size());
+/// Says how many outliers there are. \param learn they are not to be left out
+void warn_of_outliers(bool learn, OpenStart& result) {
+    const std::size_t all = result.outliers.size();
+    const auto ignored =
+        static_cast<std::size_t>(std::count(result.outliers.begin(), result.outliers.end(), 1));
+    result.left_out = static_cast<double>(ignored) / static_cast<double>(all);
+    if (learn || ignored == 0) result.outliers.clear();
     if (ignored == 0) return;
     result.warnings.push_back(
-        share_of_points(ignored, outliers.size()) +
+        share_of_points(ignored, all) +
         " show no surface, as leaves, points between two depths, or small groups do: " +
         (learn ? "the start mesh leaves them out, but they are learned." : "they were left out."));
-    if (!learn) result.outliers = std::move(outliers);
 }
 
 void warn_of_cuts(const TargetSpace& target, const std::vector<Point3f>& contradictions, OpenStart& result) {
@@ -334,18 +297,17 @@ OpenStart open_start(const TargetSpace& target, const std::vector<Point3f>& poin
     check_for_surface(surface);
 
     progress(0.3, "Start mesh: thinning the cloud");
-    const int wanted = wanted_vertices(points.size(), options);
+    const int wanted = std::min(options.wanted_vertices,
+                                static_cast<int>(points.size() / OpenStartOptions::kPointsPerVertex));
     ConsolidatedPoints consolidated = consolidated_points(
         surveys.points().cloud, surface, std::max(wanted, kFewestConsolidated), random, team);
     check_for_part(!consolidated.positions.empty());
     progress(0.6, "Start mesh: building an open mesh");
     Sheet sheet = sheet_of(std::move(consolidated), target.frame().inside({0, 0, 0}),
                            sensor_place(surveys.points().cloud, surface.places()), team);
-    std::vector<std::uint8_t> out =
-        drop_small_parts(surveys, points_of_part(points.size(), options), team, sheet);
-    check_for_part(!sheet.mesh.faces.empty());
     OpenStart result;
-    result.misses_surface = misses_surface(surveys, out);
+    drop_small_parts(surveys, options.target_vertices, team, sheet, result);
+    check_for_part(!sheet.mesh.faces.empty());
     fill_small_holes(sheet, options, result);
 
     progress(0.8, "Start mesh: reducing it");
@@ -357,7 +319,7 @@ OpenStart open_start(const TargetSpace& target, const std::vector<Point3f>& poin
     result.fewest_vertices = fewest_vertices(std::move(network), options.target_vertices);
     result.radius = std::max(surface.sparse_radius(), surface.usual_radius());
     result.layers = surface.layers();
-    set_outliers(std::move(out), options.learn_outliers, result);
+    warn_of_outliers(options.learn_outliers, result);
     warn_of_cuts(target, sheet.contradictions, result);
     progress(1.0, "Start mesh: done");
     return result;

@@ -5,7 +5,7 @@
 // Parts of the cloud that are closed come out closed.
 //
 // How: the points are thinned to the scale on which they are a surface, put down on it
-// (consolidated_points.h), their normals turned to one side (normal_orientation.h), and triangulated
+// (consolidated_points.h), their normals turned to one side (viewpoint.h), and triangulated
 // (point_triangulation.h). Parts with too few points are dropped, small holes filled, and what remains is
 // reduced by half-edge collapses, which keep its topology.
 #pragma once

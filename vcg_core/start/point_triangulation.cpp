@@ -19,9 +19,7 @@ namespace {
 
 using vcg::Point3f;
 
-/// Neighbours farther than so many radii, or more of them, are not looked at: a star reaches up to three
-/// radii.
-constexpr float kStarReach = 3;
+/// More neighbours are not looked at: about as many points, a radius apart, are within three radii.
 constexpr int kMostNeighbours = 32;
 /// Circles through the corners of a triangle that are wider than so many radii lie in a gap.
 constexpr float kWidestCircle = 1.5F;

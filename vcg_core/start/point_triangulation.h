@@ -18,6 +18,9 @@
 
 namespace neuralmesh {
 
+/// Neighbours farther than so many radii are not looked at: a star reaches no further.
+constexpr float kStarReach = 3;
+
 /// Triangulates \p positions with \p normals, which point to one side of the surface. No two points should be
 /// closer than about their \p radii, and none of the surface farther than that from the next; gaps that are
 /// wider stay open. A vertex where pieces of surface meet in that vertex only is doubled: \p source gives the

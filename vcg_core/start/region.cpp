@@ -4,15 +4,153 @@
 #include "vcg_core/start/region.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <utility>
 
 #include "vcg_core/base/ablation.h"
-#include "vcg_core/start/hollows.h"
-
+#include "vcg_core/cloud/isolated_groups.h"
 namespace neuralmesh {
 namespace {
 
+using vcg::Point3f;
+
 // tests/experiments/accuracy/ablation.py shows what a change of these figures does.
+
+/// How far one looks for a void, beyond the opposite layer, in lattice steps.
+constexpr float kFarthest = 8;
+/// The outside begins at this squared distance from the points: in a wall nodes are nearer.
+constexpr SquaredRadius kLeastDistance = 4;
+/// A space needs this share of the places to be taken for a hollow ...
+constexpr double kLeastPlaces = 0.01;
+/// ... and of those that tell what it is so many have to say so. Fewer do where views of a scan do not meet.
+constexpr double kSure = 0.6;
+
+constexpr int kOutside = 0;
+enum class Kind { unknown, void_space, material };
+
+/// Tells the hollows of a body, whose surface is seen from within, from its material. Sealed spaces are
+/// numbered from 1.
+///
+/// From places of the cloud one looks along the normal to both sides, up to the first void: the outside or a
+/// sealed space. Between the two voids lies one layer of points, or two if the place has a layer opposite and
+/// both are passed: a wall too thin for the lattice. One layer separates material from void, two void from
+/// void. From the outside inward this decides what each sealed space is.
+class Spaces {
+public:
+    /// \p inside: the nodes of all sealed spaces. \pre the clearance of \p region is that without them
+    Spaces(const Region& region, const NodeSet& inside);
+    void look_from(const LayerPlace& place);
+    void decide(std::size_t places);
+    bool is_hollow(NodeId i) const { return space_[i] != kOutside && kinds_[space_[i]] == Kind::void_space; }
+    /// The node of each hollow that is farthest from the points.
+    std::vector<NodeId> deepest_of_hollows() const;
+
+private:
+    struct View {
+        int space;
+        bool through_wall;
+    };
+    std::optional<View> first_void(const Point3f& from, const Point3f& direction, float wall) const;
+    /// Of a space: its places of contact, those with spaces of known kind, and of these those that say that
+    /// it is void.
+    struct Told {
+        int all = 0, known = 0, says_void = 0;
+        double known_share() const { return all > 0 ? static_cast<double>(known) / all : 0; }
+    };
+    Indexed<Told> what_contacts_tell() const;
+
+    const Region& region_;
+    PerNode<int> space_;       ///< kOutside: none
+    Indexed<Kind> kinds_;      ///< of each space
+    Indexed<NodeId> deepest_;  ///< the same; nothing for the outside
+    /// Places between two spaces, by the number of layers there: one or three, or two.
+    std::map<std::pair<int, int>, std::array<int, 2>> contacts_;
+};
+
+Spaces::Spaces(const Region& region, const NodeSet& inside)
+    : region_(region), space_(inside.size(), kOutside), kinds_{Kind::void_space}, deepest_{0} {
+    const PerNode<SquaredRadius>& distances = region.distances;
+    for_each_component(region.lattice, inside, 1, [&](Span<const Run> space) {
+        NodeId deepest = space[0].begin;
+        for (const Run& run : space)
+            for (NodeId i = run.begin; i < run.end; ++i) {
+                space_[i] = kinds_.size();
+                if (distances[i] > distances[deepest]) deepest = i;
+            }
+        deepest_.push_back(deepest);
+        kinds_.push_back(Kind::unknown);
+    });
+}
+
+/// \param wall the distance of the opposite layer in this direction; 0: there is none
+std::optional<Spaces::View> Spaces::first_void(const Point3f& from, const Point3f& direction,
+                                               float wall) const {
+    const float step = region_.lattice.step;
+    for (float way = step; way < wall + kFarthest * step; way += Lattice::kRayStride * step) {
+        const NodeId node = region_.lattice.node_of(from + direction * way);
+        const bool through_wall = wall > 0 && way > wall;
+        if (node >= space_.size()) return View{kOutside, through_wall};
+        if (space_[node] != kOutside) return View{space_[node], through_wall};
+        const SquaredRadius distance = region_.distances[node];
+        if (distance >= kLeastDistance && region_.clearance[node] == distance)
+            return View{kOutside, through_wall};
+    }
+    return {};
+}
+
+void Spaces::look_from(const LayerPlace& place) {
+    const std::optional<View> up = first_void(place.position, place.normal, place.above);
+    const std::optional<View> down = first_void(place.position, -place.normal, place.below);
+    if (!up || !down || up->space == down->space) return;
+    ++contacts_[std::minmax(up->space, down->space)][up->through_wall != down->through_wall ? 1 : 0];
+}
+
+Indexed<Spaces::Told> Spaces::what_contacts_tell() const {
+    Indexed<Told> told(kinds_.size());
+    const auto count = [&](int space, int other, const std::array<int, 2>& places) {
+        Told& here = told[space];
+        here.all += places[0] + places[1];
+        if (kinds_[other] == Kind::unknown) return;
+        here.known += places[0] + places[1];
+        here.says_void += places[kinds_[other] == Kind::material ? 0 : 1];
+    };
+    for (const auto& [spaces, places] : contacts_) {
+        count(spaces.first, spaces.second, places);
+        count(spaces.second, spaces.first, places);
+    }
+    return told;
+}
+
+/// From the outside inward: next is always the space with the largest share of contacts with decided ones. A
+/// wall around a hollow has as many with the outside as with the hollow.
+void Spaces::decide(std::size_t places) {
+    for (;;) {
+        const Indexed<Told> told = what_contacts_tell();
+        int next = kOutside;
+        double share = 0;
+        for (int i = 1; i < kinds_.size(); ++i)
+            if (kinds_[i] == Kind::unknown && told[i].known_share() > share) {
+                next = i;
+                share = told[i].known_share();
+            }
+        if (next == kOutside) return;
+        const Told& here = told[next];
+        const bool is_void =
+            here.says_void >= kSure * here.known && here.known >= kLeastPlaces * static_cast<double>(places);
+        kinds_[next] = is_void ? Kind::void_space : Kind::material;
+    }
+}
+
+std::vector<NodeId> Spaces::deepest_of_hollows() const {
+    std::vector<NodeId> result;
+    for (int i = 1; i < kinds_.size(); ++i)
+        if (kinds_[i] == Kind::void_space) result.push_back(deepest_[i]);
+    return result;
+}
 
 // A space is sealed if it is this much wider than its opening ...
 constexpr double kWidthRatio = 1.7;
@@ -23,8 +161,7 @@ constexpr int kSingleLayerSquaredDepth = 4 * 4;
 constexpr double kCoarseSteps = 40;
 constexpr int kCoarseMaxRadius = 18;
 
-/// A component holds at least this share of the points, and so many of them.
-constexpr double kComponentShare = 0.01;
+/// A component holds at least so many points.
 constexpr long long kSpeckPoints = 20;
 
 // A node is fringe if its density is below this share of the highest density close by ...
@@ -74,7 +211,7 @@ void add_refined(const Lattice& coarse, const NodeSet& coarse_inside, const Latt
     const auto along = [&](int axis, int count) {
         std::vector<NodeId> nearest;
         for (int i = 0; i < count; ++i) {
-            vcg::Point3f p = coarse.corner;
+            Point3f p = coarse.corner;
             p[axis] = lattice.position(i, i, i)[axis];
             nearest.push_back(coarse.node_of(p));
         }
@@ -92,7 +229,7 @@ double radius_of_opening(const SealedSpaces& sealed, const Lattice& lattice) {
 }
 
 /// Adds to \p inside the spaces with openings wider than kMaxRadius, found on a coarser lattice.
-void seal_wide_openings(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, Region& region,
+void seal_wide_openings(const std::vector<Point3f>& points, const vcg::Box3f& box, Region& region,
                         NodeSet& inside) {
     const float step = longest_side(box) / static_cast<float>(kCoarseSteps);
     if (!(step > region.lattice.step) || skips("wide_lattice")) return;
@@ -111,17 +248,26 @@ void seal_wide_openings(const std::vector<vcg::Point3f>& points, const vcg::Box3
     region.widest_opening = std::max(region.widest_opening, radius_of_opening(sealed, coarse));
 }
 
+/// Takes the hollows out of \p inside, and sets region.hollows.
+void take_hollows_out(const std::vector<LayerPlace>& places, Region& region, NodeSet& inside) {
+    Spaces spaces(region, inside);
+    for (const LayerPlace& place : places) spaces.look_from(place);
+    spaces.decide(places.size());
+    for (NodeId i = 0; i < inside.size(); ++i)
+        if (spaces.is_hollow(i)) inside[i] = 0;
+    region.hollows = spaces.deepest_of_hollows();
+}
+
 /// Fills clearance, encloses_space, widest_opening and hollows.
-void seal(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box,
-          const std::vector<LayerPlace>& places, Region& region) {
+void seal(const std::vector<Point3f>& points, const vcg::Box3f& box, const std::vector<LayerPlace>& places,
+          Region& region) {
     region.clearance = clearances(region.lattice, region.distances, Region::kMaxRadius, {});
     SealedSpaces sealed = enclosed_spaces(region.lattice, region.distances, region.clearance, kWidthRatio, 0);
     region.encloses_space = sealed.nodes > 0;
     region.widest_opening = radius_of_opening(sealed, region.lattice);
     seal_wide_openings(points, box, region, sealed.inside);
     if (!region.encloses_space) return;
-    region.hollows =
-        take_hollows_out(region.lattice, region.distances, region.clearance, places, sealed.inside);
+    if (!skips("hollows")) take_hollows_out(places, region, sealed.inside);
     region.clearance =
         clearances(region.lattice, region.distances, Region::kMaxRadius, sealed.inside, region.hollows);
 }
@@ -130,6 +276,38 @@ long long points_of_component(long long total) {
     const long long wanted =
         std::max(kSpeckPoints, static_cast<long long>(kComponentShare * static_cast<double>(total)));
     return std::min(wanted, 1 + total / 4);  // so that a cloud of a few points has a component
+}
+
+// Gaps of a surface let points sink in: deeper than this many times the radius of the
+// widest gap, a point is not of the surface.
+constexpr double kDepthOverGap = 2;
+constexpr double kMaxSquaredDepth = 1e6;  // so that it fits into an int
+
+/// The squared depth in lattice steps up to which an isolated point still counts as one of the surface.
+int max_squared_depth(const Region& region, int level) {
+    const double gap = std::sqrt(static_cast<double>(level)) +
+                       region.widest_opening / static_cast<double>(region.lattice.step);
+    const double depth = kDepthOverGap * std::max(gap, 1.0);
+    return static_cast<int>(std::min(depth * depth, kMaxSquaredDepth));
+}
+
+/// The occupied nodes, without the fringe, that are far from all large groups.
+NodeSet isolated_nodes(const Region& region, int level) {
+    const NodeSet large =
+        solid_of(region.lattice, region.distances, region.counts, level, region.min_points).nodes;
+    NodeSet isolated(large.size());
+    for (NodeId i = 0; i < isolated.size(); ++i) isolated[i] = region.counts[i] != 0 && large[i] == 0 ? 1 : 0;
+    return isolated;
+}
+
+/// Removes from \p nodes those in the outer layer of \p solid.
+void remove_surface_nodes(const Region& region, const NodeSet& solid, int level, NodeSet& nodes) {
+    const int max_depth = max_squared_depth(region, level);
+    PerNode<std::uint32_t> outside(solid.size());
+    for (NodeId i = 0; i < solid.size(); ++i) outside[i] = solid[i] == 0 ? 1 : 0;
+    const PerNode<SquaredRadius> depths = squared_distances(region.lattice, outside, Region::kMaxRadius);
+    for (NodeId i = 0; i < nodes.size(); ++i)
+        if (solid[i] != 0 && depths[i] <= max_depth) nodes[i] = 0;
 }
 
 }  // namespace
@@ -155,16 +333,16 @@ ThinParts thin_parts(const Region& region, const std::vector<LayerPlace>& places
     return thin;
 }
 
-PerNode<std::uint32_t> count_points(const Lattice& lattice, const std::vector<vcg::Point3f>& points) {
+PerNode<std::uint32_t> count_points(const Lattice& lattice, const std::vector<Point3f>& points) {
     PerNode<std::uint32_t> counts(lattice.size(), 0);
-    for (const vcg::Point3f& p : points) {
+    for (const Point3f& p : points) {
         const NodeId i = lattice.node_of(p);
         if (i < counts.size()) ++counts[i];
     }
     return counts;
 }
 
-Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step,
+Region examine(const std::vector<Point3f>& points, const vcg::Box3f& box, float step,
                const std::vector<LayerPlace>& places) {
     Region region;
     region.lattice = Lattice(box, step, Region::kMargin);
@@ -174,6 +352,21 @@ Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, f
     region.total_points = static_cast<long long>(points.size());
     region.min_points = points_of_component(region.total_points);
     return region;
+}
+
+std::vector<std::uint8_t> outliers_of(const std::vector<Point3f>& points, const Region& region,
+                                      const NodeSet& solid, int level) {
+    NodeSet outlying = isolated_nodes(region, level);
+    if (std::find(outlying.begin(), outlying.end(), 1) != outlying.end())
+        remove_surface_nodes(region, solid, level, outlying);
+    std::vector<std::uint8_t> result;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const NodeId node = region.lattice.node_of(points[i]);
+        if (node < outlying.size() && outlying[node] == 0) continue;
+        result.resize(points.size(), 0);
+        result[i] = 1;
+    }
+    return result;
 }
 
 }  // namespace neuralmesh

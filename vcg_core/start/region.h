@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A cloud on one lattice: its points per node, and the space it encloses.
+// A cloud on one lattice: its points per node, the space it encloses, and its outliers.
 #pragma once
 
 #include <vcg/space/box3.h>
@@ -45,7 +45,7 @@ struct Region {
 ///
 /// A component holds at least 1 % of the points and at least 20, or a quarter of the points if that is less.
 ///
-/// Hollows, told from the sealed spaces by \p places (hollows.h), are outside as well. O(nodes + points).
+/// Hollows, told from the sealed spaces by \p places, are outside as well. O(nodes + points).
 Region examine(const std::vector<vcg::Point3f>& points, const vcg::Box3f& box, float step,
                const std::vector<LayerPlace>& places = {});
 
@@ -61,5 +61,14 @@ ThinParts thin_parts(const Region& region, const std::vector<LayerPlace>& places
 
 /// Points per node of \p lattice; points outside it are not counted. O(nodes + points).
 PerNode<std::uint32_t> count_points(const Lattice& lattice, const std::vector<vcg::Point3f>& points);
+
+/// 1 for each outlier; empty if there are none. A point is an outlier if it lies outside region.lattice, or
+/// if all of these hold:
+/// - its group is too small for a component,
+/// - it is farther than the radius of \p level from all larger groups,
+/// - it lies outside \p solid, or too deep inside to be on the solid's surface.
+/// Fringe points, which examine() leaves out, are never outliers. O(points + nodes).
+std::vector<std::uint8_t> outliers_of(const std::vector<vcg::Point3f>& points, const Region& region,
+                                      const NodeSet& solid, int level);
 
 }  // namespace neuralmesh

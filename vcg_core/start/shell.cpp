@@ -25,7 +25,6 @@
 #include "vcg_core/start/closed_mesh.h"
 #include "vcg_core/start/lattice_survey.h"
 #include "vcg_core/start/local_width.h"
-#include "vcg_core/start/outliers.h"
 #include "vcg_core/start/region.h"
 
 namespace neuralmesh {
@@ -40,8 +39,6 @@ constexpr int kVerticesPerFeature = 8;
 constexpr double kPointsPerVertex = 8;
 /// Fewer additional vertices than a quarter come from the noise of the lattice.
 constexpr double kWorthwhile = 1.25;
-/// The surface of the solid at one level lies between this level and the next.
-constexpr float kHalfLevel = 0.5F;
 /// Edges are this much shorter than walls and gaps are wide. With 1 some vertices land on the wrong side,
 /// with 0.6 no fewer than with this (ablation.py).
 constexpr double kEdgeOverWidth = 0.75;
@@ -54,7 +51,7 @@ constexpr double kWalled = 0.35;
 constexpr double kWallsFound = 0.67;
 // A warning is due from here on, in steps of the first lattice and of the chosen one. Gaps between points are
 // narrower.
-constexpr double kCoarseRadius = 5, kWideOpening = 4;
+constexpr double kWide = 4;
 
 double area_around(const Network& network, VertexId v) {
     const Ring& ring = network.ring(v);
@@ -98,7 +95,7 @@ WallSides reduce(ClosedMesh& closed, const Region& region, int vertices, double 
     const auto even_edge = [area](int count) { return std::sqrt(area / (kAreaPerVertex * count)); };
     const auto widest = static_cast<float>(even_edge(vertices) / kEdgeOverWidth);
     const auto thick = static_cast<float>(kThickEdges * even_edge(final_vertices));
-    const float radius = region.lattice.step * std::sqrt(static_cast<float>(closed.level) + kHalfLevel);
+    const float radius = region.lattice.step * closed.radius();
     const LocalWidths widths(network, region.lattice, closed.solid, radius,
                              std::max(widest, LocalWidths::farthest_for(thick, radius)));
     PerVertex<float> lengths(network.slot_count(), 0);
@@ -143,13 +140,6 @@ void set_mesh(ClosedMesh& closed, const Region& region, std::size_t points, cons
     copy_mesh(network, result);
 }
 
-/// Sets the figures that the lattice and the vote give.
-void set_figures(const LatticeSurvey& survey, int level, StartMesh& result) {
-    result.confidence = survey.vote.confidence;
-    result.resolution = static_cast<double>(survey.region.lattice.step);
-    result.radius = result.resolution * std::sqrt(static_cast<double>(level));
-}
-
 Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace>& places, Surveys& surveys) {
     Enclosure result;
     result.encloses_space = survey.region.encloses_space;
@@ -184,9 +174,10 @@ void warn_of_outliers(std::size_t all, const Region& region, StartMesh& result) 
                               std::to_string(region.min_points) + " points.");
 }
 
-void warn_of_uncertain_topology(const LatticeSurvey& survey, StartMesh& result) {
-    const bool coarser = survey.region.lattice.step > survey.step ||
-                         result.radius > kCoarseRadius * static_cast<double>(survey.step);
+void warn_of_uncertain_topology(const LatticeSurvey& survey, int level, StartMesh& result) {
+    const double step = static_cast<double>(survey.region.lattice.step),
+                 first = static_cast<double>(survey.step);
+    const bool coarser = step > first || step * std::sqrt(static_cast<double>(level)) > kWide * first;
     if (coarser)
         result.warnings.push_back(
             "The cloud is too sparse or too noisy for a start mesh at full resolution. A coarser one was made, which may miss thin gaps and small handles.");
@@ -197,11 +188,11 @@ void warn_of_uncertain_topology(const LatticeSurvey& survey, StartMesh& result) 
             " in total. Parts of the surface may be closer to each other than neighbouring points.");
 }
 
-void warn_of_open_surface(StartMesh& result) {
+void warn_of_open_surface(const Lattice& lattice, StartMesh& result) {
     if (!result.encloses_space)
         result.warnings.push_back(
             "The points enclose no space wider than the gaps between them, as in a single scan, a sheet or a thin wall. The surface was closed around both of their sides. Choose surface 2 (open) for one layer that ends where the points end.");
-    if (result.widest_opening > kWideOpening * result.resolution)
+    if (result.widest_opening > kWide * static_cast<double>(lattice.step))
         result.warnings.push_back(
             "The cloud is open: holes up to " + percent(2 * result.widest_opening) +
             " of the bounding-box diagonal wide were closed. Choose surface 2 (open) to keep those that are much wider than the gaps between the points.");
@@ -217,9 +208,9 @@ Shell::Shell(const std::vector<Point3f>& points, Surveys& surveys, const ShellOp
     for (const Point3f& p : points) box.Add(p);
     progress(0.2, "Start mesh: counting components and handles");
     ThreadTeam team(thread_count(options.threads));
-    const std::vector<LayerPlace> places = layer_places(surveys.points(), team);
+    const std::vector<LayerPlace> places = layer_places(surveys.points().cloud, team);
     PartOf counting(progress, 0.2, 0.7);
-    survey_ = survey_lattices(points, places, box, options.threads, counting);
+    survey_ = survey_lattices(points, places, box, team, counting);
     enclosure_ = enclosure_of(survey_, places, surveys);
 }
 
@@ -234,10 +225,10 @@ StartMesh Shell::mesh(Progress& progress) const {
     static_cast<Enclosure&>(result) = enclosure_;
     set_mesh(closed, region, points_.size(), options_, progress, result);
     progress(0.9, "Start mesh: measuring it");
-    set_figures(survey_, closed.level, result);
+    result.confidence = survey_.vote.confidence;
     set_outliers(points_, region, closed, options_.learn_outliers, result);
-    warn_of_uncertain_topology(survey_, result);
-    warn_of_open_surface(result);
+    warn_of_uncertain_topology(survey_, closed.level, result);
+    warn_of_open_surface(region.lattice, result);
     warn_of_outliers(points_.size(), region, result);
     progress(1.0, "Start mesh: done");
     return result;

@@ -8,9 +8,9 @@
 // 2. The solid at radius r is the set of nodes that the centre of a ball of radius r cannot reach from
 //    outside without the ball touching a point. Spaces much wider than their opening are sealed: they are
 //    the inside of a surface with gaps between its points (clearance.h, region.h). Those that a wall
-//    separates from the outside are hollows, and not of the solid (hollows.h).
+//    separates from the outside are hollows, and not of the solid (region.h).
 // 3. From several radii on the solid is grown to twice the radius without bridging gaps, which tells
-//    handles from gaps between points and from parts that nearly touch (bridgeless_growth.h). The topology
+//    handles from gaps between points and from parts that nearly touch (lattice_survey.h). The topology
 //    that persists over the largest range of radii is chosen (lattice_survey.h).
 // 4. If the vote is unclear, finer and coarser lattices are asked.
 // 5. Marching tetrahedra turn the chosen solid into a mesh (closed_mesh.h). Half-edge collapses, which keep
@@ -81,8 +81,6 @@ struct StartMesh : IndexedMesh<float>, Enclosure {
     int fewest_vertices = 0;  ///< that its components and handles need
     WallSides walls;
     double confidence = 0;         ///< share of the votes for components and genus, in [0, 1]
-    double radius = 0;             ///< of the ball; the mesh lies about this far outside the points
-    double resolution = 0;         ///< distance of the lattice nodes
     long long ignored_points = 0;  ///< outliers: the mesh leaves them out
     /// 1 for each outlier of the cloud. Empty if all points are to be learned: there are no outliers, or
     /// they exceed kMaxOutlierShare.

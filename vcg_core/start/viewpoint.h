@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The place that a surface was seen from by a sensor, if its points tell.
+// The sides that the normals of points face: their agreement, and the place that a sensor saw the surface
+// from.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -13,6 +14,38 @@
 #include "vcg_core/start/consolidated_points.h"
 
 namespace neuralmesh {
+
+/// A surface that is seen at a lower angle than this cosine, 6 degrees, may be turned either way: its normals
+/// are not more exact. So are walls, seen from above.
+constexpr float kGrazing = 0.1F;
+
+struct Orientation {
+    /// For each point the first one of its part: of those that pairs which surely continue each other
+    /// connect.
+    std::vector<int> parts;
+    /// The middles of such pairs whose normals are opposite all the same: the surface has one side only, as a
+    /// Moebius strip, or comes too close to itself.
+    std::vector<vcg::Point3f> contradictions;
+};
+
+/// Turns \p normals, of length 1, so that those of \p neighbours agree along the minimum spanning tree of
+/// what they connect: first between points whose planes continue each other, last across walls. Pairs of
+/// neighbours may occur twice. O(pairs log pairs).
+/// \param sights the directions in which points are seen by a viewer, who is one more neighbour of theirs:
+/// first of those whose sight has the greatest part along the normal, up to 1. 0 where there is none; empty:
+/// nowhere.
+Orientation orient_normals(const std::vector<vcg::Point3f>& positions,
+                           const std::vector<std::pair<int, int>>& neighbours,
+                           const std::vector<vcg::Point3f>& sights, std::vector<vcg::Point3f>& normals);
+
+/// A sensor that looks in even steps of angle, as a range camera or a turning scanner does, puts
+/// |cos(angle)| / distance^2 points on a unit of area: the angle is that between the normal and the line of
+/// sight. The place from which that law leaves the least mean deviation of the logarithm of the density at
+/// \p places, if it leaves at most half of what there is without a law; else none: of several views, of a
+/// cloud thinned since, of a sensor so far away that the density is even. Within a tenth of the diagonal of
+/// the cloud on frames with noise. O(places); 0.05 s.
+std::optional<vcg::Point3f> sensor_place(const NearestPoints& cloud,
+                                         const std::vector<SurveyedPlace>& places);
 
 /// Whether \p viewer is the one above of turn_to_viewer(), so far away that lines of sight are parallel.
 bool is_above(const std::optional<vcg::Point3f>& viewer);

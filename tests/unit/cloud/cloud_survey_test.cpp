@@ -7,7 +7,6 @@
 #include "tests/unit/support/prelude.h"
 #include "tests/unit/support/referee.h"
 #include "vcg_core/cloud/outlier_removal.h"
-#include "vcg_core/cloud/point_areas.h"
 
 namespace neuralmesh::cloud_survey_test {
 
@@ -218,11 +217,9 @@ TEST(OutlierRemoval, CopesWithCoincidingPoints) {
 
 // The areas that points stand for, and signals that are even over the surface.
 
-std::optional<PointAreas> areas_of(const std::vector<vcg::Point3f>& points, int threads = 1) {
-    return areas_if_uneven(CloudSurvey(points, threads));
-}
+std::vector<float> areas_of(const Cloud& cloud) { return CloudSurvey(in_float(cloud), 1).areas_if_uneven(); }
 
-bool is_uneven(const Cloud& cloud) { return areas_of(in_float(cloud)).has_value(); }
+bool is_uneven(const Cloud& cloud) { return !areas_of(cloud).empty(); }
 
 TEST(PointAreas, EvenCloudsHaveNone) {
     for (const int count : {1100, 2000, 10000, 100000}) {
@@ -239,13 +236,14 @@ TEST(PointAreas, OnePlaceHasNone) { EXPECT_FALSE(is_uneven(Cloud(3000, vcg::Poin
 
 TEST(PointAreas, AreTheRatioOfDensities) {
     for (const int ratio : {5, 10, 30}) {
-        const auto areas = areas_of(in_float(shapes::uneven_sphere_cloud(50000, ratio)));
-        ASSERT_TRUE(areas.has_value());
+        const CloudSurvey survey(in_float(shapes::uneven_sphere_cloud(50000, ratio)), 1);
+        const std::vector<float> areas = survey.areas_if_uneven();
+        ASSERT_FALSE(areas.empty());
         double sums[2] = {};
         double counts[2] = {};
-        for (std::size_t i = 0; i < areas->points.size(); ++i) {
-            const int upper = areas->points[i][2] > 0 ? 1 : 0;
-            sums[upper] += static_cast<double>(areas->of_run[i / PointAreas::kRun]);
+        for (NearestPoints::Place i = 0; i < survey.cloud.size(); ++i) {
+            const int upper = survey.cloud.point(i)[2] > 0 ? 1 : 0;
+            sums[upper] += static_cast<double>(areas[i / CloudSurvey::kRun]);
             ++counts[upper];
         }
         EXPECT_NEAR(sums[1] / counts[1] / (sums[0] / counts[0]), ratio, 0.15 * ratio);
@@ -256,17 +254,16 @@ TEST(PointAreas, AreTheRatioOfDensities) {
 TEST(PointAreas, AreBounded) {
     Cloud cloud = shapes::uneven_sphere_cloud(20000, 1000);
     cloud.resize(25000, cloud.front());
-    const auto areas = areas_of(in_float(cloud));
-    ASSERT_TRUE(areas.has_value());
-    const auto [least, most] = std::minmax_element(areas->of_run.begin(), areas->of_run.end());
+    const std::vector<float> areas = areas_of(cloud);
+    ASSERT_FALSE(areas.empty());
+    const auto [least, most] = std::minmax_element(areas.begin(), areas.end());
     EXPECT_GT(*least, 0);
     EXPECT_LE(*most, 10001 * *least);
 }
 
 TEST(PointAreas, OfAFarEndAreAtMostAHundredTimesTheMedian) {
-    const auto areas = areas_of(in_float(shapes::uneven_sphere_cloud(400000, 1000)));
-    ASSERT_TRUE(areas.has_value());
-    std::vector<float> sorted = areas->of_run;
+    std::vector<float> sorted = areas_of(shapes::uneven_sphere_cloud(400000, 1000));
+    ASSERT_FALSE(sorted.empty());
     std::sort(sorted.begin(), sorted.end());
     const double times = static_cast<double>(sorted.back() / sorted[sorted.size() / 2]);
     EXPECT_NEAR(times, 100, 1);

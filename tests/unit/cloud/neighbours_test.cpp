@@ -83,7 +83,7 @@ TEST(NearestPoints, AnyWithinAgreesWithBruteForce) {
                 for (NearestPoints::Place q = 0; q < index.size(); ++q)
                     expected = expected || (counts(q) && (index.point(q) - index.point(p)).SquaredNorm() <=
                                                              radius * radius);
-                ASSERT_EQ(index.any_within(p, radius, counts), expected) << p << ' ' << radius;
+                ASSERT_EQ(index.any_within(index.point(p), radius, counts), expected) << p << ' ' << radius;
             }
     }
 }

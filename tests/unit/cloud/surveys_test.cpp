@@ -35,7 +35,7 @@ std::vector<Point3f> sheet(int count, float bend, const Deviation& deviation) {
 
 SurfaceSurvey survey_of(const std::vector<Point3f>& points, int threads = 1) {
     ThreadTeam team(threads);
-    return SurfaceSurvey(CloudSurvey(points, threads), team);
+    return SurfaceSurvey(NearestPoints(points), team);
 }
 
 TEST(LocalQuadric, FollowsAParaboloid) {
@@ -189,7 +189,7 @@ constexpr int kPointsOfWall = 20000;
 double share_of(const Cloud& cloud) {
     const std::vector<Point3f> points = shapes::in_float(cloud);  // which the surveys refer to
     Surveys surveys(points, 1);
-    return share_on_thin_walls(layer_places(surveys.points(), one_thread()), surveys);
+    return share_on_thin_walls(layer_places(surveys.points().cloud, one_thread()), surveys);
 }
 
 /// A sphere of \p kPointsOfWall points and another one within it, \p spacings spacings of the points away.

@@ -6,7 +6,7 @@
 
 #include "tests/unit/support/prelude.h"
 #include "tests/unit/support/referee.h"
-#include "vcg_core/cloud/cloud_survey.h"
+#include "vcg_core/cloud/surface_survey.h"
 
 namespace neuralmesh::target_space_test {
 

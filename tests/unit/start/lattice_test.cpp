@@ -5,9 +5,8 @@
 #include "tests/unit/support/referee.h"
 #include "tests/unit/support/small_lattice.h"
 #include "vcg_core/base/disjoint_sets.h"
-#include "vcg_core/start/bridgeless_growth.h"
-#include "vcg_core/start/components.h"
-#include "vcg_core/start/marching_tetrahedra.h"
+#include "vcg_core/start/closed_mesh.h"
+#include "vcg_core/start/lattice_survey.h"
 
 namespace neuralmesh::lattice_test {
 

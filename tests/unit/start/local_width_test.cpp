@@ -5,7 +5,7 @@
 #include "vcg_core/start/local_width.h"
 
 #include "tests/unit/support/prelude.h"
-#include "vcg_core/start/marching_tetrahedra.h"
+#include "vcg_core/start/closed_mesh.h"
 
 namespace neuralmesh::local_width_test {
 

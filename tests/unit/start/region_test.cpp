@@ -5,9 +5,7 @@
 #include "tests/unit/support/shapes.h"
 #include "tests/unit/support/small_lattice.h"
 #include "vcg_core/start/clearance.h"
-#include "vcg_core/start/components.h"
 #include "vcg_core/start/lattice_survey.h"
-#include "vcg_core/start/outliers.h"
 #include "vcg_core/start/region.h"
 
 namespace neuralmesh::region_test {

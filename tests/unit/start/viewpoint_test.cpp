@@ -7,8 +7,6 @@
 #include "tests/unit/support/normal_clouds.h"
 #include "vcg_core/mesh/triangle.h"
 #include "vcg_core/start/facing.h"
-#include "vcg_core/start/normal_orientation.h"
-#include "vcg_core/start/sensor_place.h"
 
 namespace neuralmesh::viewpoint_test {
 
@@ -274,6 +272,9 @@ TEST(SensorPlace, IsNoneForEvenPoints) {
     EXPECT_FALSE(found(sensors::aerial_scan(20000, 10)));
     EXPECT_FALSE(found(shapes::sphere_cloud(20000)));
     EXPECT_FALSE(found(shapes::plane_cloud(30)));
+    Cloud repeated = shapes::plane_cloud(8000);
+    repeated.resize(8200, Point3d(0.2, 0.3, 0.2));
+    EXPECT_FALSE(found(repeated));
 }
 
 }  // namespace neuralmesh::viewpoint_test

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/start/components.h"
+// Components and Euler characteristics, from runs and words of nodes instead of one by one.
+#include "vcg_core/start/lattice.h"
 
 #include <algorithm>
 #include <cstddef>
