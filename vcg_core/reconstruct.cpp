@@ -167,11 +167,25 @@ NeuralMesh mesh_of(const LearningTask& task, const LearnedNetwork& learned, cons
     return mesh;
 }
 
-NeuralMesh learn(const TargetSpace& given, const Settings& settings, MonotoneProgress& progress,
-                 const OuterStages& stages) {
+NeuralMesh learn(const TargetSpace& given, const Settings& settings, const IndexedMesh<double>& start,
+                 MonotoneProgress& progress) {
     PartOf preparing(progress, 0, kPrepared);
-    const LearningTask task = stages.prepare(given, settings, preparing);
-    return stages.finish(task, Learning(task, settings).with(settings.target_vertices, progress));
+    const LearningTask task = prepare_or_stop(given, settings, start, preparing);
+    const LearnedNetwork learned = Learning(task, settings).with(settings.target_vertices, progress);
+    return mesh_of(task, learned, settings, progress);
+}
+
+/// The same with as many vertices as settings.target_error needs.
+NeuralMesh learn_to_target_error(const TargetSpace& given, const Settings& settings,
+                                 const IndexedMesh<double>& start, MonotoneProgress& progress) {
+    OuterStages stages;
+    stages.prepare = [&start](const TargetSpace& target, const Settings& of_task, Progress& preparing) {
+        return prepare_or_stop(target, of_task, start, preparing);
+    };
+    stages.finish = [&](const LearningTask& task, const LearnedNetwork& learned) {
+        return mesh_of(task, learned, settings, progress);
+    };
+    return learn_to_error(given, settings, progress, stages);
 }
 
 }  // namespace
@@ -181,15 +195,8 @@ NeuralMesh reconstruct(const TargetSpace& given, const Settings& settings, Progr
     const auto begin = std::chrono::steady_clock::now();
     settings.check();
     MonotoneProgress monotone(progress);
-    OuterStages stages;
-    stages.prepare = [&start](const TargetSpace& target, const Settings& of_task, Progress& preparing) {
-        return prepare_or_stop(target, of_task, start, preparing);
-    };
-    stages.finish = [&](const LearningTask& task, const LearnedNetwork& learned) {
-        return mesh_of(task, learned, settings, monotone);
-    };
-    NeuralMesh mesh = settings.target_error > 0 ? learn_to_error(given, settings, monotone, stages)
-                                                : learn(given, settings, monotone, stages);
+    NeuralMesh mesh = settings.target_error > 0 ? learn_to_target_error(given, settings, start, monotone)
+                                                : learn(given, settings, start, monotone);
     if (monotone.stopped()) mesh.report.stop_reason = StopReason::cancelled;
     mesh.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return mesh;
