@@ -3,8 +3,11 @@
 
 #include "vcg_core/engine/basic_step_batch.h"
 
+#include <vcg/space/box3.h>
+
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "vcg_core/base/platform.h"
 
@@ -30,19 +33,41 @@ void prefetch_ring_of(const Network& network, VertexId winner) {
 
 }  // namespace
 
+void Slabs::adapt(const vcg::Point3f* signals, int count, int parts) {
+    constexpr int kAdaptEvery = 64;  // batches
+    if (parts == parts_ && (parts == 1 || ++batches_ % kAdaptEvery != 0)) return;
+    parts_ = parts;
+    vcg::Box3f box;
+    for (int i = 0; i < count; ++i) box.Add(signals[i]);
+    axis_ = box.MaxDim();
+    std::vector<float> along;
+    for (int i = 0; i < count; ++i) along.push_back(signals[i][axis_]);
+    std::sort(along.begin(), along.end());
+    for (int part = 0; part + 1 < parts; ++part)
+        ends_[part] = along[static_cast<std::size_t>(count * (part + 1) / parts)];
+}
+
 void ComputedSteps::reserve(int count) {
     if (winners_.size() >= count) return;
+    chosen_.resize(count);
+    signals_.resize(count);
     winners_.resize(count);
     deltas_.resize(count);
     displacements_.resize(count * kStride);
     by_valence_.resize(count);
+    crosses_.resize(count);
+    slabs_.resize(count * kStride);
 }
 
-void ComputedSteps::compute(const BatchInput& input, int first, int count) {
+void ComputedSteps::compute(const BatchInput& input, const Slabs& slabs, int part) {
     const Network& network = input.network;
-    const vcg::Point3f* signals = input.signals + first;
-    count_ = count;
-    find_winners(input, signals);
+    count_ = 0;
+    for (int i = 0; i < input.count; ++i) {
+        if (slabs.part_of(input.signals[i]) != part) continue;
+        chosen_[count_] = i;
+        signals_[count_++] = input.signals[i];
+    }
+    find_winners(input);
     sort_by_valence(network);
 
     const int* const order = by_valence_.data();
@@ -53,18 +78,36 @@ void ComputedSteps::compute(const BatchInput& input, int first, int count) {
             ++to;
         for (int next = to; input.out_of_cache && next < std::min(to + EightSteps::kLanes, count_); ++next)
             prefetch_ring_of(network, winners_[order[next]]);
-        compute_group(input, signals, order + from, to - from);
+        compute_group(input, order + from, to - from);
         from = to;
+    }
+    find_slabs(network, slabs, part);
+}
+
+void ComputedSteps::find_winners(const BatchInput& input) {
+    const WinnerSearch& search = input.search;
+    for (int k = 0; k < count_; ++k) {
+        if (k + kHeadsAhead < count_) search.prefetch_heads(signals_[k + kHeadsAhead]);
+        if (input.out_of_cache && k + kVerticesAhead < count_)
+            search.prefetch_vertices(signals_[k + kVerticesAhead]);
+        winners_[k] = search.winner(signals_[k]);
     }
 }
 
-void ComputedSteps::find_winners(const BatchInput& input, const vcg::Point3f* signals) {
-    const WinnerSearch& search = input.search;
+void ComputedSteps::find_slabs(const Network& network, const Slabs& slabs, int part) {
     for (int k = 0; k < count_; ++k) {
-        if (k + kHeadsAhead < count_) search.prefetch_heads(signals[k + kHeadsAhead]);
-        if (input.out_of_cache && k + kVerticesAhead < count_)
-            search.prefetch_vertices(signals[k + kVerticesAhead]);
-        winners_[k] = search.winner(signals[k]);
+        std::uint8_t* slab = slabs_.data() + k * kStride;
+        const auto note = [&](VertexId v) {
+            const int its = slabs.part_of(network.position(v));
+            *slab++ = static_cast<std::uint8_t>(its);
+            return its != part;
+        };
+        bool crosses = false;
+        if (slabs.parts() > 1) {
+            crosses = note(winners_[k]);
+            for (const VertexId v : network.ring(winners_[k])) crosses = note(v) || crosses;
+        }
+        crosses_[k] = crosses ? 1 : 0;
     }
 }
 
@@ -77,15 +120,14 @@ void ComputedSteps::sort_by_valence(const Network& network) {
     for (int k = 0; k < count_; ++k) by_valence_[place[valence(k)]++] = k;
 }
 
-void ComputedSteps::compute_group(const BatchInput& input, const vcg::Point3f* signals, const int* group,
-                                  int size) {
+void ComputedSteps::compute_group(const BatchInput& input, const int* group, int size) {
     VertexId winners[EightSteps::kLanes];
     vcg::Point3f their_signals[EightSteps::kLanes];
     Four* displacements[EightSteps::kLanes];
     for (int lane = 0; lane < EightSteps::kLanes; ++lane) {
         const int k = group[lane < size ? lane : 0];
         winners[lane] = winners_[k];
-        their_signals[lane] = signals[k];
+        their_signals[lane] = signals_[k];
         displacements[lane] = displacements_.data() + k * kStride;
     }
     EightVectors n;
@@ -108,28 +150,58 @@ const std::vector<StepResult>& BasicStepBatch::take(const vcg::Point3f* signals,
                                                     const StepRates& rates, Network& network,
                                                     WinnerSearch& search) {
     const int threads = std::clamp(count / kLeastPerThread, 1, team_.members());
-    // With several threads, one has moved all vertices, and they are in the cache of its core.
-    const bool out_of_cache = threads > 1 || network.vertex_count() >= kLeastOutOfCache;
-    const BatchInput input{signals, rates, network, search, out_of_cache};
-    for (int part = 0; part < threads; ++part)
-        parts_[static_cast<std::size_t>(part)].reserve((count + threads - 1) / threads);
-    team_.parallel(threads, [&](int /*member*/, int part) {
-        const int first = count * part / threads;
-        parts_[static_cast<std::size_t>(part)].compute(input, first, count * (part + 1) / threads - first);
-    });
-    results_.clear();
-    for (int part = 0; part < threads; ++part) apply(parts_[static_cast<std::size_t>(part)], network, search);
+    const bool out_of_cache = network.vertex_count() >= kLeastOutOfCache;
+    const BatchInput input{signals, count, rates, network, search, out_of_cache};
+    slabs_.adapt(signals, count, threads);
+    steps_.resize(static_cast<std::size_t>(count));
+    results_.resize(static_cast<std::size_t>(count));
+    for (int part = 0; part < threads; ++part) {
+        parts_[static_cast<std::size_t>(part)].reserve(count);
+        changed_[static_cast<std::size_t>(part)].reserve(static_cast<std::size_t>(count) *
+                                                         (1 + Ring::kMaxValence));
+    }
+    team_.parallel(threads, [&](int /*member*/, int part) { compute(input, part); });
+    team_.parallel(threads, [&](int /*member*/, int part) { move_vertices(part, network, search); });
+    for (int part = 0; part < threads; ++part) {
+        for (const auto& changed : changed_[static_cast<std::size_t>(part)]) search.relink(changed);
+        changed_[static_cast<std::size_t>(part)].clear();
+    }
     return results_;
 }
 
-/// Moves vertices by all displacements, in the order of the signals.
-void BasicStepBatch::apply(const ComputedSteps& steps, const Network& network, WinnerSearch& search) {
+void BasicStepBatch::compute(const BatchInput& input, int part) {
+    ComputedSteps& steps = parts_[static_cast<std::size_t>(part)];
+    steps.compute(input, slabs_, part);
     for (int k = 0; k < steps.count(); ++k) {
-        const Four* by = steps.displacements(k);
-        const VertexId winner = steps.winner(k);
-        results_.push_back({winner, steps.delta(k)});
-        search.move(winner, load_xyz(&network.slots()[winner]) + by[0]);
-        for (const VertexId v : network.ring(winner)) search.move(v, load_xyz(&network.slots()[v]) + *++by);
+        const auto signal = static_cast<std::size_t>(steps.signal(k));
+        steps_[signal] = {static_cast<std::uint16_t>(k), static_cast<std::uint8_t>(part),
+                          static_cast<std::uint8_t>(steps.crosses(k) ? 1 : 0)};
+        results_[signal] = {steps.winner(k), steps.delta(k)};
+    }
+}
+
+/// Moves the vertices in slab \p part by all displacements, in the order of the signals.
+void BasicStepBatch::move_vertices(int part, const Network& network, WinnerSearch& search) {
+    std::vector<WinnerSearch::ChangedCell>& changed = changed_[static_cast<std::size_t>(part)];
+    const auto move = [&](VertexId v, const Four& by) {
+        search.place(v, load_xyz(&network.slots()[v]) + by, changed);
+    };
+    for (const Step& step : steps_) {
+        if (step.part != part && step.crosses == 0) continue;
+        const ComputedSteps& steps = parts_[step.part];
+        const Four* by = steps.displacements(step.k);
+        const VertexId winner = steps.winner(step.k);
+        if (step.crosses == 0) {
+            move(winner, by[0]);
+            for (const VertexId v : network.ring(winner)) move(v, *++by);
+            continue;
+        }
+        const std::uint8_t* slab = steps.slabs_of(step.k);
+        if (*slab == part) move(winner, by[0]);
+        for (const VertexId v : network.ring(winner)) {
+            ++by;
+            if (*++slab == part) move(v, *by);
+        }
     }
 }
 

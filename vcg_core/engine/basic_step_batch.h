@@ -7,6 +7,8 @@
 
 #include <vcg/space/point3.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "vcg_core/base/indexed.h"
@@ -27,42 +29,74 @@ struct StepResult {
 /// Signals, and the state of the network from which all steps of a batch start.
 struct BatchInput {
     const vcg::Point3f* signals;
+    int count;
     StepRates rates;
     const Network& network;
     const WinnerSearch& search;
     bool out_of_cache;  ///< many vertices are not in the cache of the core that needs them
 };
 
-/// The steps of consecutive signals. Changes nothing but itself. Aligned, so that no two threads write to the
-/// same cache line.
+/// Slabs of space, one for each thread, with about as many signals in each. A thread takes the signals of its
+/// slab and moves the vertices there, so that they stay in the cache of its core.
+class Slabs {
+public:
+    static constexpr int kMost = ThreadTeam::kMost;
+
+    /// Adapts them to \p signals, if there are others than \p parts of them, or now and then.
+    void adapt(const vcg::Point3f* signals, int count, int parts);
+    int parts() const { return parts_; }
+    int part_of(const vcg::Point3f& p) const {
+        int part = 0;
+        while (part + 1 < parts_ && p[axis_] >= ends_[part]) ++part;
+        return part;
+    }
+
+private:
+    int parts_ = 1;
+    int axis_ = 0;
+    int batches_ = 0;  ///< since they were adapted
+    float ends_[kMost] = {};
+};
+
+/// The steps of the signals in one slab. Changes nothing but itself. Aligned, so that no two threads write to
+/// the same cache line.
 class alignas(64) ComputedSteps {
 public:
     /// Makes room for \p count steps: compute() runs on threads, where nothing may throw.
     void reserve(int count);
-    /// Finds the winners of \p count signals from number \p first on, and computes by what each step moves
-    /// the winner and its ring. O(count) expected.
-    void compute(const BatchInput& input, int first, int count);
+    /// Finds the winners of the signals in slab \p part, and computes by what each step moves the winner and
+    /// its ring. O(signals) expected.
+    void compute(const BatchInput& input, const Slabs& slabs, int part);
 
     int count() const { return count_; }
-    /// Of step k: its winner, and delta (see eq 2).
+    /// Of step k: the number of its signal, its winner, and delta (see eq 2).
+    int signal(int k) const { return chosen_[k]; }
     VertexId winner(int k) const { return winners_[k]; }
     float delta(int k) const { return deltas_[k]; }
     /// Displacement [0] is that of the winner of step k, [1 + i] that of its i-th ring vertex.
     const Four* displacements(int k) const { return displacements_.data() + k * kStride; }
+    /// Whether a vertex that step k moves lies in another slab.
+    bool crosses(int k) const { return crosses_[k] != 0; }
+    /// The slabs of these vertices, in the order of the displacements; if crosses(k).
+    const std::uint8_t* slabs_of(int k) const { return slabs_.data() + k * kStride; }
 
 private:
     static constexpr int kStride = 1 + Ring::kMaxValence;
 
-    void find_winners(const BatchInput& input, const vcg::Point3f* signals);
+    void find_winners(const BatchInput& input);
     void sort_by_valence(const Network& network);
-    void compute_group(const BatchInput& input, const vcg::Point3f* signals, const int* group, int size);
+    void compute_group(const BatchInput& input, const int* group, int size);
+    void find_slabs(const Network& network, const Slabs& slabs, int part);
 
     EightSteps eight_;
     int count_ = 0;
+    Indexed<int> chosen_;  ///< numbers of signals, ascending
+    Indexed<vcg::Point3f> signals_;
     Indexed<VertexId> winners_;
     Indexed<float> deltas_;
     Indexed<Four> displacements_;
     Indexed<int> by_valence_;  ///< steps, sorted by the valences of their winners
+    Indexed<std::uint8_t> crosses_, slabs_;
 };
 
 /// A batch of Basic Steps. All winners are found, and all displacements computed, in the state of the network
@@ -74,7 +108,9 @@ public:
 
     /// \p threads: 0 for as many as the machine has.
     explicit BasicStepBatch(int threads)
-        : team_(thread_count(threads)), parts_(static_cast<std::size_t>(team_.members())) {}
+        : team_(thread_count(threads)),
+          parts_(static_cast<std::size_t>(team_.members())),
+          changed_(parts_.size()) {}
 
     /// Takes \p count steps, 1 to kMostSignals. \return their results in the order of the signals, valid
     /// until the next call. O(count) expected.
@@ -85,10 +121,20 @@ public:
     ThreadTeam& team() { return team_; }
 
 private:
-    void apply(const ComputedSteps& steps, const Network& network, WinnerSearch& search);
+    /// A step: number k of a part.
+    struct Step {
+        std::uint16_t k;
+        std::uint8_t part, crosses;
+    };
+
+    void compute(const BatchInput& input, int part);
+    void move_vertices(int part, const Network& network, WinnerSearch& search);
 
     ThreadTeam team_;
-    std::vector<ComputedSteps> parts_;  ///< by thread
+    Slabs slabs_;
+    std::vector<ComputedSteps> parts_;                             ///< by slab
+    std::vector<std::vector<WinnerSearch::ChangedCell>> changed_;  ///< by slab
+    std::vector<Step> steps_;                                      ///< by signal
     std::vector<StepResult> results_;
 };
 

@@ -44,15 +44,33 @@ public:
     void add(VertexId v);
     /// Call before \p v is removed from the network. O(1) expected.
     void remove(VertexId v);
+    /// A vertex that has moved from one cell of the table to another.
+    struct ChangedCell {
+        VertexId vertex;
+        FourInts from, to;
+    };
+    /// Moves \p v to \p where (x, y, z, 0) in the network, but not in the table: appends to \p changed what
+    /// relink() has to be called with before the next search. Threads may place different vertices. O(1).
+    void place(VertexId v, Four where, std::vector<ChangedCell>& changed) {
+        VertexRecord* slot = &network_.slots()[v];
+        const FourInts from = cell_of(load_xyz(slot));
+        const FourInts to = cell_of(where);
+        store_xyz(slot, where);
+        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0)
+            changed.push_back({v, from, to});
+    }
+    /// The changes of a vertex in their order. O(1) expected.
+    void relink(const ChangedCell& changed) {
+        unlink(changed.vertex, bucket_of(changed.from));
+        link(changed.vertex, bucket_of(changed.to));
+    }
     /// Moves \p v to \p where (x, y, z, 0), in the network and in the table. O(1) expected.
     void move(VertexId v, Four where) {
         VertexRecord* slot = &network_.slots()[v];
         const FourInts from = cell_of(load_xyz(slot));
         const FourInts to = cell_of(where);
         store_xyz(slot, where);
-        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) == 0) return;
-        unlink(v, bucket_of(from));
-        link(v, bucket_of(to));
+        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0) relink({v, from, to});
     }
     void move(VertexId v, const vcg::Point3f& where) { move(v, Four{where[0], where[1], where[2], 0}); }
     /// Rebuilds the table if the number of vertices has doubled or fallen to a third. O(1), O(vertices) then.
