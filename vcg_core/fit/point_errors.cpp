@@ -18,9 +18,8 @@ namespace {
 
 constexpr std::size_t kHeldOutChunk = 512;
 
-/// Vertex normals averaged twice over the rings, which takes out most of the noise.
 PerVertex<Vector3> smoothed_normals(const Network& network, const Surface& surface) {
-    constexpr int kRings = 2;
+    constexpr int kRings = 2;  ///< takes out most of the noise
     PerVertex<Vector3> normals = area_vectors_around(network, surface, kRings);
     for (Vector3& n : normals) n.normalize();
     return normals;

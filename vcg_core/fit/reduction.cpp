@@ -11,7 +11,6 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/fitter.h"
-#include "vcg_core/fit/volume_collapse.h"
 
 namespace neuralmesh {
 

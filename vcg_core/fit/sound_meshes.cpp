@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "vcg_core/base/ablation.h"
-#include "vcg_core/fit/cut_faces.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/redistribute.h"
 
@@ -16,7 +15,7 @@ namespace neuralmesh {
 
 namespace {
 
-constexpr int kRounds = 10;
+constexpr int kRounds = 10;        ///< during the first four the neighbourhoods widen
 constexpr float kLongestMove = 1;  ///< of a vertex, in mean lengths of its edges
 constexpr int kRestoredRings = 6;  ///< around self-crossings that remain; they get their old positions back
 constexpr int kSweeps = 2;         ///< of smoothing per round
