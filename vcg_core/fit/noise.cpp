@@ -82,7 +82,7 @@ float noise_variance(const Surface& surface, const PointsByFace& points, ThreadT
 PerVertex<float> local_variances(const Network& network, const Surface& surface, const PointsByFace& points) {
     constexpr int kMinPoints = 3;       ///< fewer than above: the sums are over several faces
     constexpr int kRingsOfNormals = 2;  ///< as in point_errors.cpp
-    constexpr int kSpreads = 1;         ///< the least: the noise is that of the place
+    constexpr int kSpreads = 1;         ///< the variance is that of the place
     const PerVertex<Vector3> normals = area_vectors_around(network, surface, kRingsOfNormals);
     PerVertex<Spread> spreads(surface.positions.size());
     for (int f = 0; f < surface.face_count(); ++f) {

@@ -21,7 +21,7 @@ constexpr std::size_t kPointChunk = 512;
 constexpr std::size_t kMaxDrawn = 2000000;
 /// One point in so many is held out: of few points most have to be fitted.
 constexpr std::size_t kHeldOutShare = 8;
-/// The root mean square of so many normal deviates has a standard error of .7 %.
+/// A root mean square over n normal deviates varies by 1 / sqrt(2 n) of itself by chance: here a 141st.
 constexpr std::size_t kMaxHeldOut = 10000;
 
 /// Receives the chosen points in random order.

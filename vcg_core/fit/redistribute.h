@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Moves vertices through the mesh: collapses where they matter little, splits where the error is large. More
-// vertices than the points carry: the longest edges are split. And which earlier vertex stands for each after
-// that.
+// Moves vertices through the mesh: collapses where they matter little, splits where the error is large. Fewer
+// vertices, by measured costs or by the shape of the mesh (volume_collapse.cpp). More vertices than the
+// points carry: the longest edges are split. And which earlier vertex stands for each after that.
 #pragma once
 
 #include <vcg/space/point3.h>

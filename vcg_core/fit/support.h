@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Surface without points: webs and spikes have area, but lack the points that the density of the points
-// around them would give that area.
+// What a change of faces does to their points. Surface without points: webs and spikes have area, but lack
+// the points that the density of the points around them would give that area.
 #pragma once
 
 #include <array>
