@@ -31,7 +31,7 @@ struct Plan {
     /// that stay, so the more are removed, the fewer signals do. And a network that learns for long follows
     /// the noise.
     double growth_share = 1, settling_share = 1;
-    /// Whether the fit reduces by the shape of the mesh (volume_collapse.h) instead of by distances to the
+    /// Whether the fit reduces by the shape of the mesh (collapse_by_volume()) instead of by distances to the
     /// points, which noise blurs less.
     bool by_volume = false;
 };

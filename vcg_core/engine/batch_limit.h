@@ -52,9 +52,7 @@ private:
 
 inline void BatchLimit::repeated(VertexId winner) {
     if (excess_ > kMostTolerated) return;
-    bool third = false;
-    for (const VertexId v : repeated_) third = third || v == winner;
-    if (third) {
+    if (std::find(repeated_.begin(), repeated_.end(), winner) != repeated_.end()) {
         ++excess_;
     } else {
         repeated_.push_back(winner);

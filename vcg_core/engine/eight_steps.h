@@ -33,11 +33,10 @@ struct StepRates {
     }
 
     /// Whether steps from one state of the network may be added up. A vertex whose shares add up to more than
-    /// 2 ends farther beyond than it was before, and swings ever wider from batch to batch; neighbours that
-    /// swing against each other go 4/3 as far. BatchLimit lets no vertex win more than four signals of a
-    /// batch for long.
+    /// 2 ends farther beyond than it was before, and swings ever wider from batch to batch.
     bool may_add_up() const {
-        constexpr float kLastingWins = 4, kTooFar = 1.5F;
+        constexpr float kLastingWins = 4;  ///< BatchLimit lets no vertex win more signals of a batch for long
+        constexpr float kTooFar = 1.5F;    ///< neighbours that swing against each other go 4/3 as far as one
         return kLastingWins * largest_share() < kTooFar;
     }
 };

@@ -12,8 +12,6 @@
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/face_rules.h"
-#include "vcg_core/fit/few_faces.h"
-#include "vcg_core/fit/support.h"
 
 namespace neuralmesh {
 
@@ -174,6 +172,7 @@ private:
         const Ring& ring = network_.ring(v);
         const VertexId first = ring[0], last = ring[ring.valence - 1];
         if (ring.open == 0 || (u != first && u != last)) return 0;
+        /// Evenly along the new edge. Its ends are corners of the faces: their distance is 0.
         constexpr float kShares[] = {0.25F, 0.5F, 0.75F};
         float sum = 0;
         for (const float share : kShares) {

@@ -4,17 +4,17 @@
 // What the removal of each vertex costs in distance to the points.
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "vcg_core/base/thread_team.h"
 #include "vcg_core/fit/points_by_face.h"
+#include "vcg_core/fit/support.h"
 
 namespace neuralmesh {
 
 /// The cheapest half-edge collapse of a vertex.
 struct Collapse {
-    static constexpr float kForbidden = std::numeric_limits<float>::max();
+    static constexpr float kForbidden = Support::kForbidden;  ///< which costs are added up with
 
     float cost;  ///< rise of the sum of squared distances of the points
     VertexId gone;

@@ -44,7 +44,7 @@ public:
     Vector3 way_to_crease(VertexId v, float noise_variance) {
         collect_faces(surface_, network_.ring(v), faces_);
         if (!choose_seeds()) return Vector3::Zero();
-        const float edge = mean_edge(v);
+        const float edge = mean_edge_length_at(surface_.positions, network_.ring(v), v);
         if (!(noise_variance < kNoisiest * kNoisiest * edge * edge)) return Vector3::Zero();
         collect_points(surface_.positions[v], kCreaseReach * edge);
         const float noise = kNoiseShare * noise_variance;
@@ -70,13 +70,6 @@ private:
     struct Plane {
         Vector3 normal, point;
     };
-
-    float mean_edge(VertexId v) const {
-        float sum = 0;
-        for (const VertexId u : network_.ring(v))
-            sum += (surface_.positions[u] - surface_.positions[v]).norm();
-        return sum / static_cast<float>(network_.ring(v).valence);
-    }
 
     /// Two large faces that differ much. False if all are alike.
     bool choose_seeds() {

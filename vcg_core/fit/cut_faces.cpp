@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/fit/cut_faces.h"
-
+// Takes faces that cut others away from a surface with boundary.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <set>
 #include <utility>
+
+#include "vcg_core/fit/sound_meshes.h"
 
 namespace neuralmesh {
 

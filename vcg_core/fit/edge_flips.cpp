@@ -9,7 +9,6 @@
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/face_rules.h"
-#include "vcg_core/fit/few_faces.h"
 #include "vcg_core/fit/support.h"
 
 namespace neuralmesh {
@@ -96,26 +95,24 @@ private:
 
     /// \return -Support::kForbidden for a flip that would stretch surface over where there are no points
     float distance_drop(const Quad& q) const {
-        constexpr int kF = 0, kG = 1;
-        FewFaces faces;  // of equally near ones that of g counts
-        faces.add(at(q.d), at(q.c), at(q.a), kG);
-        faces.add(at(q.c), at(q.d), at(q.b), kF);
+        FewFaces faces;  // 0 takes the place of f, 1 that of g; of equally near ones 1 counts
+        faces.add(at(q.d), at(q.c), at(q.a), 1);
+        faces.add(at(q.c), at(q.d), at(q.b), 0);
         float drop = 0;
-        int count_f = 0;
+        std::array<int, 2> counts{};
         for (int face : {q.f, q.g}) {
             for (const PointsByFace::Assignment& point : points_.of(face)) {
                 const FewFaces::Nearest nearest = faces.nearest_to(point.point);
                 drop += point.influence * (point.foot.squared_distance - nearest.squared_distance);
-                count_f += nearest.label == kF ? 1 : 0;
+                ++counts[static_cast<std::size_t>(nearest.label)];
             }
         }
-        const int count = points_.of(q.f).size() + points_.of(q.g).size();
         Support::Patch before;
         Support::Patch after;
         add(before, {q.a, q.b, q.c}, points_.of(q.f).size());
         add(before, {q.b, q.a, q.d}, points_.of(q.g).size());
-        add(after, {q.c, q.d, q.b}, count_f);
-        add(after, {q.d, q.c, q.a}, count - count_f);
+        add(after, {q.c, q.d, q.b}, counts[0]);
+        add(after, {q.d, q.c, q.a}, counts[1]);
         const float cost = support_.cost_of_change(before, after);
         return cost == Support::kForbidden ? -Support::kForbidden : drop - cost;
     }

@@ -31,8 +31,7 @@ constexpr double kLearnedShare = 2;
 /// is about the square of its slopes, which are noise / edge length. A mesh that learning left crumpled must
 /// not win by that.
 constexpr double kCrumpling = 3;
-/// The first round with a redistribution, and the number of rounds at the end without one.
-constexpr int kFirstRedistribution = 1;
+/// Rounds at the end without a redistribution.
 constexpr int kQuietRounds = 3;
 /// The fit ends when two rounds lower the error by less than this share, but not in the first ones.
 constexpr double kLeastProgress = 0.005;
@@ -114,12 +113,8 @@ private:
     bool next_round(int round) {
         Surface surface(network_);
         PointsByFace points = fitter_.mended(surface);
-        if (options_.redistribute && round >= kFirstRedistribution && round + kQuietRounds < rounds_) {
-            if (fitter_.redistribute_vertices(surface, points)) {
-                surface = Surface(network_);
-                points = fitter_.assign_faces(surface);
-            }
-        }
+        if (options_.redistribute && round + kQuietRounds < rounds_)
+            fitter_.redistribute_vertices(surface, points);
         fitter_.set_directions(surface);
         return solve(round, surface, points);
     }

@@ -26,7 +26,7 @@ struct FitOptions {
     int reduce_to = 0;
     /// The network is the result of another fit.
     bool fitted_before = false;
-    /// Reduce by the shape of the fitted mesh (volume_collapse.h).
+    /// Reduce by the shape of the fitted mesh (collapse_by_volume()).
     bool by_volume = false;
     /// Leave out stray points (noise.h). For clouds that had outliers: those close to the surface are
     /// still there.

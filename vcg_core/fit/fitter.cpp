@@ -111,6 +111,11 @@ PointsByFace Fitter::assign_faces(const Surface& surface) {
     return assign(surface, nearest_by_walk(surface, fitted_, team_));
 }
 
+PointsByFace Fitter::assign_changed(Surface& surface) {
+    surface = Surface(network_);
+    return assign_faces(surface);
+}
+
 /// Points beyond the boundary keep their influence: the surface has to reach them.
 void Fitter::weaken_outliers(const Surface& surface, PointsByFace& points) const {
     const float squared = outlier_distance_ * outlier_distance_;
@@ -205,13 +210,8 @@ double Fitter::solve(const PointsByFace& points, Surface& surface, float hold) {
         surface.positions = limits.without_crossings(displacements, guard_, team_);
         best_error = held_out_.rms_error(surface, outlier_distance_, team_);
     }
-    place_vertices(surface);
+    place_vertices(network_, surface.positions);
     return best_error;
-}
-
-/// At the positions of \p surface.
-void Fitter::place_vertices(const Surface& surface) {
-    for (VertexId v : network_.vertices()) network_.set_position(v, to_vcg(surface.positions[v]));
 }
 
 void Fitter::move_to_creases(Surface& surface, const PointsByFace& points) {
@@ -221,7 +221,7 @@ void Fitter::move_to_creases(Surface& surface, const PointsByFace& points) {
     const Surface start = surface;
     const MoveLimits limits(network_, start, team_);
     surface.positions = limits.without_crossings(moves, guard_, team_);
-    place_vertices(surface);
+    place_vertices(network_, surface.positions);
 }
 
 /// Moves the starts of walks from removed vertices to the vertices they were collapsed into.
@@ -234,17 +234,16 @@ void Fitter::redirect_to_survivors(const std::vector<DoneCollapse>& collapses) {
         for (WalkStart& start : tracked->last_hit) start.vertex = survivor[start.vertex];
 }
 
-bool Fitter::redistribute_vertices(const Surface& surface, const PointsByFace& points) {
+void Fitter::redistribute_vertices(Surface& surface, PointsByFace& points) {
     const int max_pairs =
         std::max(1, static_cast<int>(kMovedShare * static_cast<double>(network_.vertex_count())));
     const std::vector<Collapse> collapses = find_collapses(network_, surface, points, team_);
     const std::vector<EdgeSplit> splits =
         find_splits(network_, surface, points, kGainVariances, team_, variances_);
-    const std::vector<DoneCollapse> done = guarded(surface, [&](const PerVertex<char>& barred) {
+    const bool changed = guarded_collapses(surface, [&](const PerVertex<char>& barred) {
         return redistribute(network_, collapses, splits, max_pairs, barred);
     });
-    redirect_to_survivors(done);
-    return !done.empty();
+    if (changed) points = assign_changed(surface);
 }
 
 void Fitter::flip_edges(const Surface& surface, PointsByFace& points) {
@@ -264,8 +263,7 @@ PointsByFace Fitter::mended(Surface& surface) {
         return opened + fill_notches(network_, notches, barred);
     });
     if (changes == 0) return points;
-    surface = Surface(network_);
-    return assign_faces(surface);
+    return assign_changed(surface);
 }
 
 }  // namespace neuralmesh

@@ -39,6 +39,9 @@ public:
     PointsByFace locate_points(const Surface& surface);
     /// Assigns the fitted points to their nearest faces by walks from the last ones.
     PointsByFace assign_faces(const Surface& surface);
+    /// Makes \p surface that of the network, of which edges or faces have changed, and assigns the points to
+    /// it.
+    PointsByFace assign_changed(Surface& surface);
     /// From now on measures the error along the smoothed normals of \p surface.
     void set_directions(const Surface& surface) { held_out_.set_directions(network_, surface, team_); }
     /// Root mean square error at \p held_out, along its own directions.
@@ -54,9 +57,9 @@ public:
     /// error
     /// \param hold see PointToPlaneSystem
     double solve(const PointsByFace& points, Surface& surface, float hold = PointToPlaneSystem::kSliding);
-    /// Collapses vertices that matter little and inserts as many where the error is large. \return whether
-    /// there were any
-    bool redistribute_vertices(const Surface& surface, const PointsByFace& points);
+    /// Collapses vertices that matter little and inserts as many where the error is large. \p surface, that
+    /// of the network, and \p points follow.
+    void redistribute_vertices(Surface& surface, PointsByFace& points);
     /// Computes the feet of \p points again, then flips edges where that brings the points closer.
     void flip_edges(const Surface& surface, PointsByFace& points);
     /// Moves the vertices beside creases onto them, so that flip_edges() gives the creases edges. Moves \p
@@ -84,9 +87,16 @@ private:
     /// all tries fail, with all barred. \return the result of the last call
     template <class Change>
     auto guarded(const Surface& surface, const Change& change);
-    void place_vertices(const Surface& surface);
+    /// As guarded(), for a change that returns what it has collapsed: the points follow. \return whether
+    /// there were any collapses
+    template <class Change>
+    bool guarded_collapses(const Surface& surface, const Change& change) {
+        const std::vector<DoneCollapse> done = guarded(surface, change);
+        redirect_to_survivors(done);
+        return !done.empty();
+    }
     void redirect_to_survivors(const std::vector<DoneCollapse>& collapses);
-    void set_points_aside(int points_per_vertex);
+    void set_points_aside();
     bool wants_reduction(int vertices, int at_start, Progress& progress) const;
     /// \param error that of the last solution
     bool reduce_by_volume(int vertices, double error, Surface& surface, PointsByFace points,

@@ -160,12 +160,10 @@ void PointToPlaneSystem::add_bending(const Surface& surface, const VertexNoise& 
         if (!network_.alive(a)) return;
         const Ring& ring = network_.ring(a);
         for (int i = 0; i < ring.valence; ++i) {
-            const bool on_boundary = ring.open != 0 && (i == 0 || i + 1 == ring.valence);
             BendingTerm term;
-            if (ring[i] < a || on_boundary ||
-                !make_bending_term(surface, {a, ring[i], ring.next(i), ring.previous(i)}, term))
-                continue;
-            found.push_back(term);
+            if (ring[i] > a && !ring.is_boundary_edge(i) &&
+                make_bending_term(surface, {a, ring[i], ring.next(i), ring.previous(i)}, term))
+                found.push_back(term);
         }
     };
     bending_terms_ = parallel_collect<BendingTerm>(network_.slot_count(), kSystemChunk, team, find);

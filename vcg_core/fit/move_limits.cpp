@@ -66,10 +66,8 @@ MoveLimits::MoveLimits(const Network& network, const Surface& surface, ThreadTea
         surface.face_count(), kLimitChunk, team,
         [this](int f, std::vector<Neighbours>& found) { look_across_edges(f, found); });
     parallel_for(network.slot_count(), kLimitChunk, team, [&](VertexId v) {
-        if (!network.alive(v)) return;
-        float length = 0;
-        for (VertexId u : network.ring(v)) length += (surface_.positions[u] - surface_.positions[v]).norm();
-        max_move_[v] = kMaxMove * length / static_cast<float>(network.ring(v).valence);
+        if (network.alive(v))
+            max_move_[v] = kMaxMove * mean_edge_length_at(surface_.positions, network.ring(v), v);
     });
 }
 

@@ -68,7 +68,7 @@ float spread_at(const Surface& surface, const PointsByFace& points, VertexId v) 
 }  // namespace
 
 float noise_variance(const Surface& surface, const PointsByFace& points, ThreadTeam& team) {
-    constexpr int kMinPoints = 4;
+    constexpr int kMinPoints = 4;  ///< of a face: its variance divides by their number less one
     constexpr int kFacesAtATime = 512;
     const auto find = [&](int f, std::vector<float>& variances) {
         if (points.of(f).size() < kMinPoints) return;
@@ -80,9 +80,9 @@ float noise_variance(const Surface& surface, const PointsByFace& points, ThreadT
 }
 
 PerVertex<float> local_variances(const Network& network, const Surface& surface, const PointsByFace& points) {
-    constexpr int kMinPoints = 3;
-    constexpr int kRingsOfNormals = 2;
-    constexpr int kSpreads = 1;
+    constexpr int kMinPoints = 3;       ///< fewer than above: the sums are over several faces
+    constexpr int kRingsOfNormals = 2;  ///< as in point_errors.cpp
+    constexpr int kSpreads = 1;         ///< the variance is that of the place
     const PerVertex<Vector3> normals = area_vectors_around(network, surface, kRingsOfNormals);
     PerVertex<Spread> spreads(surface.positions.size());
     for (int f = 0; f < surface.face_count(); ++f) {

@@ -18,12 +18,23 @@ namespace {
 
 constexpr std::size_t kHeldOutChunk = 512;
 
-/// Vertex normals averaged twice over the rings, which takes out most of the noise.
 PerVertex<Vector3> smoothed_normals(const Network& network, const Surface& surface) {
-    constexpr int kRings = 2;
+    constexpr int kRings = 2;  ///< takes out most of the noise
     PerVertex<Vector3> normals = area_vectors_around(network, surface, kRings);
     for (Vector3& n : normals) n.normalize();
     return normals;
+}
+
+/// Root of the mean of \p squared by \p weights; empty: all weigh as much.
+double root_mean(const std::vector<float>& squared, const std::vector<float>& weights) {
+    double sum = 0;
+    double all = 0;
+    for (std::size_t i = 0; i < squared.size(); ++i) {
+        const double weight = weights.empty() ? 1.0 : static_cast<double>(weights[i]);
+        sum += weight * static_cast<double>(squared[i]);
+        all += weight;
+    }
+    return std::sqrt(sum / all);
 }
 
 /// Squared distance from \p p to \p surface along the unit vector \p direction: that of the nearest foot.
@@ -69,18 +80,12 @@ double HeldOut::rms_error(const Surface& surface, float outlier_distance, Thread
     std::vector<float> squared(tracked_.points.size());
     for_chunks(squared.size(), kHeldOutChunk, team, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            squared[i] =
+            const float along =
                 squared_distance_along(directions_[i], surface, tracked_.points[i], tracked_.last_hit[i]);
+            squared[i] = std::min(along, outlier_distance * outlier_distance);
         }
     });
-    double sum = 0;
-    double weights = 0;
-    for (std::size_t i = 0; i < squared.size(); ++i) {
-        const double weight = tracked_.weights.empty() ? 1.0 : static_cast<double>(tracked_.weights[i]);
-        sum += weight * static_cast<double>(std::min(squared[i], outlier_distance * outlier_distance));
-        weights += weight;
-    }
-    return std::sqrt(sum / weights);
+    return root_mean(squared, tracked_.weights);
 }
 
 double rms_distance(const TargetSpace& target, const Network& network, int samples, Random& random,
@@ -103,13 +108,9 @@ double rms_distance(const TargetSpace& target, const Network& network, int sampl
 double rms_distance(const std::vector<Vector3>& points, const std::vector<float>& weights,
                     const Network& network, ThreadTeam& team) {
     const std::vector<Hit> hits = FaceTree(Surface(network), team).nearest(points, team);
-    double sum = 0, all = 0;
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-        const double weight = weights.empty() ? 1 : static_cast<double>(weights[i]);
-        sum += weight * static_cast<double>(hits[i].foot.squared_distance);
-        all += weight;
-    }
-    return std::sqrt(sum / all);
+    std::vector<float> squared;
+    for (const Hit& hit : hits) squared.push_back(hit.foot.squared_distance);
+    return root_mean(squared, weights);
 }
 
 }  // namespace neuralmesh

@@ -17,8 +17,11 @@ namespace {
 
 constexpr std::size_t kPointChunk = 512;
 
+/// Faces have points without end, and each takes memory and time.
 constexpr std::size_t kMaxDrawn = 2000000;
+/// One point in so many is held out: of few points most have to be fitted.
 constexpr std::size_t kHeldOutShare = 8;
+/// A root mean square over n normal deviates varies by 1 / sqrt(2 n) of itself by chance: here a 141st.
 constexpr std::size_t kMaxHeldOut = 10000;
 
 /// Receives the chosen points in random order.
@@ -52,7 +55,7 @@ void shuffle(std::vector<std::uint32_t>& order, std::size_t count, Random& rando
 
 /// The factor f by which min(1, f x weight) sums to \p wanted over the points, by bisection.
 double factor_for(const TargetSpace& target, std::size_t wanted) {
-    constexpr int kSteps = 50;
+    constexpr int kSteps = 50;  ///< to a billionth
     const std::size_t points = target.positions().size();
     double low = 0;
     double high = 1e6;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Moves vertices through the mesh: collapses where they matter little, splits where the error is large. More
-// vertices than the points carry: the longest edges are split. And which earlier vertex stands for each after
-// that.
+// Moves vertices through the mesh: collapses where they matter little, splits where the error is large. Fewer
+// vertices, by measured costs or by the shape of the mesh (volume_collapse.cpp). More vertices than the
+// points carry: the longest edges are split. And which earlier vertex stands for each after that.
 #pragma once
 
 #include <vcg/space/point3.h>
@@ -44,6 +44,21 @@ std::vector<DoneCollapse> reduce(Network& network, const std::vector<Collapse>& 
 /// faces, or faces beyond its ring, are new. So the cost of each still holds.
 std::vector<DoneCollapse> reduce_densely(Network& network, const std::vector<Collapse>& collapses,
                                          int max_count, const PerVertex<char>& barred);
+
+/// Reduces \p network to \p vertices vertices, or more if no other edge may collapse: the edge that sweeps
+/// the least squared volume first, to the place where that is least while the enclosed volume stays. Between
+/// places that hardly differ, which is on planes and along straight edges, the mean of the neighbours
+/// decides. It compares the mesh with itself as it is then, not with the first one.
+///
+/// Vertices on a boundary and \p barred ones stay as they are. No face turns over or becomes a sliver
+/// (kCollapseRules), no valence rises above 12, and the topology stays; faces may cut others. Removed is the
+/// end of the edge that is farther from the place.
+/// \param short_length shorter edges collapse sooner, by a hundredth of the squared volume short_length^6 at
+/// most. \return what was collapsed, in order
+/// Source: Lindstrom and Turk, "Fast and memory efficient polygonal simplification" (1998); the cost is their
+/// volume optimization. O(vertices log vertices).
+std::vector<DoneCollapse> collapse_by_volume(Network& network, int vertices, const PerVertex<char>& barred,
+                                             double short_length = 0);
 
 /// Where refine() puts the new vertices.
 enum class NewVertices {

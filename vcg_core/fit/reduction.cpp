@@ -11,7 +11,6 @@
 #include "vcg_core/base/ablation.h"
 #include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/fitter.h"
-#include "vcg_core/fit/volume_collapse.h"
 
 namespace neuralmesh {
 
@@ -22,7 +21,7 @@ namespace {
 /// accuracy table have .99 to 1.00 of the error at 500 and 1,000 vertices, and seven real scans of 1,500
 /// vertices .996, in 1.05 times the time.
 constexpr double kRemovedShare = 0.2;
-constexpr int kReducingPointsPerVertex = 15;
+constexpr std::size_t kReducingPointsPerVertex = 15;
 constexpr std::size_t kMinReducingVertices = 1000;
 /// With more than this many times the vertices wanted, rounds remove densely: about 12 % of the vertices
 /// instead of 8 %. Clean, bunny, koala, fandisk, block, kitten and feline then have .98, 1.01 and 1.00 of the
@@ -41,7 +40,7 @@ bool Fitter::reduce_to(int vertices, Progress& progress) {
     PartOf reducing(progress, 0, 0.9);
     PartOf untangling(progress, 0.9, 1);
     if (!wants_reduction(vertices, network_.vertex_count(), reducing)) return false;
-    set_points_aside(kReducingPointsPerVertex);
+    set_points_aside();
     Surface surface(network_);
     PointsByFace points = locate_points(surface);
     set_directions(surface);
@@ -64,8 +63,7 @@ bool Fitter::reduce_by_volume(int vertices, double error, Surface& surface, Poin
     for (int found = 1; found < kLeastSolutions || error < kLags * before; ++found) {
         if (!fitting(1 - 1.0 / found, "Fitting to the points, before the reduction")) return false;
         flip_edges(surface, points);
-        surface = Surface(network_);
-        points = assign_faces(surface);
+        points = assign_changed(surface);
         set_directions(surface);
         before = std::exchange(error, solve(points, surface));
     }
@@ -75,9 +73,9 @@ bool Fitter::reduce_by_volume(int vertices, double error, Surface& surface, Poin
     flip_edges(surface, points);
     surface = Surface(network_);
     const auto edge = static_cast<double>(mean_edge_length(surface));
-    redirect_to_survivors(guarded(surface, [&](const PerVertex<char>& barred) {
+    guarded_collapses(surface, [&](const PerVertex<char>& barred) {
         return collapse_by_volume(network_, vertices, barred, edge);
-    }));
+    });
     if (network_.vertex_count() == vertices) return true;
     surface = Surface(network_);
     return reduce_by_costs(vertices, surface, rest);
@@ -94,8 +92,7 @@ bool Fitter::reduce_by_costs(int vertices, Surface& surface, Progress& progress)
         const int max_count = std::min(network_.vertex_count() - vertices,
                                        1 + static_cast<int>(kRemovedShare * network_.vertex_count()));
         if (!remove_vertices(surface, points, max_count, dense)) return false;
-        surface = Surface(network_);
-        points = assign_faces(surface);
+        points = assign_changed(surface);
         set_directions(surface);
         solve(points, surface);
     }
@@ -113,20 +110,17 @@ bool Fitter::wants_reduction(int vertices, int at_start, Progress& progress) con
 /// \return whether any vertex was removed
 bool Fitter::remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense) {
     const std::vector<Collapse> collapses = find_collapses(network_, surface, points, team_);
-    const std::vector<DoneCollapse> done = guarded(surface, [&](const PerVertex<char>& barred) {
+    return guarded_collapses(surface, [&](const PerVertex<char>& barred) {
         return dense ? reduce_densely(network_, collapses, max_count, barred)
                      : reduce(network_, collapses, max_count, barred);
     });
-    redirect_to_survivors(done);
-    return !done.empty();
 }
 
 /// Part of the points, which are in random order, suffices for the reduction.
-void Fitter::set_points_aside(int points_per_vertex) {
+void Fitter::set_points_aside() {
     const std::size_t vertices =
         std::max(kMinReducingVertices, static_cast<std::size_t>(network_.vertex_count()));
-    const std::size_t kept =
-        std::min(fitted_.points.size(), static_cast<std::size_t>(points_per_vertex) * vertices);
+    const std::size_t kept = std::min(fitted_.points.size(), kReducingPointsPerVertex * vertices);
     const auto set_aside = [kept](auto& from, auto& to) {
         if (from.empty()) return;
         const auto rest = from.begin() + static_cast<std::ptrdiff_t>(kept);

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "vcg_core/base/ablation.h"
-#include "vcg_core/fit/cut_faces.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/redistribute.h"
 
@@ -16,7 +15,7 @@ namespace neuralmesh {
 
 namespace {
 
-constexpr int kRounds = 10;
+constexpr int kRounds = 10;        ///< during the first four the neighbourhoods widen
 constexpr float kLongestMove = 1;  ///< of a vertex, in mean lengths of its edges
 constexpr int kRestoredRings = 6;  ///< around self-crossings that remain; they get their old positions back
 constexpr int kSweeps = 2;         ///< of smoothing per round
@@ -64,9 +63,7 @@ void limit_moves(const Network& network, const PerVertex<Vector3>& start, PerVer
     for (const VertexId v : network.vertices()) {
         const Vector3 move = positions[v] - start[v];
         if (move.isZero()) continue;
-        float edges = 0;
-        for (const VertexId u : network.ring(v)) edges += (start[u] - start[v]).norm();
-        const float longest = kLongestMove * edges / static_cast<float>(network.ring(v).valence);
+        const float longest = kLongestMove * mean_edge_length_at(start, network.ring(v), v);
         if (move.norm() > longest) positions[v] = start[v] + (longest / move.norm()) * move;
     }
 }
@@ -140,7 +137,7 @@ std::optional<std::vector<SelfCrossing>> untangle(Network& network, ThreadTeam& 
         crossings = update_self_crossings(surface, before, crossings, team);
     }
     if (!CrossingGuard(at_start).objections(crossings).empty()) return at_start;
-    for (VertexId v : network.vertices()) network.set_position(v, to_vcg(surface.positions[v]));
+    place_vertices(network, surface.positions);
     return crossings;
 }
 
@@ -155,7 +152,7 @@ void unfold(Network& network) {
                 moved[v] += way_to_middle(network.ring(v), v, surface) / 2;
         surface.positions = std::move(moved);
     }
-    for (const VertexId v : network.vertices()) network.set_position(v, to_vcg(surface.positions[v]));
+    place_vertices(network, surface.positions);
 }
 
 std::optional<std::vector<SelfCrossing>> make_sound(Network& network, ThreadTeam& team, Progress& progress) {
@@ -182,7 +179,7 @@ void move_soundly(Network& network, PerVertex<Vector3> moves, ThreadTeam& team) 
         const float before = std::exchange(left, total_length(moves));
         if (before - left < kLeastGain * before) break;
     }
-    for (const VertexId v : network.vertices()) network.set_position(v, to_vcg(surface.positions[v]));
+    place_vertices(network, surface.positions);
 }
 
 }  // namespace neuralmesh

@@ -61,28 +61,22 @@ EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const Per
                    float least_gain, VertexId a, VertexId b) {
     HatSums both;
     Vector3 normal = Vector3::Zero();
-    std::array<int, 2> faces{};
-    std::size_t found = 0;
-    for (int f : surface.faces_around(a)) {
-        const Triangle& face = surface.faces[f];
-        for (std::size_t k = 0; k < 3; ++k) {
-            const VertexId x = face[k];
-            const VertexId y = face[(k + 1) % 3];
-            if (!((x == a && y == b) || (x == b && y == a))) continue;
-            both.phi_residual += sums[f][k].phi_residual;
-            both.phi_phi += sums[f][k].phi_phi;
-            normal += unit_normal(surface, f);
-            faces[found++] = f;
-        }
+    std::vector<int> faces;  // one at a boundary edge, else two
+    for (const FaceCorner& side : {corner_of_edge(surface, a, b), corner_of_edge(surface, b, a)}) {
+        if (side.face < 0) continue;
+        const HatSums& of_side = sums[side.face][side.corner];
+        both.phi_residual += of_side.phi_residual;
+        both.phi_phi += of_side.phi_phi;
+        normal += unit_normal(surface, side.face);
+        faces.push_back(side.face);
     }
-    if (found == 1) faces[1] = faces[0];  // a boundary edge
     const Vector3& at_a = surface.positions[a];
     const Vector3& at_b = surface.positions[b];
     if (!(both.phi_phi >= kLeastPoints)) return {-1, a, b, 0.5F * (at_a + at_b)};
     const float bound = kMaxOffset * (at_a - at_b).norm();
-    const float offset = std::min(std::max(both.phi_residual / both.phi_phi, -bound), bound);
+    const float offset = std::clamp(both.phi_residual / both.phi_phi, -bound, bound);
     const float gain = both.phi_residual * both.phi_residual / both.phi_phi;
-    const bool enough = gain >= least_gain * points.mean_weight(faces[0], faces[1]);
+    const bool enough = gain >= least_gain * points.mean_weight(faces.front(), faces.back());
     const Vector3 middle = 0.5F * (at_a + at_b);
     Vector3 way = offset * normal.normalized();
     // Along its line of sight a vertex turns no face away.
@@ -124,7 +118,7 @@ void add_boundary_gain(EdgeSplit& split, const BoundaryTarget& target) {
     }
     if (!(phi_phi > 0)) return;  // fewer than three parts
     const float bound = kMaxOffset * target.length;
-    const float offset = std::min(std::max(phi_rest / phi_phi, -bound), bound);
+    const float offset = std::clamp(phi_rest / phi_phi, -bound, bound);
     float drop = 0;
     for (int i = 0; i < target.parts; ++i)
         drop += cubed(std::abs(rest(i))) - cubed(std::abs(rest(i) - (phi(i) - phi_mean) * offset));
@@ -146,8 +140,7 @@ std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surfac
         if (!network.alive(a)) return;
         const Ring& ring = network.ring(a);
         for (int i = 0; i < ring.valence; ++i) {
-            const bool on_boundary = ring.open != 0 && (i == 0 || i + 1 == ring.valence);
-            if (ring[i] < a || on_boundary) continue;
+            if (ring[i] < a || ring.is_boundary_edge(i)) continue;
             const EdgeSplit split = split_of(surface, points, sums, least_for(a, ring[i]), a, ring[i]);
             if (split.gain >= 0) found.push_back(split);
         }

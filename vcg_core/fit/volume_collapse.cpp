@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/fit/volume_collapse.h"
-
+// Edge collapses by the shape of the mesh alone, each to the place that keeps the enclosed volume.
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 
 #include "vcg_core/base/cheapest_first.h"
 #include "vcg_core/fit/face_rules.h"
+#include "vcg_core/fit/redistribute.h"
 #include "vcg_core/mesh/flips.h"
 
 namespace neuralmesh {

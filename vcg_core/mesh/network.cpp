@@ -59,9 +59,6 @@ int common_neighbours(const Ring& a, const Ring& b) {
     return static_cast<int>(std::count_if(a.begin(), a.end(), [&](VertexId v) { return b.find(v) >= 0; }));
 }
 
-/// True if the edge to the neighbour at position i is a boundary edge.
-bool on_boundary_edge(const Ring& ring, int i) { return ring.open != 0 && (i == 0 || i + 1 == ring.valence); }
-
 /// Position of the set bit of \p word nearest to \p bit; of two, the higher. \pre word != 0
 int nearest(std::uint64_t word, int bit) {
     const std::uint64_t above = word >> bit << bit;
@@ -212,7 +209,7 @@ bool Network::can_collapse(VertexId gone, VertexId kept) const {
     const Ring& rk = ring(kept);
     const int i = rg.find(kept);
     if (i < 0) return false;
-    const bool on_boundary = on_boundary_edge(rg, i);
+    const bool on_boundary = rg.is_boundary_edge(i);
     // A boundary vertex may move only along its boundary: else the boundary would change its shape or be
     // pinched.
     if (rg.open != 0 && !on_boundary) return false;
@@ -258,7 +255,7 @@ bool Network::can_flip(VertexId a, VertexId b) const {
     const Ring& ra = ring(a);
     const Ring& rb = ring(b);
     const int i = ra.find(b);
-    if (i < 0 || on_boundary_edge(ra, i)) return false;
+    if (i < 0 || ra.is_boundary_edge(i)) return false;
     const VertexId c = ra.next(i);
     const VertexId d = ra.previous(i);
     return ra.valence > ra.min_valence() && rb.valence > rb.min_valence() && ring(c).valence < kMax &&

@@ -60,6 +60,8 @@ struct alignas(64) Ring {
     VertexId next(int i) const { return (*this)[i + 1 == valence ? 0 : i + 1]; }
     /// The neighbour before position i, cyclically.
     VertexId previous(int i) const { return (*this)[i == 0 ? valence - 1 : i - 1]; }
+    /// Whether the edge to the neighbour at position i lies on the boundary.
+    bool is_boundary_edge(int i) const { return open != 0 && (i == 0 || i + 1 == valence); }
     /// Number of faces at the vertex.
     int face_count() const { return valence - open; }
     /// The least valence that keeps the mesh a manifold.

@@ -70,6 +70,16 @@ float mean_edge_length(const Surface& surface) {
     return static_cast<float>(sum / (3 * static_cast<double>(surface.face_count())));
 }
 
+float mean_edge_length_at(const PerVertex<Vector3>& positions, const Ring& ring, VertexId v) {
+    float sum = 0;
+    for (const VertexId u : ring) sum += (positions[u] - positions[v]).norm();
+    return sum / static_cast<float>(ring.valence);
+}
+
+void place_vertices(Network& network, const PerVertex<Vector3>& positions) {
+    for (const VertexId v : network.vertices()) network.set_position(v, to_vcg(positions[v]));
+}
+
 PerVertex<Vector3> area_vectors_around(const Network& network, const Surface& surface, int rings) {
     PerVertex<Vector3> sums(surface.positions.size(), Vector3::Zero());
     for (int f = 0; f < surface.face_count(); ++f) {

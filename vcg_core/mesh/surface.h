@@ -112,6 +112,12 @@ float squared_distance_from(const Surface& surface, Span<const int> faces, const
 /// Mean length of the edges; those on a boundary have half the weight. O(faces). \pre the surface has a face
 float mean_edge_length(const Surface& surface);
 
+/// Mean length of the edges at \p v, whose ring is \p ring. O(valence).
+float mean_edge_length_at(const PerVertex<Vector3>& positions, const Ring& ring, VertexId v);
+
+/// Moves the vertices of \p network to \p positions. O(vertices).
+void place_vertices(Network& network, const PerVertex<Vector3>& positions);
+
 /// Adds the values of its neighbours to the value of every vertex, and repeats this \p times times. The
 /// results are sums over neighbourhoods of that many rings, in which near vertices weigh more. O(times x
 /// vertices).

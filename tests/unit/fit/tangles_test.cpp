@@ -3,7 +3,6 @@
 
 // Surfaces that cut or fold over themselves.
 #include "tests/unit/support/crumpled.h"
-#include "vcg_core/fit/cut_faces.h"
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/redistribute.h"

@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // Collapses by volume: against costs computed anew, and what must stay as it is.
-#include "vcg_core/fit/volume_collapse.h"
+#include "vcg_core/fit/redistribute.h"
 
 #include <Eigen/LU>
 
