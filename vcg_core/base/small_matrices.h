@@ -5,9 +5,15 @@
 // seconds.
 #pragma once
 
+#include <vcg/space/point3.h>
+
 #include <Eigen/Core>
 
 namespace neuralmesh {
+
+inline Eigen::Vector3d in_double(const vcg::Point3f& p) {
+    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+}
 
 /// Of a symmetric matrix: ascending eigenvalues, and eigenvectors of length 1 as columns.
 struct PrincipalAxes {

@@ -28,10 +28,6 @@ constexpr double kFillsSpace = 0.08;  ///< surface variation: surfaces have .00 
 constexpr double kThinPlane = 0.05;   ///< of the variances across a plane and along it
 constexpr float kGap = 2.2F;  ///< distance to the rest in the group's own spacings, to the tenth neighbour
 
-Eigen::Vector3d in_double(const vcg::Point3f& p) {
-    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
-}
-
 /// Consecutive places in one octree cell.
 struct Cell {
     std::uint64_t code;

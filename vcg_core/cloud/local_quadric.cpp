@@ -24,10 +24,6 @@ constexpr double kDeviationPerMedian = 1.4826;
 /// Points beyond so many deviations weigh less than half (Cauchy).
 constexpr double kCauchy = 2.5;
 
-Vector3d in_double(const vcg::Point3f& p) {
-    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
-}
-
 vcg::Point3f in_float(const Vector3d& v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
