@@ -17,9 +17,9 @@ namespace {
 
 using namespace neuralmesh;
 
-enum Part : std::size_t { cloud, start_mesh, landing, growth, settling, untangling, reduction, rounds, end };
-constexpr std::array<const char*, end> kNames{"cloud",    "start_mesh", "landing",   "growth",
-                                              "settling", "untangling", "reduction", "rounds"};
+enum Part : std::size_t { start_mesh, landing, growth, settling, untangling, reduction, rounds, end };
+constexpr std::array<const char*, end> kNames{"start_mesh", "landing",   "growth", "settling",
+                                              "untangling", "reduction", "rounds"};
 
 TargetSpace bumpy_torus(std::size_t points) {
     constexpr double kTwoPi = 6.283185307179586;
@@ -67,7 +67,7 @@ private:
         return last;
     }
 
-    Part part_ = cloud;
+    Part part_ = start_mesh;
     Clock::time_point last_ = Clock::now();
 };
 
