@@ -50,7 +50,7 @@ void Slabs::adapt(const vcg::Point3f* signals, int count, int parts) {
 void ComputedSteps::reserve(int count) {
     if (winners_.size() >= count) return;
     chosen_.resize(count);
-    signals_.resize(count);
+    signals_.assign(count, vcg::Point3f(0, 0, 0));
     winners_.resize(count);
     deltas_.resize(count);
     displacements_.resize(count * kStride);
