@@ -42,7 +42,8 @@ class Slabs {
 public:
     static constexpr int kMost = ThreadTeam::kMost;
 
-    /// Adapts them to \p signals, if there are others than \p parts of them, or now and then.
+    /// Makes \p parts of them, with about as many of \p signals in each: if their number changes, and else
+    /// every 64 batches, since vertices that change their slab change their cache. O(count log count) then.
     void adapt(const vcg::Point3f* signals, int count, int parts);
     int parts() const { return parts_; }
     int part_of(const vcg::Point3f& p) const {
@@ -55,7 +56,7 @@ private:
     int parts_ = 1;
     int axis_ = 0;
     int batches_ = 0;  ///< since they were adapted
-    float ends_[kMost] = {};
+    float ends_[kMost] = {};  ///< of all but the last, along the axis
 };
 
 /// The steps of the signals in one slab. Changes nothing but itself. Aligned, so that no two threads write to
