@@ -22,7 +22,8 @@ INERT = [
     (r":k(\w*Chunk|\w*AtATime|Lanes|Packets|InBatch|Batch|MostChunks)$",
      "how work is divided between threads and lanes"),
     (r"base/(thread_team|platform|parallel_for)\.|engine/basic_step_batch\.cpp:"
-     r"kLeastPerThread|:kLeastOrdered$|:kLeastOutOfCache$|:k\w*Ahead$|:kPrefetchDistance$|"
+     r"kLeastPerThread|:kAdaptEvery$|engine/basic_step_batch\.h:kMost$|:kLeastOrdered$|:kLeastOutOfCache$|"
+     r":k\w*Ahead$|:kPrefetchDistance$|"
      r"base/cheapest_first\.h:", "speed: the same result"),
     (r"engine/(winner_search|scaled_numbers|eight_steps\.cpp|eight_steps\.h:kMost$)|mesh/face_tree|"
      r"cloud/nearest_points|start/clearance",
