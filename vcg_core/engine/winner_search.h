@@ -52,12 +52,7 @@ public:
     /// Moves \p v to \p where (x, y, z, 0) in the network, but not in the table: appends to \p changed what
     /// relink() has to be called with before the next search. Threads may place different vertices. O(1).
     void place(VertexId v, Four where, std::vector<ChangedCell>& changed) {
-        VertexRecord* slot = &network_.slots()[v];
-        const FourInts from = cell_of(load_xyz(slot));
-        const FourInts to = cell_of(where);
-        store_xyz(slot, where);
-        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0)
-            changed.push_back({v, from, to});
+        store(v, where, [&changed](const ChangedCell& cell) { changed.push_back(cell); });
     }
     /// The changes of a vertex in their order. O(1) expected.
     void relink(const ChangedCell& changed) {
@@ -66,11 +61,7 @@ public:
     }
     /// Moves \p v to \p where (x, y, z, 0), in the network and in the table. O(1) expected.
     void move(VertexId v, Four where) {
-        VertexRecord* slot = &network_.slots()[v];
-        const FourInts from = cell_of(load_xyz(slot));
-        const FourInts to = cell_of(where);
-        store_xyz(slot, where);
-        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0) relink({v, from, to});
+        store(v, where, [this](const ChangedCell& cell) { relink(cell); });
     }
     void move(VertexId v, const vcg::Point3f& where) { move(v, Four{where[0], where[1], where[2], 0}); }
     /// Rebuilds the table if the number of vertices has doubled or fallen to a third. O(1), O(vertices) then.
@@ -82,6 +73,15 @@ private:
     /// Makes cell coordinates positive: the core's frame is [-0.5, 0.5]^3, start meshes reach beyond it.
     static constexpr float kOffset = 4;
 
+    /// Moves \p v in the network, and calls \p when_changed if its cell is another one then.
+    template <class WhenChanged>
+    void store(VertexId v, Four where, const WhenChanged& when_changed) {
+        VertexRecord* slot = &network_.slots()[v];
+        const FourInts from = cell_of(load_xyz(slot));
+        const FourInts to = cell_of(where);
+        store_xyz(slot, where);
+        if (((from[0] ^ to[0]) | (from[1] ^ to[1]) | (from[2] ^ to[2])) != 0) when_changed({v, from, to});
+    }
     FourInts cell_of(Four position) const { return to_ints((position + kOffset) * inverse_edge_); }
     FourInts cell_of(const vcg::Point3f& p) const { return cell_of(Four{p[0], p[1], p[2], 0}); }
     /// The lowest of the 2 x 2 x 2 cells nearest to s. They contain all points within half a cell's edge of
