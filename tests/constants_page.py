@@ -37,7 +37,7 @@ INERT = [
     (r":k(MaxValence|HighestValence|Stride|Places|WordsAround|Leaf|LeafFaces|Branch|Stack|FilterBits|"
      r"MostBits|MaxNodesPerSide|MaxSquaredDepth|MostSignals|MostParts)$", "sizes of arrays and numbers"),
     (r":k(Prepared|Learned|ShellMade|ReportEvery)$", "shares of the progress"),
-    (r"reconstruct\.cpp:kDistanceSamples|settings\.cpp:|mesh_io\.cpp:", "the report, or the range of a parameter"),
+    (r"write_result\.cpp:kDistanceSamples|settings\.cpp:|mesh_io\.cpp:", "the report, or the range of a parameter"),
 ]
 
 UNITS = [  # an expression that the name or the comment has to match; the first that does
