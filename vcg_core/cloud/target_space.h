@@ -19,7 +19,7 @@
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/indexed.h"
 #include "vcg_core/base/random.h"
-#include "vcg_core/cloud/box_of_most.h"
+#include "vcg_core/cloud/percentile_box.h"
 #include "vcg_core/cloud/surface_survey.h"
 
 namespace neuralmesh {
@@ -184,8 +184,8 @@ private:
     std::vector<Color> colors_;          ///< of the positions; may be empty
     std::vector<PackedNormal> normals_;  ///< the same
     double rounding_ = 0;
-    Sampler sampler_;                    ///< may be empty
-    Move move_;                          ///< of exact signals; may be empty
+    Sampler sampler_;  ///< may be empty
+    Move move_;        ///< of exact signals; may be empty
 };
 
 template <class PointAt>
@@ -219,7 +219,7 @@ void TargetSpace::take(std::size_t count, const PointAt& point_at) {
         }
     }
     set_frame(box, not_finite, count);
-    centre_on(box_of_most(count, point_at));
+    centre_on(percentile_box(count, point_at));
     positions_.reserve(count);
     for (std::size_t i = 0; i < count; ++i) positions_.push_back(frame_.inside(point_at(i)));
 }

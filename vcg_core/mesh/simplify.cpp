@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "vcg_core/base/cheapest_first.h"
+#include "vcg_core/base/lazy_priority_queue.h"
 #include "vcg_core/mesh/flips.h"
 #include "vcg_core/mesh/triangle.h"
 
@@ -100,7 +100,7 @@ struct HalfEdge {
 /// Collapses edges in the order of their lengths. \p careful: none that would fold the surface.
 void collapse_to(const Scaled& scaled, int vertices, bool careful) {
     Network& net = scaled.net;
-    CheapestFirst<HalfEdge> queue;
+    LazyPriorityQueue<HalfEdge> queue;
     const auto push = [&](VertexId a, VertexId b) { queue.push({scaled.squared_length(a, b), a, b}); };
     for (const VertexId v : net.vertices())
         for (const VertexId w : net.ring(v)) push(v, w);
