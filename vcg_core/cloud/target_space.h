@@ -20,9 +20,10 @@
 #include "vcg_core/base/indexed.h"
 #include "vcg_core/base/random.h"
 #include "vcg_core/cloud/percentile_box.h"
-#include "vcg_core/cloud/surface_survey.h"
 
 namespace neuralmesh {
+
+struct CloudSurvey;
 
 /// Draws numbers with given probabilities in constant time (Walker 1974; built as by Vose, "A linear
 /// algorithm for generating random numbers with a given distribution", 1991). Eight bytes per number.
@@ -141,7 +142,7 @@ public:
     std::optional<TargetSpace> evenly(const CloudSurvey& survey) const;
     bool is_weighted() const { return !weights_.empty(); }
     /// The area that point \p i stands for; 1 in the mean. \pre !has_faces()
-    float weight(std::size_t i) const { return weights_.empty() ? 1.0F : weights_[i / CloudSurvey::kRun]; }
+    float weight(std::size_t i) const;
 
     const Frame& frame() const { return frame_; }
     bool has_faces() const { return !cumulative_area_.empty(); }
