@@ -24,7 +24,7 @@ INERT = [
     (r"base/(thread_team|platform|parallel_for)\.|engine/basic_step_batch\.cpp:"
      r"kLeastPerThread|:kAdaptEvery$|engine/basic_step_batch\.h:kMost$|:kLeastOrdered$|:kLeastOutOfCache$|"
      r":k\w*Ahead$|:kPrefetchDistance$|"
-     r"base/cheapest_first\.h:", "speed: the same result"),
+     r"base/lazy_priority_queue\.h:", "speed: the same result"),
     (r"engine/(winner_search|scaled_numbers|eight_steps\.cpp|eight_steps\.h:kMost$)|mesh/face_tree|"
      r"cloud/nearest_points|start/clearance",
      "a search or an order: an exact result, found faster"),
@@ -33,11 +33,11 @@ INERT = [
     (r":k(None|NoVertex|NoNormal|Sentinel|FreeSlot|Nobody|Outside|Zero|End|Never|Unset|Unlimited|Far|Middle|Max)$",
      "a mark for nothing"),
     (r":k(Tiny|Rounding|LeastRounding|SquaredRounding|LeastSize|Ridge|Collinear|Margin)$|"
-     r"mesh/self_crossings|local_quadric\.cpp:kLine", "rounding, and division by nothing"),
+     r"mesh/self_intersections|local_quadric\.cpp:kLine", "rounding, and division by nothing"),
     (r":k(MaxValence|HighestValence|Stride|Places|WordsAround|Leaf|LeafFaces|Branch|Stack|FilterBits|"
      r"MostBits|MaxNodesPerSide|MaxSquaredDepth|MostSignals|MostParts)$", "sizes of arrays and numbers"),
     (r":k(Prepared|Learned|ShellMade|ReportEvery)$", "shares of the progress"),
-    (r"reconstruct\.cpp:kDistanceSamples|settings\.cpp:|mesh_io\.cpp:", "the report, or the range of a parameter"),
+    (r"write_result\.cpp:kDistanceSamples|settings\.cpp:|mesh_io\.cpp:", "the report, or the range of a parameter"),
 ]
 
 UNITS = [  # an expression that the name or the comment has to match; the first that does

@@ -28,7 +28,7 @@ constexpr std::size_t kMostTrials = 8;
 /// \p ratio to the power \p exponent, at least 1 / kStep and at most kStep. By bisection, because the last
 /// bits of std::pow depend on the C library.
 double step_of(double ratio, double exponent) {
-    constexpr int kBits = 50;
+    constexpr int kBits = 50;  // of the 53 of a double
     if (!(ratio > 0)) return 1 / kStep;
     const double wanted = exponent * portable_log(ratio);
     double low = 1 / kStep, high = kStep;

@@ -5,7 +5,7 @@
 
 #include "vcg_core/base/text.h"
 #include "vcg_core/cloud/normal_survey.h"
-#include "vcg_core/start/facing.h"
+#include "vcg_core/start/orientation.h"
 
 namespace neuralmesh {
 namespace {
@@ -43,8 +43,8 @@ std::string why_normals_do_not_serve(const TargetSpace& target, Surveys& surveys
 void report_normals(const Network& start, const TargetSpace& target, int parts_oriented,
                     std::vector<std::string>& notes, std::vector<std::string>& warnings) {
     int open_parts = 0;
-    FacingVote closed;
-    for (const FacingVote& vote : facing_votes(start, target)) {
+    OrientationVote closed;
+    for (const OrientationVote& vote : orientation_votes(start, target)) {
         if (vote.open) {
             ++open_parts;
             continue;

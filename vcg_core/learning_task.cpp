@@ -220,10 +220,7 @@ std::optional<OpenStart> try_open_start(LearningTask& task, const Enclosure& she
                            shell.encloses_space
                                ? "The sides of the mesh may cross there."
                                : "They were learned as one sheet, closed around both sides.");
-        const bool whole = !start.misses_surface && !loses_more(start, shell);
-        const bool open = automatic && start.loops > 0 && !start.layers.two && whole &&
-                          may_be_open(shell, target, settings, start.radius) &&
-                          (settings.close_holes_up_to >= 0 || start.widest_loop > kWidestClosed);
+        const bool open = automatic && is_open(start, shell, target, settings);
         const bool fits = vertices_needed(start, settings) <= settings.target_vertices;
         if ((open && (fits || !shell.encloses_space)) || (fits && encloses_more(start, shell))) return start;
     } catch (const NoSurfaceError&) {

@@ -22,8 +22,16 @@
 // }
 // ```
 //
-// In CMake link with neuralmesh_core, and with neuralmesh_vcglib for the headers of the vcglib that it uses.
-// A caller with a vcglib of its own leaves out the second and converts its meshes by mesh_io.h alone.
+// In CMake, with the project in the folder neural-mesh; vcglib is that of the MeshLab sources which
+// MESHLAB_SOURCE_DIR names, or which `./run.sh build` has fetched:
+//
+//     set(NEURALMESH_PLUGINS OFF)
+//     set(NEURALMESH_TESTS OFF)
+//     add_subdirectory(neural-mesh EXCLUDE_FROM_ALL)
+//     target_link_libraries(program PRIVATE neuralmesh_core neuralmesh_vcglib)
+//
+// neuralmesh_vcglib are the headers of that vcglib. A caller with a vcglib of its own leaves it out and
+// converts its meshes by mesh_io.h alone.
 //
 // What it does
 // ------------
@@ -39,13 +47,18 @@
 //   target_space_of()         a vcg mesh of any type with its matrix, as mesh_io.h says; write_mesh() and
 //                             write_creases() fill such meshes with the result
 //
+// Output: NeuralMesh of result.h. Positions, and faces that are counter-clockwise seen from outside; for
+// each vertex its counter, whether it is a feature, and a colour; the creases, if settings.crease_lines is
+// on; and a Report with the figures of the run.
+//
 // Units and ranges
 // ----------------
 // Coordinates are finite doubles in any unit; the result has the same unit and place. Only their ratios
 // matter: the core computes in a frame of its own, whose bounding box has the diagonal 1, in single
 // precision. Lengths in Settings are in the unit of the input, angles are in degrees, Report::rms_error is
 // in % of the diagonal of the learned points. setting_table() has the range and the meaning of each
-// parameter, which reconstruct() checks; counter_table() has those of mesh_counters().
+// parameter, which reconstruct() checks; counter_table() has those of mesh_counters(). A caller needs
+// target_vertices or target_error, and perhaps surface, close_holes_up_to and remove_outliers.
 //
 // Errors
 // ------
@@ -64,8 +77,8 @@
 // Cost
 // ----
 // Time grows in proportion to the vertices from 5,000 on, and with the points for the survey of the cloud
-// and the fit: on one thread 10,000 vertices of 100,000 points take some seconds, a million vertices of ten
-// million points minutes. reconstruct.h and mesh_counters.h say what memory they take.
+// and the fit: on one thread 10,000 vertices of 100,000 points take 3 s, on two a million vertices of ten
+// million points 4 minutes. reconstruct.h and mesh_counters.h say what memory they take.
 //
 // Threads and determinism
 // -----------------------

@@ -30,13 +30,21 @@ bool may_be_open(const Enclosure& shell, const TargetSpace& target, const Settin
            shell.sheet_share > std::max(kMostSheet, kSheetRadii * radius);
 }
 
-bool encloses_more(const OpenStart& start, const Enclosure& shell) {
-    return start.loops == 0 && !start.layers.two && !shell.encloses_space;
-}
-
 bool loses_more(const OpenStart& start, const Enclosure& shell) {
     constexpr double kFew = 0.025;  // outliers and ragged boundaries
     return shell.encloses_space && start.left_out > std::max(kFew, shell.sheet_share / 2);
+}
+
+bool is_open(const OpenStart& start, const Enclosure& shell, const TargetSpace& target,
+             const Settings& settings) {
+    if (start.loops == 0 || start.layers.two || start.misses_surface || loses_more(start, shell))
+        return false;
+    const bool wide = settings.close_holes_up_to >= 0 || start.widest_loop > kWidestClosed;
+    return wide && may_be_open(shell, target, settings, start.radius);
+}
+
+bool encloses_more(const OpenStart& start, const Enclosure& shell) {
+    return start.loops == 0 && !start.layers.two && !shell.encloses_space;
 }
 
 std::string warning_of_thin_walls(const LayerFigures& layers, double diagonal, const char* outcome) {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "vcg_core/base/colors_and_normals.h"
-#include "vcg_core/learning/learner_options.h"
+#include "vcg_core/learning/learning_constants.h"
 
 namespace neuralmesh {
 

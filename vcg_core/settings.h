@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "vcg_core/learning/learner_options.h"
+#include "vcg_core/learning/learning_constants.h"
 
 namespace neuralmesh {
 

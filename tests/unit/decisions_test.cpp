@@ -140,6 +140,34 @@ TEST(OpenOrClosed, TheStartThatLosesLessIsTaken) {
     EXPECT_FALSE(loses_more(start_that_leaves_out(0.3), sheet));
 }
 
+TEST(OpenOrClosed, ALayerWithAWideBoundaryThatLosesNothingIsOpen) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(1000));
+    const Enclosure shell = shell_with(0.05, 0);
+    Settings settings;
+    const auto is = [&](const OpenStart& start) { return is_open(start, shell, target, settings); };
+    OpenStart start;
+    start.loops = 1;
+    start.widest_loop = 0.1;
+    EXPECT_TRUE(is(start));
+    OpenStart other = start;
+    other.loops = 0;
+    EXPECT_FALSE(is(other));
+    other = start;
+    other.layers.two = true;
+    EXPECT_FALSE(is(other));
+    other = start;
+    other.misses_surface = true;
+    EXPECT_FALSE(is(other));
+    other = start;
+    other.left_out = 0.3;
+    EXPECT_FALSE(is(other));
+    // Holes so narrow are closed, unless the user says which are.
+    start.widest_loop = 0.05;
+    EXPECT_FALSE(is(start));
+    settings.close_holes_up_to = 0;
+    EXPECT_TRUE(is(start));
+}
+
 TEST(OpenOrClosed, AClosedLayerEnclosesMoreThanAShellThatFoundNoSpace) {
     Enclosure sheet;
     sheet.encloses_space = false;

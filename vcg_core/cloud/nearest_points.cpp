@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "vcg_core/base/z_order.h"
-#include "vcg_core/cloud/box_of_most.h"
+#include "vcg_core/cloud/percentile_box.h"
 
 namespace neuralmesh {
 namespace {
@@ -35,7 +35,7 @@ void NearestPoints::place_cube(const std::vector<vcg::Point3f>& points) {
     vcg::Box3f whole;
     for (const vcg::Point3f& p : points) whole.Add(p);
     const auto middle = vcg::Box3f::Construct(
-        box_of_most(points.size(), [&](std::size_t i) { return vcg::Point3d::Construct(points[i]); }));
+        percentile_box(points.size(), [&](std::size_t i) { return vcg::Point3d::Construct(points[i]); }));
     const auto longest = [](const vcg::Box3f& box) { return std::max({box.DimX(), box.DimY(), box.DimZ()}); };
     side_ = 2 * longest(middle);
     vcg::Point3f centre = middle.Center();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Outliers of a scan, found by local evidence at any density.
+// Outliers of a scan, found by local evidence at any density; and what becomes of them.
 //
 // Sparse points. The spacing s of a point is the distance to its tenth neighbour (the idea of the local
 // outlier factor, Breunig et al. 2000). A point is suspect if s is twice the usual one, of the cloud or of
@@ -22,6 +22,19 @@
 // Isolated groups. A clump that is as dense as the surface is no suspect. It is an outlier if it holds at
 // most a hundredth of the points, is farther from all others than its own points are apart, fills space, and
 // is as thick as it is wide. Candidates are connected cells of octree levels.
+//
+// What becomes of outliers, from the cloud to the mesh
+// ----------------------------------------------------
+// 1. What is found here is not learned: remove_outliers() of learning_task.cpp, if settings.remove_outliers.
+// 2. The start mesh gives groups of few points no component: outliers_of() of start/region.h for a shell,
+//    drop_small_parts() of start/open_start.cpp for a mesh of one layer. These are not learned either, see
+//    remove_groups_without_component() of learning_task.cpp; but if the shell leaves out more than a tenth of
+//    the points, they are.
+// 3. What is left draws vertices towards it while they learn. In the fit its influence falls with its squared
+//    distance, weaken_outliers() of fit/fitter.cpp. If outliers were removed before, points that are far for
+//    their surroundings have none, StrayPoints of fit/noise.h.
+// Colours and Report::rms_error are of the points that are learned. Report::outliers counts those that are
+// not, and a warning says how many.
 //
 // The thresholds are from experiments on eight models and three real scans, mixed with scattered points
 // (uniform and normal), pairs, clumps and points moved along rays: tests/experiments/accuracy/scan_table.py.

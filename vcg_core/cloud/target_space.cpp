@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "vcg_core/base/platform.h"
+#include "vcg_core/cloud/surface_survey.h"
 
 namespace neuralmesh {
 
@@ -223,6 +224,10 @@ std::optional<TargetSpace> TargetSpace::evenly(const CloudSurvey& survey) const 
     }
     even.runs_ = AliasTable(of_runs);
     return even;
+}
+
+float TargetSpace::weight(std::size_t i) const {
+    return weights_.empty() ? 1.0F : weights_[i / CloudSurvey::kRun];
 }
 
 TargetSpace TargetSpace::moved(Move move) const {

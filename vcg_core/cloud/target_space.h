@@ -19,10 +19,11 @@
 #include "vcg_core/base/error.h"
 #include "vcg_core/base/indexed.h"
 #include "vcg_core/base/random.h"
-#include "vcg_core/cloud/box_of_most.h"
-#include "vcg_core/cloud/surface_survey.h"
+#include "vcg_core/cloud/percentile_box.h"
 
 namespace neuralmesh {
+
+struct CloudSurvey;
 
 /// Draws numbers with given probabilities in constant time (Walker 1974; built as by Vose, "A linear
 /// algorithm for generating random numbers with a given distribution", 1991). Eight bytes per number.
@@ -141,7 +142,7 @@ public:
     std::optional<TargetSpace> evenly(const CloudSurvey& survey) const;
     bool is_weighted() const { return !weights_.empty(); }
     /// The area that point \p i stands for; 1 in the mean. \pre !has_faces()
-    float weight(std::size_t i) const { return weights_.empty() ? 1.0F : weights_[i / CloudSurvey::kRun]; }
+    float weight(std::size_t i) const;
 
     const Frame& frame() const { return frame_; }
     bool has_faces() const { return !cumulative_area_.empty(); }
@@ -184,8 +185,8 @@ private:
     std::vector<Color> colors_;          ///< of the positions; may be empty
     std::vector<PackedNormal> normals_;  ///< the same
     double rounding_ = 0;
-    Sampler sampler_;                    ///< may be empty
-    Move move_;                          ///< of exact signals; may be empty
+    Sampler sampler_;  ///< may be empty
+    Move move_;        ///< of exact signals; may be empty
 };
 
 template <class PointAt>
@@ -219,7 +220,7 @@ void TargetSpace::take(std::size_t count, const PointAt& point_at) {
         }
     }
     set_frame(box, not_finite, count);
-    centre_on(box_of_most(count, point_at));
+    centre_on(percentile_box(count, point_at));
     positions_.reserve(count);
     for (std::size_t i = 0; i < count; ++i) positions_.push_back(frame_.inside(point_at(i)));
 }

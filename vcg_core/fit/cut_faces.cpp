@@ -20,7 +20,7 @@ constexpr std::size_t kMostTogether = 12;
 /// One face in so many may go in all.
 constexpr int kKeptPerGone = 10;
 
-/// What is removed to be rid of a self-crossing. What is first here is tried first, and again after every
+/// What is removed to be rid of a self-intersection. What is first here is tried first, and again after every
 /// removal.
 enum class Removal {
     boundary_faces,  ///< faces along the boundary that leave loops, genus and components as they are
@@ -155,13 +155,15 @@ int remove_face(Network& network, const Triangle& face, Removal kind) {
     return 0;
 }
 
-/// A face, or what goes with it, of every crossing whose faces are still there. \return the number of faces
-/// removed
-int remove_once(Network& network, const std::vector<SelfCrossing>& crossings, Removal kind, int most_faces) {
+/// A face, or what goes with it, of every intersection whose faces are still there. \return the number of
+/// faces removed
+int remove_once(Network& network, const std::vector<SelfIntersection>& intersections, Removal kind,
+                int most_faces) {
     int removed = 0;
-    for (const SelfCrossing& crossing : crossings) {
+    for (const SelfIntersection& intersection : intersections) {
         if (removed >= most_faces) break;
-        Triangle first{crossing[0], crossing[1], crossing[2]}, second{crossing[3], crossing[4], crossing[5]};
+        Triangle first{intersection[0], intersection[1], intersection[2]},
+            second{intersection[3], intersection[4], intersection[5]};
         if (!find_face(network, first) || !find_face(network, second)) continue;
         const auto rank = [&](const Triangle& face) {
             return std::pair(corners_on_boundary(network, face), perimeter(network, face));
@@ -179,18 +181,18 @@ int remove_once(Network& network, const std::vector<SelfCrossing>& crossings, Re
 
 }  // namespace
 
-int remove_cut_faces(Network& network, std::vector<SelfCrossing>& crossings, ThreadTeam& team) {
+int remove_cut_faces(Network& network, std::vector<SelfIntersection>& intersections, ThreadTeam& team) {
     constexpr std::array<Removal, 3> kInOrder{Removal::boundary_faces, Removal::folds, Removal::any_faces};
     const int most_faces = network.face_count() / kKeptPerGone;
     Surface surface(network);
     int removed = 0;
-    for (std::size_t level = 0; level < kInOrder.size() && !crossings.empty();) {
-        const int now = remove_once(network, crossings, kInOrder[level], most_faces - removed);
+    for (std::size_t level = 0; level < kInOrder.size() && !intersections.empty();) {
+        const int now = remove_once(network, intersections, kInOrder[level], most_faces - removed);
         removed += now;
         level = now > 0 ? 0 : level + 1;
         if (now == 0) continue;
         const Surface before = std::exchange(surface, Surface(network));
-        crossings = update_self_crossings(surface, before, crossings, team);
+        intersections = update_self_intersections(surface, before, intersections, team);
     }
     return removed;
 }

@@ -62,8 +62,8 @@ struct FitReport {
 /// - Between rounds, vertices move to creases of the points (crease_moves.h), where flips then put edges.
 /// - What stays: components, handles, boundary loops, and the number of vertices unless options.reduce_to is
 ///   less. No face turns over, folds onto a neighbour or becomes a sliver.
-/// - Self-crossings are smoothed out first where possible; the fit adds none. If there is a boundary, faces
-///   that still cut others are removed, the topology with them where it must be; see sound_meshes.h.
+/// - Self-intersections are smoothed out first where possible; the fit adds none. If there is a boundary,
+///   faces that still cut others are removed, the topology with them where it must be; see sound_meshes.h.
 /// - Outliers: the influence of a far point falls with its squared distance. With options.expect_strays
 ///   points that are far for their surroundings have none.
 /// - The result of the rounds is kept only if its error at the held-out points is smaller, allowing for the

@@ -84,8 +84,8 @@ Fitter::Fitter(Network& network, PointChoice points, const FitOptions& options, 
       bending_weight_(options.fitted_before ? kFittedWeight : 0) {}
 
 bool Fitter::untangle_surface(Progress& progress) {
-    std::optional<std::vector<SelfCrossing>> left = make_sound(network_, team_, progress);
-    if (left) guard_ = CrossingGuard(std::move(*left));
+    std::optional<std::vector<SelfIntersection>> left = make_sound(network_, team_, progress);
+    if (left) guard_ = IntersectionGuard(std::move(*left));
     return left.has_value();
 }
 
@@ -204,10 +204,10 @@ double Fitter::solve(const PointsByFace& points, Surface& surface, float hold) {
     }
     bending_weight_ = weights[best];
     surface.positions = solutions[best];
-    if (!guard_.objections(self_crossings(surface, team_)).empty()) {
+    if (!guard_.objections(self_intersections(surface, team_)).empty()) {
         PerVertex<Vector3> displacements = solutions[best];
         for (VertexId v = 0; v < displacements.size(); ++v) displacements[v] -= start.positions[v];
-        surface.positions = limits.without_crossings(displacements, guard_, team_);
+        surface.positions = limits.without_intersections(displacements, guard_, team_);
         best_error = held_out_.rms_error(surface, outlier_distance_, team_);
     }
     place_vertices(network_, surface.positions);
@@ -220,7 +220,7 @@ void Fitter::move_to_creases(Surface& surface, const PointsByFace& points) {
     if (std::all_of(moves.begin(), moves.end(), [](const Vector3& way) { return way.isZero(0); })) return;
     const Surface start = surface;
     const MoveLimits limits(network_, start, team_);
-    surface.positions = limits.without_crossings(moves, guard_, team_);
+    surface.positions = limits.without_intersections(moves, guard_, team_);
     place_vertices(network_, surface.positions);
 }
 

@@ -26,7 +26,7 @@ public:
     /// Keeps references to \p network and \p team. \pre neither part of \p points is empty
     Fitter(Network& network, PointChoice points, const FitOptions& options, ThreadTeam& team);
 
-    /// Removes self-crossings, see make_sound(), and from then on lets no step add any. \return false if
+    /// Removes self-intersections, see make_sound(), and from then on lets no step add any. \return false if
     /// \p progress asks to stop; then the network is unchanged.
     bool untangle_surface(Progress& progress);
     /// Removes the vertices whose removal costs least. The costs are measured at part of the points, in
@@ -83,8 +83,8 @@ private:
     /// The standard deviation of the noise in mean edge lengths of \p surface.
     float noise_in_edges(const Surface& surface) const;
     /// Carries out \p change(barred) on the network, whose surface is \p surface. If the guard objects to the
-    /// result, restores the network and tries again with the vertices of the new self-crossings barred; if
-    /// all tries fail, with all barred. \return the result of the last call
+    /// result, restores the network and tries again with the vertices of the new self-intersections barred;
+    /// if all tries fail, with all barred. \return the result of the last call
     template <class Change>
     auto guarded(const Surface& surface, const Change& change);
     /// As guarded(), for a change that returns what it has collapsed: the points follow. \return whether
@@ -116,7 +116,7 @@ private:
     PerVertex<float> rounding_variances_;  ///< the part that the points of one step share
     float least_weight_;        ///< of bending; falls, as in the first rounds points may be with wrong faces
     float bending_weight_ = 0;  ///< the last choice; 0: none yet
-    CrossingGuard guard_;       ///< has accepted the present surface
+    IntersectionGuard guard_;   ///< has accepted the present surface
 };
 
 template <class Change>
@@ -129,8 +129,8 @@ auto Fitter::guarded(const Surface& surface, const Change& change) {
     for (int tries = 0;; ++tries) {
         if (tries == kTries) std::fill(barred.begin(), barred.end(), 1);
         auto done = change(barred);
-        const std::vector<VertexId> objections =
-            guard_.objections(update_self_crossings(Surface(network_), surface, guard_.accepted(), team_));
+        const std::vector<VertexId> objections = guard_.objections(
+            update_self_intersections(Surface(network_), surface, guard_.accepted(), team_));
         if (objections.empty() || tries == kTries) return done;
         for (VertexId v : objections)
             if (v < barred.size()) barred[v] = 1;

@@ -14,9 +14,9 @@ namespace neuralmesh {
 
 namespace {
 
-std::size_t count_faces(const std::vector<SelfCrossing>& crossings) {
+std::size_t count_faces(const std::vector<SelfIntersection>& intersections) {
     std::vector<Triangle> faces;
-    for (const SelfCrossing& c : crossings) {
+    for (const SelfIntersection& c : intersections) {
         faces.push_back({c[0], c[1], c[2]});
         faces.push_back({c[3], c[4], c[5]});
     }
@@ -35,19 +35,19 @@ float quality_of(const Surface& surface, int f, const PerVertex<Vector3>& positi
 
 }  // namespace
 
-CrossingGuard::CrossingGuard(std::vector<SelfCrossing> crossings)
-    : accepted_(std::move(crossings)), max_faces_(count_faces(accepted_)) {}
+IntersectionGuard::IntersectionGuard(std::vector<SelfIntersection> intersections)
+    : accepted_(std::move(intersections)), max_faces_(count_faces(accepted_)) {}
 
-std::vector<VertexId> CrossingGuard::objections(std::vector<SelfCrossing> crossings) {
-    std::vector<SelfCrossing> added;
-    std::set_difference(crossings.begin(), crossings.end(), accepted_.begin(), accepted_.end(),
+std::vector<VertexId> IntersectionGuard::objections(std::vector<SelfIntersection> intersections) {
+    std::vector<SelfIntersection> added;
+    std::set_difference(intersections.begin(), intersections.end(), accepted_.begin(), accepted_.end(),
                         std::back_inserter(added));
     std::vector<VertexId> corners;
-    if (added.empty() || count_faces(crossings) <= max_faces_) {
-        accepted_ = std::move(crossings);
+    if (added.empty() || count_faces(intersections) <= max_faces_) {
+        accepted_ = std::move(intersections);
     } else {
-        for (const SelfCrossing& crossing : added)
-            corners.insert(corners.end(), crossing.begin(), crossing.end());
+        for (const SelfIntersection& intersection : added)
+            corners.insert(corners.end(), intersection.begin(), intersection.end());
     }
     return corners;
 }
@@ -111,20 +111,20 @@ public:
     }
 
     /// \param guard has accepted the surface before the move
-    PerVertex<Vector3> shorten_to_limits(CrossingGuard& guard, ThreadTeam& team) {
+    PerVertex<Vector3> shorten_to_limits(IntersectionGuard& guard, ThreadTeam& team) {
         Surface last = surface_, now = surface_;
-        std::vector<SelfCrossing> crossings = guard.accepted();
+        std::vector<SelfIntersection> intersections = guard.accepted();
         int crossed = 0;
         for (int pass = 0;; ++pass) {
             if (shorten(find_offending(), pass)) continue;
             // Every pass but the first shortens the moves of few vertices.
             if (moved_ != last.positions) {
                 now.positions = moved_;
-                crossings = update_self_crossings(now, last, crossings, team);
+                intersections = update_self_intersections(now, last, intersections, team);
                 last.positions = moved_;
             }
             PerVertex<char> offending(moved_.size(), 0);
-            for (VertexId v : guard.objections(crossings)) offending[v] = 1;
+            for (VertexId v : guard.objections(intersections)) offending[v] = 1;
             if (!shorten(offending, crossed++)) return std::move(moved_);
         }
     }
@@ -192,8 +192,8 @@ PerVertex<Vector3> MoveLimits::bounded(const PerVertex<Vector3>& displacements) 
     return Moves(*this, displacements).shorten_to_limits();
 }
 
-PerVertex<Vector3> MoveLimits::without_crossings(const PerVertex<Vector3>& displacements,
-                                                 CrossingGuard& guard, ThreadTeam& team) const {
+PerVertex<Vector3> MoveLimits::without_intersections(const PerVertex<Vector3>& displacements,
+                                                     IntersectionGuard& guard, ThreadTeam& team) const {
     return Moves(*this, displacements).shorten_to_limits(guard, team);
 }
 

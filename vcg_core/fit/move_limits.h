@@ -8,27 +8,28 @@
 #include <vector>
 
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/mesh/self_crossings.h"
+#include "vcg_core/mesh/self_intersections.h"
 
 namespace neuralmesh {
 
-/// Accepts a change of a surface if it adds no self-crossing, or if the number of faces that cross stays at
-/// or below its initial value. A default-constructed guard starts from a surface without self-crossings.
-class CrossingGuard {
+/// Accepts a change of a surface if it adds no self-intersection, or if the number of faces that cross stays
+/// at or below its initial value. A default-constructed guard starts from a surface without
+/// self-intersections.
+class IntersectionGuard {
 public:
-    CrossingGuard() = default;
-    /// \param crossings self-crossings of the surface, sorted
-    explicit CrossingGuard(std::vector<SelfCrossing> crossings);
+    IntersectionGuard() = default;
+    /// \param intersections self-intersections of the surface, sorted
+    explicit IntersectionGuard(std::vector<SelfIntersection> intersections);
 
-    /// Judges a change after which the surface has the self-crossings \p crossings (sorted). \return empty if
-    /// the change is accepted, which makes them accepted(); else the corners of the new ones
-    std::vector<VertexId> objections(std::vector<SelfCrossing> crossings);
+    /// Judges a change after which the surface has the self-intersections \p intersections (sorted). \return
+    /// empty if the change is accepted, which makes them accepted(); else the corners of the new ones
+    std::vector<VertexId> objections(std::vector<SelfIntersection> intersections);
 
-    /// The self-crossings of the surface after the last accepted change.
-    const std::vector<SelfCrossing>& accepted() const { return accepted_; }
+    /// The self-intersections of the surface after the last accepted change.
+    const std::vector<SelfIntersection>& accepted() const { return accepted_; }
 
 private:
-    std::vector<SelfCrossing> accepted_;
+    std::vector<SelfIntersection> accepted_;
     std::size_t max_faces_ = 0;
 };
 
@@ -43,8 +44,8 @@ public:
     /// The positions after the \p displacements, shortened where they break a limit. O(vertices) per halving.
     PerVertex<Vector3> bounded(const PerVertex<Vector3>& displacements) const;
     /// The same, shortened further until \p guard, which has accepted the surface, accepts the result.
-    PerVertex<Vector3> without_crossings(const PerVertex<Vector3>& displacements, CrossingGuard& guard,
-                                         ThreadTeam& team) const;
+    PerVertex<Vector3> without_intersections(const PerVertex<Vector3>& displacements,
+                                             IntersectionGuard& guard, ThreadTeam& team) const;
 
 private:
     class Moves;

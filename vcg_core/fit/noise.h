@@ -23,10 +23,9 @@ PerVertex<float> local_variances(const Network& network, const Surface& surface,
 /// Tells stray points by their heights above a surface.
 ///
 /// A point is astray if it is much farther from the surface than the points around are (their spread, a high
-/// quantile of their distances), and if it has no company: among the points nearest to it hardly any has a
-/// comparable height on the same side. The points of a part that the mesh has not reached yet are far, too,
-/// but they keep each other company. Points
-/// beyond a boundary stay, too: the mesh grows towards them.
+/// quantile of their distances), and if hardly any of the points nearest to it has a comparable height on the
+/// same side. The points of a part that the mesh has not reached yet are all far. Points beyond a boundary
+/// stay, too: the mesh grows towards them.
 class StrayPoints {
 public:
     /// Points are astray from \p deviations times the spread on, if the noise is normal in standard

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "vcg_core/base/parallel_for.h"
+#include "vcg_core/cloud/surface_survey.h"
 #include "vcg_core/mesh/face_tree.h"
 
 namespace neuralmesh {

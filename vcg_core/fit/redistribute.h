@@ -62,7 +62,7 @@ std::vector<DoneCollapse> collapse_by_volume(Network& network, int vertices, con
 
 /// Where refine() puts the new vertices.
 enum class NewVertices {
-    on_edges,  ///< adds no self-crossing
+    on_edges,  ///< adds no self-intersection
     curved,    ///< the surface curves by the normals at the ends of the edges
     between,   ///< the same, but it curves only where the normals turn by little
 };

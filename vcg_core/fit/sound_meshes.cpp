@@ -17,17 +17,18 @@ namespace {
 
 constexpr int kRounds = 10;        ///< during the first four the neighbourhoods widen
 constexpr float kLongestMove = 1;  ///< of a vertex, in mean lengths of its edges
-constexpr int kRestoredRings = 6;  ///< around self-crossings that remain; they get their old positions back
+constexpr int kRestoredRings = 6;  ///< around what remains; they get their old positions back
 constexpr int kSweeps = 2;         ///< of smoothing per round
 constexpr int kMaxPairs = 100;     ///< of overlapping face boxes per face; a smooth surface has six
-constexpr int kMaxRings = 3;       ///< around the self-crossings
+constexpr int kMaxRings = 3;       ///< around the self-intersections
 constexpr float kStep = 0.5F;      ///< of the way to the middle of the ring
 
-/// 1 for the vertices of \p crossings and of \p rings rings around them.
-PerVertex<char> surroundings(const Network& network, const std::vector<SelfCrossing>& crossings, int rings) {
+/// 1 for the vertices of \p intersections and of \p rings rings around them.
+PerVertex<char> surroundings(const Network& network, const std::vector<SelfIntersection>& intersections,
+                             int rings) {
     PerVertex<char> inside(network.slot_count(), 0);
-    for (const SelfCrossing& crossing : crossings)
-        for (VertexId v : crossing) inside[v] = 1;
+    for (const SelfIntersection& intersection : intersections)
+        for (VertexId v : intersection) inside[v] = 1;
     for (int r = 0; r < rings; ++r) {
         const PerVertex<char> before = inside;
         for (VertexId v : network.vertices())
@@ -45,12 +46,12 @@ Vector3 middle_of_ring(const Ring& ring, const PerVertex<Vector3>& positions) {
     return middle / static_cast<float>(ring.valence);
 }
 
-/// Smooths the \p rings rings around the \p crossings. Boundary vertices move only if they are corners of
-/// crossings: the others are where the points end.
-void smooth(const Network& network, const std::vector<SelfCrossing>& crossings, int rings,
+/// Smooths the \p rings rings around the \p intersections. Boundary vertices move only if they are corners of
+/// intersections: the others are where the points end.
+void smooth(const Network& network, const std::vector<SelfIntersection>& intersections, int rings,
             PerVertex<Vector3>& positions) {
-    const PerVertex<char> corners = surroundings(network, crossings, 0);
-    const PerVertex<char> near = surroundings(network, crossings, rings);
+    const PerVertex<char> corners = surroundings(network, intersections, 0);
+    const PerVertex<char> near = surroundings(network, intersections, rings);
     const PerVertex<Vector3> before = positions;
     for (VertexId v : network.vertices()) {
         const bool moves = network.ring(v).open != 0 ? corners[v] != 0 : near[v] != 0;
@@ -68,10 +69,10 @@ void limit_moves(const Network& network, const PerVertex<Vector3>& start, PerVer
     }
 }
 
-/// Takes back the moves in \p rings rings around the \p crossings.
-void restore_around(const Network& network, const std::vector<SelfCrossing>& crossings, int rings,
+/// Takes back the moves in \p rings rings around the \p intersections.
+void restore_around(const Network& network, const std::vector<SelfIntersection>& intersections, int rings,
                     const PerVertex<Vector3>& start, PerVertex<Vector3>& positions) {
-    const PerVertex<char> where = surroundings(network, crossings, rings);
+    const PerVertex<char> where = surroundings(network, intersections, rings);
     for (VertexId v = 0; v < positions.size(); ++v)
         if (where[v] != 0) positions[v] = start[v];
 }
@@ -111,7 +112,8 @@ float total_length(const PerVertex<Vector3>& moves) {
 
 }  // namespace
 
-std::optional<std::vector<SelfCrossing>> untangle(Network& network, ThreadTeam& team, Progress& progress) {
+std::optional<std::vector<SelfIntersection>> untangle(Network& network, ThreadTeam& team,
+                                                      Progress& progress) {
     const auto stopped = [&](int searches) {
         return !progress(static_cast<double>(searches) / (kRounds + 1),
                          "Fitting to the points: smoothing where the surface cuts itself");
@@ -120,25 +122,26 @@ std::optional<std::vector<SelfCrossing>> untangle(Network& network, ThreadTeam& 
     Surface surface(network);
     const PerVertex<Vector3> start = surface.positions;
     std::int64_t pairs = 0;
-    std::vector<SelfCrossing> at_start = self_crossings(surface, team, &pairs);
+    std::vector<SelfIntersection> at_start = self_intersections(surface, team, &pairs);
     if (at_start.empty() || pairs > std::int64_t{kMaxPairs} * surface.face_count()) return at_start;
-    std::vector<SelfCrossing> crossings = at_start;
-    for (int round = 0; round < kRounds && !crossings.empty(); ++round) {
+    std::vector<SelfIntersection> intersections = at_start;
+    for (int round = 0; round < kRounds && !intersections.empty(); ++round) {
         if (stopped(round + 1)) return std::nullopt;
         const Surface before = surface;
         const int rings = std::min(1 + round / 2, kMaxRings);
-        for (int sweep = 0; sweep < kSweeps; ++sweep) smooth(network, crossings, rings, surface.positions);
+        for (int sweep = 0; sweep < kSweeps; ++sweep)
+            smooth(network, intersections, rings, surface.positions);
         limit_moves(network, start, surface.positions);
-        crossings = update_self_crossings(surface, before, crossings, team);
+        intersections = update_self_intersections(surface, before, intersections, team);
     }
-    if (!crossings.empty()) {
+    if (!intersections.empty()) {
         const Surface before = surface;
-        restore_around(network, crossings, kRestoredRings, start, surface.positions);
-        crossings = update_self_crossings(surface, before, crossings, team);
+        restore_around(network, intersections, kRestoredRings, start, surface.positions);
+        intersections = update_self_intersections(surface, before, intersections, team);
     }
-    if (!CrossingGuard(at_start).objections(crossings).empty()) return at_start;
+    if (!IntersectionGuard(at_start).objections(intersections).empty()) return at_start;
     place_vertices(network, surface.positions);
-    return crossings;
+    return intersections;
 }
 
 void unfold(Network& network) {
@@ -155,26 +158,27 @@ void unfold(Network& network) {
     place_vertices(network, surface.positions);
 }
 
-std::optional<std::vector<SelfCrossing>> make_sound(Network& network, ThreadTeam& team, Progress& progress) {
+std::optional<std::vector<SelfIntersection>> make_sound(Network& network, ThreadTeam& team,
+                                                        Progress& progress) {
     unfold(network);
-    std::optional<std::vector<SelfCrossing>> left = untangle(network, team, progress);
+    std::optional<std::vector<SelfIntersection>> left = untangle(network, team, progress);
     if (!left || left->empty() || network.boundary_loop_count() == 0 || skips("cut_faces")) return left;
     NoProgress unasked;  // a stop from here on would leave fewer vertices
     const int vertices = network.vertex_count();
-    std::vector<SelfCrossing> cuts = *left;
+    std::vector<SelfIntersection> cuts = *left;
     remove_cut_faces(network, cuts, team);
     refine(network, vertices, NewVertices::on_edges, unasked);
-    return self_crossings(Surface(network), team);
+    return self_intersections(Surface(network), team);
 }
 
 void move_soundly(Network& network, PerVertex<Vector3> moves, ThreadTeam& team) {
     NoProgress progress;
-    CrossingGuard guard(*untangle(network, team, progress));
+    IntersectionGuard guard(*untangle(network, team, progress));
     Surface surface(network);
     float left = total_length(moves);
     for (int step = 0; step < kMostSteps && left > 0; ++step) {
         const Surface start = surface;
-        surface.positions = MoveLimits(network, start, team).without_crossings(moves, guard, team);
+        surface.positions = MoveLimits(network, start, team).without_intersections(moves, guard, team);
         for (const VertexId v : network.vertices()) moves[v] -= surface.positions[v] - start.positions[v];
         const float before = std::exchange(left, total_length(moves));
         if (before - left < kLeastGain * before) break;

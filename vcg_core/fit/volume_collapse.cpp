@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "vcg_core/base/cheapest_first.h"
+#include "vcg_core/base/lazy_priority_queue.h"
 #include "vcg_core/fit/face_rules.h"
 #include "vcg_core/fit/redistribute.h"
 #include "vcg_core/mesh/flips.h"
@@ -209,7 +209,7 @@ private:
     const double squared_short_length_;
     PerVertex<Around> around_;
     PerVertex<int> changes_;
-    CheapestFirst<Candidate> queue_;
+    LazyPriorityQueue<Candidate> queue_;
 };
 
 }  // namespace

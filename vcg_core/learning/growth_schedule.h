@@ -107,6 +107,7 @@ private:
 /// mesh does. A longer memory lags behind the growth, which doubles the vertices in 100 signals per vertex.
 class NormalTurn {
 public:
+    /// A tenth of those in which growth doubles the vertices.
     static constexpr int kSignalsPerVertex = 10;
 
     /// Adds the \p delta of a signal (see eq 2) that a mesh of \p vertices vertices has learned. O(1).

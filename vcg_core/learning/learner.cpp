@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The learning loop is Learner::grow().
+// Learner::run() is the whole of the learning, and Learner::grow() its loop. The steps follow.
 #include "vcg_core/learning/learner.h"
 
 #include <algorithm>
@@ -79,31 +79,36 @@ StopReason Learner::grow(Progress& progress) {
         });
         const bool collapses = !forced_ && schedule_.collapse_due(signals());
         if (collapses) half_edge_collapse();
+
+        // Not in the paper: memory in the order of space, changes of the topology, and growth that stalls.
         state_.reorder_while_growing();
         PartOf standing(progress, done, done);
-        if (state_.options.learn_topology && stages.pass(network().vertex_count()) &&
-            !learn_topology(stages.over(), standing))
-            return StopReason::cancelled;
-
-        if (!forced_ && schedule_.stalled(signals())) {
-            forced_ = true;
-            state_.utility_counters.waive_maturity();
-        }
+        const bool examines = state_.options.learn_topology && stages.pass(network().vertex_count());
+        if (examines && !learn_topology(stages.over(), standing)) return StopReason::cancelled;
+        if (!forced_ && schedule_.stalled(signals())) force_growth();
         if (schedule_.exhausted(signals())) return StopReason::cut_short;
-        if (collapses &&
-            saturation_.reached(network().vertex_count(), state_.splits + state_.splits_refused) &&
-            state_.options.noise != nullptr && !skips("saturation")) {
-            const bool stop =
-                state_.options.learn_topology && !stages.over() && !learn_topology(true, standing);
-            if (stop) return StopReason::cancelled;
-            return StopReason::target_reached;
+        if (collapses && is_saturated()) {
+            const bool examine = state_.options.learn_topology && !stages.over();
+            return examine && !learn_topology(true, standing) ? StopReason::cancelled
+                                                              : StopReason::target_reached;
         }
+
         if (!report_due()) continue;
         done = std::max(done, static_cast<double>(network().vertex_count() - begin) / (goal - begin));
         if (!report("Learning", done, progress)) return StopReason::cancelled;
         if (mean_turn() < state_.options.stop_below_turn) return StopReason::converged;  // eq 8
     }
     return StopReason::target_reached;
+}
+
+void Learner::force_growth() {
+    forced_ = true;
+    state_.utility_counters.waive_maturity();
+}
+
+bool Learner::is_saturated() {
+    const bool reached = saturation_.reached(network().vertex_count(), state_.splits + state_.splits_refused);
+    return reached && state_.options.noise != nullptr && !skips("saturation");
 }
 
 void Learner::keep_boundary_signals(const std::vector<StepResult>& steps, const vcg::Point3f* signals) {

@@ -96,7 +96,12 @@ private:
     void keep_boundary_signals(const std::vector<StepResult>& steps, const vcg::Point3f* signals);
     template <class AfterSignal>
     void learn_batch(int count, const AfterSignal& after_signal);
+    /// The paper's loop: signals, splits and collapses until there are options.grow_to vertices.
     StopReason grow(Progress& progress);
+    /// From now on every C_vs signals add a vertex: see growth_budget().
+    void force_growth();
+    /// After collapses: the noise of the points lets the network grow no more.
+    bool is_saturated();
     bool report_due();
     bool report(const char* doing, double fraction, Progress& progress) const;
 

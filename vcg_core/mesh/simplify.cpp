@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "vcg_core/base/cheapest_first.h"
+#include "vcg_core/base/lazy_priority_queue.h"
 #include "vcg_core/mesh/flips.h"
 #include "vcg_core/mesh/triangle.h"
 
@@ -68,6 +68,7 @@ void collapse_short_edge(const Scaled& scaled, VertexId v, float squared_bound) 
 /// Quickly reduces a mesh of many more than \p vertices vertices, to no fewer than that. Every sweep over the
 /// vertices collapses edges shorter than a bound that grows from sweep to sweep. O(n) per sweep.
 void collapse_in_sweeps(const Scaled& scaled, int vertices, float squared_bound) {
+    // The last bound on lengths is a hundred times the first one.
     constexpr int kSweeps = 24;
     constexpr float kGrowth = 1.5F;
     for (int sweep = 0; sweep < kSweeps; ++sweep, squared_bound *= kGrowth)
@@ -100,7 +101,7 @@ struct HalfEdge {
 /// Collapses edges in the order of their lengths. \p careful: none that would fold the surface.
 void collapse_to(const Scaled& scaled, int vertices, bool careful) {
     Network& net = scaled.net;
-    CheapestFirst<HalfEdge> queue;
+    LazyPriorityQueue<HalfEdge> queue;
     const auto push = [&](VertexId a, VertexId b) { queue.push({scaled.squared_length(a, b), a, b}); };
     for (const VertexId v : net.vertices())
         for (const VertexId w : net.ring(v)) push(v, w);

@@ -11,7 +11,7 @@
 #include "vcg_core/base/indexed.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/cloud/nearest_points.h"
-#include "vcg_core/mesh/pinched_vertices.h"
+#include "vcg_core/mesh/non_manifold_vertices.h"
 #include "vcg_core/mesh/ring.h"
 
 namespace neuralmesh {
@@ -227,7 +227,7 @@ IndexedMesh<float> triangulation(const std::vector<Point3f>& positions, const st
     mesh.faces = assembly.faces();
     source.resize(positions.size());
     for (std::size_t i = 0; i < source.size(); ++i) source[i] = static_cast<int>(i);
-    split_pinched_vertices(mesh, source);
+    split_non_manifold_vertices(mesh, source);
     drop_unused_vertices(mesh, source);
     return mesh;
 }

@@ -17,7 +17,7 @@
 #include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/base/indexed.h"
 #include "vcg_core/mesh/boundary_loops.h"
-#include "vcg_core/mesh/pinched_vertices.h"
+#include "vcg_core/mesh/non_manifold_vertices.h"
 #include "vcg_core/mesh/ring.h"
 
 namespace neuralmesh {
@@ -171,7 +171,7 @@ void remove_faces_at(const std::vector<int>& vertices, IndexedMesh<float>& mesh,
                                                       [&](int v) { return gone[at(v)] != 0; });
                                }),
                 faces.end());
-    split_pinched_vertices(mesh, source);
+    split_non_manifold_vertices(mesh, source);
     drop_unused_vertices(mesh, source);
 }
 

@@ -5,10 +5,10 @@
 // sets and queues.
 #include "tests/unit/support/prelude.h"
 #include "tests/unit/support/shapes.h"
-#include "vcg_core/base/cheapest_first.h"
 #include "vcg_core/base/colors_and_normals.h"
 #include "vcg_core/base/disjoint_sets.h"
 #include "vcg_core/base/lanes.h"
+#include "vcg_core/base/lazy_priority_queue.h"
 #include "vcg_core/base/logarithm.h"
 #include "vcg_core/base/platform.h"
 #include "vcg_core/base/simd.h"
@@ -207,11 +207,11 @@ struct Entry {
     bool operator<(const Entry& other) const { return std::tie(cost, id) < std::tie(other.cost, other.id); }
 };
 
-TEST(CheapestFirst, TakesWhatAPlainSetTakes) {
+TEST(LazyPriorityQueue, TakesWhatAPlainSetTakes) {
     constexpr int kCount = 5000;
     Random random(1);
     std::vector<int> changes(kCount, 0);
-    CheapestFirst<Entry> queue;
+    LazyPriorityQueue<Entry> queue;
     std::set<std::pair<double, int>> plain;
     std::vector<double> cost_of(kCount, 0);
     const auto push = [&](int id, double cost) {

@@ -7,7 +7,7 @@
 
 #include "tests/unit/support/runs.h"
 #include "vcg_core/fit/point_errors.h"
-#include "vcg_core/mesh/self_crossings.h"
+#include "vcg_core/mesh/self_intersections.h"
 
 namespace neuralmesh::fit_test {
 
@@ -221,7 +221,7 @@ TEST(Fit, CancelledInTheReductionItLeavesASoundMesh) {
 TEST(Fit, CancelledAtOnceItLeavesATangledMeshUnchanged) {
     const TargetSpace target = target_of(shapes::sphere_cloud(5000));
     Network network = network_in_frame(target, shapes::scaled(shapes::icosphere(3), 1.1), 0.05);
-    ASSERT_FALSE(self_crossings(Surface(network), one_thread()).empty());
+    ASSERT_FALSE(self_intersections(Surface(network), one_thread()).empty());
     const Network before = network;
     Watch stop(0);
     EXPECT_FALSE(fit_to_points(network, target, reduced_to(300), 1, 1, stop).improved);

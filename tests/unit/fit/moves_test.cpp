@@ -91,17 +91,17 @@ TEST(MoveLimits, ShortensUntilTheGuardAccepts) {
     const Network network = network_of(box);
     const Surface surface(network);
     ThreadTeam team(2);
-    ASSERT_TRUE(self_crossings(surface, team).empty());
+    ASSERT_TRUE(self_intersections(surface, team).empty());
     PerVertex<Vector3> u(network.slot_count(), Vector3::Zero());
     for (VertexId v : network.vertices())
         if (surface.positions[v][2] > 0) u[v] = Vector3(0, 0, -0.025F);
     const MoveLimits limits(network, surface, team);
     Surface after = surface;
     after.positions = limits.bounded(u);
-    EXPECT_FALSE(self_crossings(after, team).empty());
-    CrossingGuard guard;
-    after.positions = limits.without_crossings(u, guard, team);
-    EXPECT_TRUE(self_crossings(after, team).empty());
+    EXPECT_FALSE(self_intersections(after, team).empty());
+    IntersectionGuard guard;
+    after.positions = limits.without_intersections(u, guard, team);
+    EXPECT_TRUE(self_intersections(after, team).empty());
     EXPECT_NE(after.positions, surface.positions);
 }
 

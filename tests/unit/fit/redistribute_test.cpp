@@ -6,7 +6,7 @@
 #include "tests/unit/fit/fit_scene.h"
 #include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/runs.h"
-#include "vcg_core/mesh/self_crossings.h"
+#include "vcg_core/mesh/self_intersections.h"
 
 namespace neuralmesh::redistribute_test {
 

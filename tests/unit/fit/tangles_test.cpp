@@ -10,21 +10,21 @@
 
 namespace neuralmesh::tangles_test {
 
-// Self-crossings are smoothed out before the fit, and the fit makes none.
+// Self-intersections are smoothed out before the fit, and the fit makes none.
 
-/// The crossings that untangle() leaves.
-std::vector<SelfCrossing> smoothed_out(Network& network, int threads) {
+/// The intersections that untangle() leaves.
+std::vector<SelfIntersection> smoothed_out(Network& network, int threads) {
     ThreadTeam team(threads);
     return *untangle(network, team, unwatched());
 }
 
-TEST(CrossingGuard, ObjectsToNewCrossingsIfMoreFacesCross) {
-    const SelfCrossing a{0, 1, 2, 3, 4, 5};
-    const SelfCrossing b{6, 7, 8, 9, 10, 11};
-    CrossingGuard strict;
+TEST(IntersectionGuard, ObjectsToNewCrossingsIfMoreFacesCross) {
+    const SelfIntersection a{0, 1, 2, 3, 4, 5};
+    const SelfIntersection b{6, 7, 8, 9, 10, 11};
+    IntersectionGuard strict;
     EXPECT_TRUE(strict.objections({}).empty());
     EXPECT_EQ(strict.objections({a}), std::vector<VertexId>(a.begin(), a.end()));
-    CrossingGuard guard({a});
+    IntersectionGuard guard({a});
     EXPECT_TRUE(guard.objections({b}).empty()) << "as many faces as before";
     EXPECT_EQ(guard.objections({a, b}), std::vector<VertexId>(a.begin(), a.end()));
     EXPECT_TRUE(guard.objections({}).empty());
@@ -78,7 +78,7 @@ TEST(Untangle, AddsNoCrossingsWhereSmoothingFails) {
     for (const double noise : {0.6, 1.5}) {
         Network network = crumpled_sphere(noise);
         const Network before = network;
-        const std::size_t crossings_before = crossings(Surface(network), 1).size();
+        const std::size_t crossings_before = intersections(Surface(network), 1).size();
         EXPECT_LE(smoothed_out(network, 1).size(), crossings_before);
         Network again = before;
         smoothed_out(again, 3);
@@ -99,7 +99,7 @@ TEST(Untangle, GivesUpIfEveryFaceIsNearManyOthers) {
     for (VertexId v = 0; v < network.slot_count(); ++v)
         network.set_position(v, vcg::Point3f::Construct(shapes::in_ball(random)));
     const Network before = network;
-    EXPECT_EQ(*untangle(network, one_thread(), unwatched()), crossings(Surface(before), 1));
+    EXPECT_EQ(*untangle(network, one_thread(), unwatched()), intersections(Surface(before), 1));
     EXPECT_TRUE(same_positions(network, before));
 }
 
@@ -237,20 +237,20 @@ Network standing_on_sheet(const Shape& standing, double depth) {
     return network_of(shape);
 }
 
-std::vector<SelfCrossing> removed_from(Network& network, int threads = 1) {
+std::vector<SelfIntersection> removed_from(Network& network, int threads = 1) {
     ThreadTeam team(threads);
-    std::vector<SelfCrossing> left = crossings(Surface(network), threads);
+    std::vector<SelfIntersection> left = intersections(Surface(network), threads);
     const int faces = network.face_count();
     const int removed = remove_cut_faces(network, left, team);
     EXPECT_EQ(removed, faces - network.face_count());
     EXPECT_EQ(network.validate(), "");
-    EXPECT_EQ(left, crossings(Surface(network), 1)) << "the plain search of the whole surface";
+    EXPECT_EQ(left, intersections(Surface(network), 1)) << "the plain search of the whole surface";
     return left;
 }
 
 TEST(CutFaces, ABoundaryThatPiercesASheetDrawsBack) {
     Network network = standing_on_sheet(shapes::grid(8, 8), 0.05);
-    ASSERT_FALSE(crossings(Surface(network), 1).empty());
+    ASSERT_FALSE(intersections(Surface(network), 1).empty());
     EXPECT_TRUE(removed_from(network).empty());
     EXPECT_EQ(topology_of(network), (Topology{2, 0, 2}));
     const int sheet_faces = 2 * 11 * 11, row = 2 * 7;
@@ -269,7 +269,7 @@ TEST(CutFaces, AFoldInsideIsCollapsedAndKeepsTheTopology) {
     Network network = network_of(shapes::grid(9, 9), 0.005);
     const VertexId middle = 40;
     network.set_position(middle, network.position(middle) + vcg::Point3f(0.3F, 0.02F, 0));
-    ASSERT_FALSE(crossings(Surface(network), 1).empty());
+    ASSERT_FALSE(intersections(Surface(network), 1).empty());
     EXPECT_TRUE(removed_from(network).empty());
     EXPECT_EQ(topology_of(network), kDisc);
     EXPECT_GT(network.vertex_count(), 81 - 10);
@@ -288,9 +288,9 @@ TEST(SoundStart, KeepsTheNumberOfVertices) {
     for (const double depth : {0.05, 0.12}) {
         Network network = standing_on_sheet(shapes::grid(8, 8), depth);
         const Network before = network;
-        const std::vector<SelfCrossing> left = *make_sound(network, one_thread(), unwatched());
-        EXPECT_EQ(left, crossings(Surface(network), 1));
-        EXPECT_TRUE(crossings(Surface(network), 1).empty());
+        const std::vector<SelfIntersection> left = *make_sound(network, one_thread(), unwatched());
+        EXPECT_EQ(left, intersections(Surface(network), 1));
+        EXPECT_TRUE(intersections(Surface(network), 1).empty());
         EXPECT_EQ(network.validate(), "");
         EXPECT_EQ(network.vertex_count(), before.vertex_count());
         EXPECT_EQ(network.component_count(), 2);

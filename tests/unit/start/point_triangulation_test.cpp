@@ -7,7 +7,7 @@
 #include "tests/unit/support/prelude.h"
 #include "tests/unit/support/shapes.h"
 #include "vcg_core/mesh/network.h"
-#include "vcg_core/mesh/pinched_vertices.h"
+#include "vcg_core/mesh/non_manifold_vertices.h"
 #include "vcg_core/start/short_handles.h"
 
 namespace neuralmesh::point_triangulation_test {

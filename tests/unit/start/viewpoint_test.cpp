@@ -6,7 +6,7 @@
 #include "tests/unit/support/depth_camera.h"
 #include "tests/unit/support/normal_clouds.h"
 #include "vcg_core/mesh/triangle.h"
-#include "vcg_core/start/facing.h"
+#include "vcg_core/start/orientation.h"
 
 namespace neuralmesh::viewpoint_test {
 
@@ -195,11 +195,11 @@ TEST(Facing, OfAnOpenMeshFollowsMostNormals) {
         ASSERT_EQ(network.boundary_loop_count(), 1);
         orient_convex_side_outward(network);
         EXPECT_GT(facing_away(network, target, 0, network.slot_count()), 0);
-        const FacingVote before = facing_votes(network, target).front();
+        const OrientationVote before = orientation_votes(network, target).front();
         EXPECT_NEAR(before.share_along(), in ? 0.2 : 0.8, 0.05);
         EXPECT_EQ(orient_by_normals(network, target), 1);
         EXPECT_EQ(facing_away(network, target, 0, network.slot_count()) < 0, in);
-        EXPECT_NEAR(facing_votes(network, target).front().share_along(), 0.8, 0.05);
+        EXPECT_NEAR(orientation_votes(network, target).front().share_along(), 0.8, 0.05);
         EXPECT_EQ(network.validate(), "");
     }
 }
@@ -230,9 +230,9 @@ TEST(Facing, OfEveryComponentIsItsOwn) {
     const TargetSpace target = target_of(cloud, normals);
     Network network = network_in_frame(target, both);
     EXPECT_EQ(orient_by_normals(network, target), 2);
-    const std::vector<FacingVote> votes = facing_votes(network, target);
+    const std::vector<OrientationVote> votes = orientation_votes(network, target);
     ASSERT_EQ(votes.size(), 2U);
-    for (const FacingVote& vote : votes) EXPECT_GT(vote.share_along(), 0.99);
+    for (const OrientationVote& vote : votes) EXPECT_GT(vote.share_along(), 0.99);
     EXPECT_GT(facing_away(network, target, 0, first), 0);
     EXPECT_EQ(network.validate(), "");
 }

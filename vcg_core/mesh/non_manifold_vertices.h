@@ -12,7 +12,7 @@ namespace neuralmesh {
 
 /// Gives every fan of faces around a vertex, but for the first, a vertex of its own. \p source, one number
 /// for each vertex, is copied for the new ones. \pre no edge has more than two faces. O(faces).
-void split_pinched_vertices(IndexedMesh<float>& mesh, std::vector<int>& source);
+void split_non_manifold_vertices(IndexedMesh<float>& mesh, std::vector<int>& source);
 
 /// Drops vertices without faces, and their entries of \p source. O(vertices + faces).
 void drop_unused_vertices(IndexedMesh<float>& mesh, std::vector<int>& source);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/mesh/pinched_vertices.h"
+#include "vcg_core/mesh/non_manifold_vertices.h"
 
 #include <cstddef>
 #include <utility>
@@ -27,7 +27,7 @@ std::vector<std::vector<int>> fans_of(const IndexedMesh<float>& mesh, std::vecto
 
 }  // namespace
 
-void split_pinched_vertices(IndexedMesh<float>& mesh, std::vector<int>& source) {
+void split_non_manifold_vertices(IndexedMesh<float>& mesh, std::vector<int>& source) {
     std::vector<std::vector<int>> corners(mesh.positions.size());  // of the faces around each vertex
     for (std::size_t c = 0; c < 3 * mesh.faces.size(); ++c)
         corners[static_cast<std::size_t>(mesh.faces[c / 3][c % 3])].push_back(static_cast<int>(c));

@@ -2,7 +2,7 @@
 // Copyright the Neural Mesh authors
 
 // A bounding-volume hierarchy gives the pairs of faces.
-#include "vcg_core/mesh/self_crossings.h"
+#include "vcg_core/mesh/self_intersections.h"
 
 #include <algorithm>
 #include <array>
@@ -79,15 +79,15 @@ public:
     /// A face without area cuts nothing; where many vertices coincide there are many of them.
     bool has_area(int f) const { return area_vector(surface_, f) != Vector3(0, 0, 0); }
 
-    /// Appends the crossing of the faces \p f and \p g, if they cross.
-    void append_crossing(int f, int g, std::vector<SelfCrossing>& crossings) const {
+    /// Appends the intersection of the faces \p f and \p g, if they cross.
+    void append_crossing(int f, int g, std::vector<SelfIntersection>& intersections) const {
         if (!cut_each_other(std::min(f, g), std::max(f, g))) return;
         Triangle s = surface_.faces[f];
         Triangle t = surface_.faces[g];
         std::sort(s.begin(), s.end());
         std::sort(t.begin(), t.end());
         if (t < s) std::swap(s, t);
-        crossings.push_back({s[0], s[1], s[2], t[0], t[1], t[2]});
+        intersections.push_back({s[0], s[1], s[2], t[0], t[1], t[2]});
     }
 
 private:
@@ -149,15 +149,15 @@ private:
 
 }  // namespace
 
-std::vector<SelfCrossing> self_crossings(const Surface& surface, ThreadTeam& team,
-                                         std::int64_t* tested_pairs) {
+std::vector<SelfIntersection> self_intersections(const Surface& surface, ThreadTeam& team,
+                                                 std::int64_t* tested_pairs) {
     const Faces faces(surface);
     std::vector<int> with_area;
     for (int f = 0; f < surface.face_count(); ++f)
         if (faces.has_area(f)) with_area.push_back(f);
     const FaceTree tree(surface, std::move(with_area), team);
     std::atomic<std::int64_t> tested{0};
-    const auto find = [&](int group, std::vector<SelfCrossing>& found) {
+    const auto find = [&](int group, std::vector<SelfIntersection>& found) {
         std::int64_t pairs = 0;
         tree.for_overlapping_pairs(group, [&](int f, int g) {
             ++pairs;
@@ -165,15 +165,16 @@ std::vector<SelfCrossing> self_crossings(const Surface& surface, ThreadTeam& tea
         });
         tested += pairs;
     };
-    std::vector<SelfCrossing> all =
-        parallel_collect<SelfCrossing>(tree.group_count(), kCrossingChunk, team, find);
+    std::vector<SelfIntersection> all =
+        parallel_collect<SelfIntersection>(tree.group_count(), kCrossingChunk, team, find);
     std::sort(all.begin(), all.end());
     if (tested_pairs != nullptr) *tested_pairs = tested;
     return all;
 }
 
-std::vector<SelfCrossing> update_self_crossings(const Surface& surface, const Surface& before,
-                                                const std::vector<SelfCrossing>& known, ThreadTeam& team) {
+std::vector<SelfIntersection> update_self_intersections(const Surface& surface, const Surface& before,
+                                                        const std::vector<SelfIntersection>& known,
+                                                        ThreadTeam& team) {
     const CommonFaces common(surface, before);
     const Faces faces(surface);
     PerFace<char> is_changed(surface.face_count(), 0);
@@ -184,18 +185,18 @@ std::vector<SelfCrossing> update_self_crossings(const Surface& surface, const Su
     };
     std::vector<int> changed = parallel_collect<int>(surface.face_count(), kCrossingChunk, team, examine);
     const FaceTree tree(surface, std::move(changed), team);
-    const auto find = [&](int f, std::vector<SelfCrossing>& found) {
+    const auto find = [&](int f, std::vector<SelfIntersection>& found) {
         if (!faces.has_area(f)) return;
         tree.for_overlapping(surface, f, [&](int g) {
             // Two changed faces meet twice, and each meets itself.
             if (is_changed[f] == 0 || f < g) faces.append_crossing(f, g, found);
         });
     };
-    std::vector<SelfCrossing> all =
-        parallel_collect<SelfCrossing>(surface.face_count(), kCrossingChunk, team, find);
+    std::vector<SelfIntersection> all =
+        parallel_collect<SelfIntersection>(surface.face_count(), kCrossingChunk, team, find);
     std::sort(all.begin(), all.end());
     const auto found = static_cast<std::ptrdiff_t>(all.size());
-    for (const SelfCrossing& c : known)
+    for (const SelfIntersection& c : known)
         if (common.contain({c[0], c[1], c[2]}) && common.contain({c[3], c[4], c[5]})) all.push_back(c);
     std::inplace_merge(all.begin(), all.begin() + found, all.end());
     return all;

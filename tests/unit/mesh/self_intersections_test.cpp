@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Self-crossings against vcglib's, and their update after changes against a new search.
-#include "vcg_core/mesh/self_crossings.h"
+// Self-intersections against vcglib's, and their update after changes against a new search.
+#include "vcg_core/mesh/self_intersections.h"
 
 #include <vcg/complex/algorithms/clean.h>
 #include <vcg/complex/algorithms/update/bounding.h>
@@ -11,7 +11,7 @@
 
 #include "tests/unit/support/crumpled.h"
 
-namespace neuralmesh::self_crossings_test {
+namespace neuralmesh::self_intersections_test {
 
 class CutVertex;
 class CutFace;
@@ -21,10 +21,10 @@ class CutFace : public vcg::Face<CutTypes, vcg::face::VertexRef, vcg::face::Norm
                                  vcg::face::BitFlags> {};
 class CutMesh : public vcg::tri::TriMesh<std::vector<CutVertex>, std::vector<CutFace>> {};
 
-std::vector<SelfCrossing> after(const Surface& surface, const Surface& before,
-                                const std::vector<SelfCrossing>& known, int threads) {
+std::vector<SelfIntersection> after(const Surface& surface, const Surface& before,
+                                    const std::vector<SelfIntersection>& known, int threads) {
     ThreadTeam team(threads);
-    return update_self_crossings(surface, before, known, team);
+    return update_self_intersections(surface, before, known, team);
 }
 
 std::set<Triangle> cut_faces_by_vcglib(const Network& network) {
@@ -64,16 +64,16 @@ TEST(Crossings, FacesApartInATiltedPlaneHaveNone) {
     for (const double tilt : {0.01, 0.1, 0.3, 0.7}) {
         Shape sheet = shapes::grid(12, 12);
         for (vcg::Point3d& p : sheet.positions) p += vcg::Point3d(0.013, tilt * p[0] + 0.021, 0.3 * p[1]);
-        EXPECT_TRUE(crossings(Surface(network_of(sheet)), 1).empty()) << tilt;
+        EXPECT_TRUE(intersections(Surface(network_of(sheet)), 1).empty()) << tilt;
     }
 }
 
 TEST(Crossings, AreTheSameForAnyNumberOfThreads) {
     const Surface surface(crumpled_sphere(0.3));
-    const std::vector<SelfCrossing> one = crossings(surface, 1);
+    const std::vector<SelfIntersection> one = intersections(surface, 1);
     EXPECT_TRUE(std::is_sorted(one.begin(), one.end()));
-    EXPECT_EQ(one, crossings(surface, 2));
-    EXPECT_EQ(one, crossings(surface, 5));
+    EXPECT_EQ(one, intersections(surface, 2));
+    EXPECT_EQ(one, intersections(surface, 5));
 }
 
 TEST(Crossings, AreIndifferentToTheScale) {
@@ -96,7 +96,7 @@ TEST(Crossings, FacesWithoutAreaHaveNoneAndCostNothing) {
         if (network.position(v)[2] > 0) network.set_position(v, {0, 0, 5});
     std::int64_t pairs = 0;
     const Surface surface(network);
-    for (const SelfCrossing& c : self_crossings(surface, one_thread(), &pairs))
+    for (const SelfIntersection& c : self_intersections(surface, one_thread(), &pairs))
         for (const std::size_t face : {0U, 3U}) {
             const Vector3& a = surface.positions[c[face]];
             const Vector3& b = surface.positions[c[face + 1]];
@@ -112,11 +112,11 @@ TEST(Crossings, AreKnownAfterAChangeFromThoseBefore) {
     const auto some = [&] { return any_slot(network, random); };
     for (int change = 0; change < 30; ++change) {
         const Surface before(network);
-        const std::vector<SelfCrossing> known = crossings(before, 1);
+        const std::vector<SelfIntersection> known = intersections(before, 1);
         const VertexId v = some();
         if (network.alive(v)) network.set_position(v, network.position(v) * 0.9F);
         const Surface moved(network);
-        EXPECT_EQ(after(moved, before, known, 2), crossings(moved, 1)) << change;
+        EXPECT_EQ(after(moved, before, known, 2), intersections(moved, 1)) << change;
         for (int i = 0; i < 5; ++i) {
             const VertexId a = some();
             const VertexId b = network.ring(a).valence > 0 ? network.ring(a)[0] : some();
@@ -130,11 +130,11 @@ TEST(Crossings, AreKnownAfterAChangeFromThoseBefore) {
         }
         ASSERT_EQ(network.validate(), "");
         const Surface surface(network);
-        const std::vector<SelfCrossing> all = crossings(surface, 1);
+        const std::vector<SelfIntersection> all = intersections(surface, 1);
         EXPECT_FALSE(all.empty());
         EXPECT_EQ(after(surface, before, known, 1), all) << change;
         EXPECT_EQ(after(surface, before, known, 3), all) << change;
     }
 }
 
-}  // namespace neuralmesh::self_crossings_test
+}  // namespace neuralmesh::self_intersections_test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/start/facing.h"
+#include "vcg_core/start/orientation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,17 +34,17 @@ void turn(Network& network, const Turned& turned) {
 
 }  // namespace
 
-bool FacingVote::is_clear() const {
+bool OrientationVote::is_clear() const {
     const double share = share_along();
     return along + against > 0 && (share > kClear || share < 1 - kClear);
 }
 
-double FacingVote::share_along() const {
+double OrientationVote::share_along() const {
     return static_cast<double>(along) / static_cast<double>(std::max<long long>(1, along + against));
 }
 
-std::vector<FacingVote> facing_votes(const Network& network, const TargetSpace& target) {
-    std::vector<FacingVote> votes(static_cast<std::size_t>(network.component_count()));
+std::vector<OrientationVote> orientation_votes(const Network& network, const TargetSpace& target) {
+    std::vector<OrientationVote> votes(static_cast<std::size_t>(network.component_count()));
     const PerVertex<int> component = network.components();
     for (const VertexId v : network.vertices())
         if (network.ring(v).open != 0) votes[static_cast<std::size_t>(component[v])].open = true;
@@ -60,7 +60,7 @@ std::vector<FacingVote> facing_votes(const Network& network, const TargetSpace& 
         const int face = hits[k].face;
         const float above = unit_normal(surface, face).dot(Vector3(n[0], n[1], n[2]));
         if (!(std::abs(above) > kGrazing)) continue;
-        FacingVote& vote = votes[static_cast<std::size_t>(component[surface.faces[face][0]])];
+        OrientationVote& vote = votes[static_cast<std::size_t>(component[surface.faces[face][0]])];
         ++(above > 0 ? vote.along : vote.against);
     }
     return votes;
@@ -99,7 +99,7 @@ void orient_convex_side_outward(Network& network) {
 
 int orient_by_normals(Network& network, const TargetSpace& target) {
     const PerVertex<int> component = network.components();
-    const std::vector<FacingVote> votes = facing_votes(network, target);
+    const std::vector<OrientationVote> votes = orientation_votes(network, target);
     std::vector<char> over(votes.size(), 0);
     int clear = 0;
     bool any_over = false;

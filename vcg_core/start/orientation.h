@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// Which way the components of a start mesh face.
+// The orientation of the components of a start mesh: which way they face.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 namespace neuralmesh {
 
 /// The normals of the points near a component.
-struct FacingVote {
+struct OrientationVote {
     long long along = 0;    ///< of the points whose normals point to the side that it faces
     long long against = 0;  ///< to the other side
     bool open = false;      ///< the component has a boundary
@@ -25,7 +25,7 @@ struct FacingVote {
 /// The vote on every component of \p network, in the order of Network::components(): about 20,000 points of
 /// \p target with a normal each count at their nearest face. Normals nearly along that face do not count.
 /// O(points used x log faces). \pre !target.has_faces(), and the network has a face
-std::vector<FacingVote> facing_votes(const Network& network, const TargetSpace& target);
+std::vector<OrientationVote> orientation_votes(const Network& network, const TargetSpace& target);
 
 /// The share of the area of \p network that shows its back to \p viewer. O(faces).
 double share_turned_away(const Network& network, const vcg::Point3f& viewer);

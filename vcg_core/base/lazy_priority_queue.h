@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// A priority queue most of whose entries are out of date before they come to the top.
+// A priority queue with lazy deletion, most of whose entries are out of date before they come to the top.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace neuralmesh {
 /// those that are out of date by then are dropped when the next ones move up. \p Entry has operator<, cheaper
 /// first.
 template <class Entry>
-class CheapestFirst {
+class LazyPriorityQueue {
 public:
     /// Amortised O(1) for most entries, O(log n) for the cheapest.
     void push(const Entry& entry) {
