@@ -33,10 +33,8 @@ constexpr double kLearnedShare = 2;
 constexpr double kCrumpling = 3;
 /// Rounds at the end without a redistribution.
 constexpr int kQuietRounds = 3;
-/// The fit ends when two rounds lower the error by less than this share, but not in the first ones.
+/// The fit ends when two rounds lower the error by less than this share.
 constexpr double kLeastProgress = 0.005;
-constexpr int kFirstRounds = 4;
-
 /// Rounds after the insertion of vertices that the points do not carry: by then the mesh is near the points.
 constexpr int kRefinedRounds = 4;
 
@@ -127,7 +125,7 @@ private:
             best_error_ = error;
             report_.rounds = round + 1;
         }
-        if (round >= kFirstRounds && error > (1 - kLeastProgress) * error_before_last_) return true;
+        if (round >= 2 && error > (1 - kLeastProgress) * error_before_last_) return true;
         error_before_last_ = last_error_;
         last_error_ = error;
         if (round + 1 < rounds_) {
