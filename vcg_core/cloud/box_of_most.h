@@ -16,6 +16,7 @@ namespace neuralmesh {
 /// estimated from about 1000 of them.
 template <class PointAt>
 vcg::Box3d box_of_most(std::size_t count, const PointAt& point_at) {
+    // The share of the points beyond the 5th percentile of the sample has a standard error of .7 %.
     constexpr std::size_t kSampled = 1000;
     const std::size_t stride = count / kSampled + 1;
     vcg::Box3d box;

@@ -25,8 +25,6 @@ constexpr std::size_t kPointsPerPlace = 60, kFewestPlaces = 500, kMostPlaces = 4
 /// The circle through the seventh neighbour holds seven points.
 constexpr int kNeighbour = 7;
 constexpr float kPiF = 3.1415927F;
-/// The median over so many places around takes out what is chance at one of them.
-constexpr int kPlacesAround = 12;
 /// Steps of the radius, to eight times at most.
 constexpr int kSteps = 7;
 
@@ -79,7 +77,7 @@ std::vector<std::vector<Place>> places_around(const NearestPoints& index,
     std::vector<std::vector<Place>> around(places.size());
     parallel_for(static_cast<int>(places.size()), kAtATime, team, [&](int i) {
         std::vector<NearestPoints::Neighbour> near;
-        index.nearest(static_cast<Place>(i), kPlacesAround, near);
+        index.nearest(static_cast<Place>(i), kTwoRings, near);
         std::vector<Place> all{static_cast<Place>(i)}, alike = all;
         for (const NearestPoints::Neighbour& n : near) {
             all.push_back(n.place);
@@ -91,7 +89,8 @@ std::vector<std::vector<Place>> places_around(const NearestPoints& index,
     return around;
 }
 
-/// Replaces a number of every place by the median of the places \p around it that are no clutter: leaves
+/// Replaces a number of every place by the median of the places \p around it that are no clutter, which takes
+/// out what is chance at one of them: leaves
 /// above the ground say nothing of it. Where only clutter is around, by that of all.
 void smooth(const std::vector<std::vector<Place>>& around, std::vector<SurveyedPlace>& places,
             float SurveyedPlace::*number) {

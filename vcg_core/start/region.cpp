@@ -157,9 +157,8 @@ constexpr double kWidthRatio = 1.7;
 // ... or, in a cloud that encloses nothing else, this much and at least this many coarse steps deep.
 constexpr double kSingleLayerWidthRatio = 1.2;
 constexpr int kSingleLayerSquaredDepth = 4 * 4;
-// The lattice for that: steps along the longest side, and the largest radius in steps.
-constexpr double kCoarseSteps = 40;
-constexpr int kCoarseMaxRadius = 18;
+// The lattice for that: steps along the longest side. No radius is larger than half of it.
+constexpr int kCoarseSteps = 40;
 
 /// A component holds at least so many points.
 constexpr long long kSpeckPoints = 20;
@@ -235,8 +234,8 @@ void seal_wide_openings(const std::vector<Point3f>& points, const vcg::Box3f& bo
     if (region.encloses_space || !(step > region.lattice.step) || skips("wide_lattice")) return;
     const Lattice coarse(box, step, Region::kMargin);
     const PerNode<SquaredRadius> distances =
-        squared_distances(coarse, count_points(coarse, points), kCoarseMaxRadius);
-    const PerNode<SquaredRadius> clearance = clearances(coarse, distances, kCoarseMaxRadius, {});
+        squared_distances(coarse, count_points(coarse, points), kCoarseSteps / 2);
+    const PerNode<SquaredRadius> clearance = clearances(coarse, distances, kCoarseSteps / 2, {});
     const SealedSpaces sealed =
         enclosed_spaces(coarse, distances, clearance, kSingleLayerWidthRatio, kSingleLayerSquaredDepth);
     if (sealed.nodes == 0) return;

@@ -221,10 +221,9 @@ Pairs repeated(const std::vector<Triangle>& faces, const Rim& corners) {
 
 /// Of the diagonals that would have the same ends all but one are forbidden, until there are none.
 std::vector<Triangle> triangulate(const Slit& slit, const Edges& edges) {
-    constexpr int kMostTries = 8;
     const auto at = [&](int i) { return slit.corners[static_cast<std::size_t>(i)]; };
     Pairs forbidden;
-    for (int attempt = 0; attempt < kMostTries; ++attempt) {
+    for (;;) {
         const auto faces = least_triangulation(size_of(slit.corners), [&](int i, int j) {
             const bool bridge = slit.bridges.count(std::minmax(at(i), at(j))) != 0;
             const bool possible = at(i) != at(j) && !bridge && forbidden.count({i, j}) == 0;
@@ -234,7 +233,6 @@ std::vector<Triangle> triangulate(const Slit& slit, const Edges& edges) {
         if (twice.empty()) return with_vertices(faces, slit.corners);
         forbidden.insert(twice.begin(), twice.end());
     }
-    return {};
 }
 
 /// A ring of faces from \p a to \p b.
