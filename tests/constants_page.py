@@ -29,7 +29,7 @@ INERT = [
      r"cloud/nearest_points|start/clearance",
      "a search or an order: an exact result, found faster"),
     (r"base/(logarithm|random|colors_and_normals|even_mesh)\.h:|:k(PiF|White|DegreesPerRadian|DeviationPerMedian|UnitBallVolume|"
-     r"Ln2|Pi)$|:kWithin30Degrees$", "mathematics"),
+     r"Ln2|Pi|HalfTurn|NeighbourCount|AllNeighbours|MaxLevel)$|:kWithin30Degrees$", "mathematics"),
     (r":k(None|NoVertex|NoNormal|Sentinel|FreeSlot|Nobody|Outside|Zero|End|Never|Unset|Unlimited|Far|Middle|Max)$",
      "a mark for nothing"),
     (r":k(Tiny|Rounding|LeastRounding|SquaredRounding|LeastSize|Ridge|Collinear|Margin)$|"

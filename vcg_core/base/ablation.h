@@ -25,12 +25,12 @@ inline constexpr const char* kStages[] = {
     // the cloud
     "lifted_points", "clumps", "lattice_outliers", "even_sampling", "noise_by_place",
     // the start mesh
-    "walled", "thickening", "finer_start", "hollows", "wide_lattice", "single_layer", "fringe",
-    "finer_lattice", "coarser_lattices", "short_handles",
+    "walled", "thickening", "finer_start", "hollows", "wide_lattice", "fringe", "coarser_lattices",
+    "short_handles",
     // learning
     "brief_learning", "settling_surplus", "saturation", "boundary_faces", "learned_notches",
     // topology
-    "membrane_groups", "membrane_webs", "wide_membranes",
+    "membrane_groups", "wide_membranes",
     // the fit
     "strays", "cut_faces", "volume_reduction", "dense_collapses", "hold", "crease_moves", "boundary_targets",
     "notches", "webs", "held_out", "refine"};

@@ -20,6 +20,10 @@
 
 namespace neuralmesh {
 
+/// So many neighbours are around a point on all sides, in two rings of an even mesh, and reach a distance of
+/// about two spacings.
+constexpr int kTwoRings = 12;
+
 /// The points are addressed by place: their rank along the curve, in [0, size()). Neighbours in space mostly
 /// have close places. Equal points, in any input order, give the same places up to exchange among equals.
 class NearestPoints {

@@ -18,11 +18,8 @@ using vcg::Point3f;
 
 /// The standard error of a share of so many places is .016 at most.
 constexpr std::size_t kLayerPlaces = 1000;
-/// The circle around so many and the point itself has a radius of about two spacings.
-constexpr int kLayerNeighbours = 12;
-/// In these radii: how far the other layer is
-/// looked for, and on thin walls, how wide the column is in which it is, and how much of the column is empty
-/// between the layers.
+/// In radii of the circle around kTwoRings neighbours: how far the other layer is looked for, and on thin
+/// walls, how wide the column is in which it is, and how much of the column is empty between the layers.
 constexpr float kFarthest = 10, kThin = 5, kColumn = 0.75F;
 /// The other layer has this share of the points that the own layer has in the column, and this many.
 constexpr double kLeastShare = 0.3;
@@ -107,8 +104,8 @@ std::vector<LayerPlace> layer_places(const NearestPoints& cloud, ThreadTeam& tea
             const auto place =
                 static_cast<NearestPoints::Place>(step / 2 + static_cast<std::size_t>(i) * step);
             std::vector<NearestPoints::Neighbour> near;
-            cloud.nearest(place, kLayerNeighbours, near);
-            if (near.size() < static_cast<std::size_t>(kLayerNeighbours)) return;
+            cloud.nearest(place, kTwoRings, near);
+            if (near.size() < static_cast<std::size_t>(kTwoRings)) return;
             LayerPlace found = place_at(cloud, place, near);
             find_opposite_layers(cloud, std::sqrt(near.back().squared_distance), found);
             places.push_back(found);

@@ -82,39 +82,31 @@ void fill_cavities(const Lattice& lattice, const PerNode<SquaredRadius>& clearan
 
 // tests/experiments/accuracy/ablation.py shows what a change of these figures does.
 
-/// Of the first lattice. A node costs about 30 bytes and 0.3 microseconds. Where parts nearly touch, a
-/// further lattice has up to eight times as many nodes, and a node takes 9 bytes more for each of at most
-/// eight threads.
+/// A node costs about 30 bytes and 0.3 microseconds, and 9 bytes more for each of at most eight threads.
 constexpr double kMaxNodes = 5.0e5;
 constexpr int kMaxNodesPerSide = 256;
 /// The lattice is as fine as possible with this many points per occupied node on average.
 constexpr double kPointsPerNode = 1.1;
 constexpr int kCoarserLattices = 4;
 constexpr float kCoarser = 1.4F;  // step of a lattice over that of the next finer one
-// At this share of the votes no finer lattice is examined.
-constexpr double kFineConfidence = 0.75;
-// The finer lattice may have this many times the nodes, but needs this many times the points per node: it is
-// for dense clouds.
-constexpr double kFineNodes = 8, kFinePointsPerNode = 2;
 
 // step_for() tries longer and longer steps. A try for the density counts all points, one for the size is
 // free.
 constexpr float kNextStepForSize = 1.05F, kNextStepForDensity = 1.12F;
 constexpr float kMinStepsPerSide = 8;  // a coarser lattice shows no shape
 
-/// The step of the finest lattice that the limits allow: at most \p max_nodes nodes, and at least \p
-/// points_per_node points per occupied node, so that most nodes of the surface hold points.
-float step_for(const std::vector<Point3f>& points, const Box3f& box, double max_nodes,
-               double points_per_node) {
+/// The step of the finest lattice that the limits allow: at most kMaxNodes nodes, and at least kPointsPerNode
+/// points per occupied node, so that most nodes of the surface hold points.
+float step_for(const std::vector<Point3f>& points, const Box3f& box) {
     const float side = longest_side(box);
     float step = side / static_cast<float>(kMaxNodesPerSide - 2 * Region::kMargin);
-    while (static_cast<double>(Lattice(box, step, Region::kMargin).size()) > max_nodes)
+    while (static_cast<double>(Lattice(box, step, Region::kMargin).size()) > kMaxNodes)
         step *= kNextStepForSize;
     while (step < side / kMinStepsPerSide) {
         const Lattice lattice(box, step, Region::kMargin);
         const PerNode<std::uint32_t> counts = count_points(lattice, points);
         const auto occupied = counts.size() - std::count(counts.begin(), counts.end(), 0U);
-        if (static_cast<double>(points.size()) / static_cast<double>(occupied) >= points_per_node) break;
+        if (static_cast<double>(points.size()) / static_cast<double>(occupied) >= kPointsPerNode) break;
         step *= kNextStepForDensity;
     }
     return step;
@@ -232,11 +224,6 @@ TopologyVote persistent_topology(const std::vector<TopologyAt>& topologies) {
     return result;
 }
 
-bool is_better(const TopologyVote& vote, const TopologyVote& than, bool finer) {
-    const double least = finer ? std::min(than.confidence, kLowConfidence) : than.confidence;
-    return vote.confidence > least || !than.found;
-}
-
 LatticeSurvey survey_lattices(const std::vector<Point3f>& points, const std::vector<LayerPlace>& places,
                               const Box3f& box, ThreadTeam& team, Progress& progress) {
     const auto survey_at = [&](float step) {
@@ -246,20 +233,14 @@ LatticeSurvey survey_lattices(const std::vector<Point3f>& points, const std::vec
         if (!survey.vote.found) survey.vote.level = Region::kMaxLevel;
         return survey;
     };
-    const float first = step_for(points, box, kMaxNodes, kPointsPerNode);
+    const float first = step_for(points, box);
     LatticeSurvey best = survey_at(first);
-    const auto take_better = [&](float step) {
-        LatticeSurvey other = survey_at(step);
-        if (is_better(other.vote, best.vote, step < first)) best = std::move(other);
-    };
-    if (best.vote.confidence < kFineConfidence && !skips("finer_lattice")) {
-        const float finer =
-            step_for(points, box, kFineNodes * kMaxNodes, kFinePointsPerNode * kPointsPerNode);
-        if (finer * kCoarser < first) take_better(finer);
-    }
     float step = first;
-    for (int i = 0; i < kCoarserLattices && best.vote.confidence < kLowConfidence; ++i)
-        if (!skips("coarser_lattices")) take_better(step *= kCoarser);
+    for (int i = 0; i < kCoarserLattices && best.vote.confidence < kLowConfidence; ++i) {
+        if (skips("coarser_lattices")) break;
+        LatticeSurvey other = survey_at(step *= kCoarser);
+        if (other.vote.confidence > best.vote.confidence || !best.vote.found) best = std::move(other);
+    }
     best.step = first;
     return best;
 }

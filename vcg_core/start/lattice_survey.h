@@ -65,10 +65,6 @@ struct TopologyVote {
 /// Radii above two lattice steps at which the solid is in pieces vote for nothing. O(levels).
 TopologyVote persistent_topology(const std::vector<TopologyAt>& topologies);
 
-/// Whether the vote of a lattice is better \p than that of another. A \p finer lattice tells parts apart that
-/// nearly touch: its vote is better unless it is uncertain. Else the clearer one is.
-bool is_better(const TopologyVote& vote, const TopologyVote& than, bool finer);
-
 /// The lattice that tells the topology best.
 struct LatticeSurvey {
     Region region;
@@ -76,10 +72,9 @@ struct LatticeSurvey {
     float step = 0;  ///< of the first lattice examined
 };
 
-/// Examines a lattice as fine as the points allow. If the vote there is not clear, a finer one, for surfaces
-/// close to each other, and if it is uncertain coarser ones, for clouds with noise and gaps. If no lattice
-/// has a topology, the choice is the largest ball on the coarsest one. \p places tell hollows. Does not
-/// depend on the number of threads.
+/// Examines a lattice as fine as the points allow. If the vote there is uncertain, coarser ones, for clouds
+/// with noise and gaps. If no lattice has a topology, the choice is the largest ball on the coarsest one. \p
+/// places tell hollows. Does not depend on the number of threads.
 LatticeSurvey survey_lattices(const std::vector<vcg::Point3f>& points, const std::vector<LayerPlace>& places,
                               const vcg::Box3f& box, ThreadTeam& team, Progress& progress);
 

@@ -45,8 +45,6 @@ constexpr int kEdgesOfHandle = 8;
 /// Of start meshes of aerial surveys up to .011 of the area is turned away from above, of a tree .22. Models
 /// seen from a sensor have .03 to .04, which are right: its place is known within a tenth of the diagonal.
 constexpr double kMostAway = 0.02;
-/// The neighbours that normals are turned by.
-constexpr int kNeighbours = 12;
 /// Scans miss up to .03 of their points, slabs as thick as their points are apart .09 and .16; a tree misses
 /// .14, and has .35 of clutter, which is not sharply told from its surface.
 constexpr double kMostMissed = 0.05;
@@ -87,7 +85,7 @@ std::vector<std::pair<int, int>> neighbours_of(const ConsolidatedPoints& points)
     std::vector<NearestPoints::Neighbour> near;
     for (NearestPoints::Place place = 0; place < index.size(); ++place) {
         const std::size_t own = index.index(place);
-        index.nearest(place, kNeighbours, near);
+        index.nearest(place, kTwoRings, near);
         for (const NearestPoints::Neighbour& n : near)
             if (n.squared_distance < kStarReach * kStarReach * points.radii[own] * points.radii[own])
                 pairs.emplace_back(static_cast<int>(own), static_cast<int>(index.index(n.place)));

@@ -157,9 +157,8 @@ constexpr double kWidthRatio = 1.7;
 // ... or, in a cloud that encloses nothing else, this much and at least this many coarse steps deep.
 constexpr double kSingleLayerWidthRatio = 1.2;
 constexpr int kSingleLayerSquaredDepth = 4 * 4;
-// The lattice for wide openings: steps along the longest side, and the largest radius in steps.
-constexpr double kCoarseSteps = 40;
-constexpr int kCoarseMaxRadius = 18;
+// The lattice for that: steps along the longest side. No radius is larger than half of it.
+constexpr int kCoarseSteps = 40;
 
 /// A component holds at least so many points.
 constexpr long long kSpeckPoints = 20;
@@ -232,20 +231,17 @@ double radius_of_opening(const SealedSpaces& sealed, const Lattice& lattice) {
 void seal_wide_openings(const std::vector<Point3f>& points, const vcg::Box3f& box, Region& region,
                         NodeSet& inside) {
     const float step = longest_side(box) / static_cast<float>(kCoarseSteps);
-    if (!(step > region.lattice.step) || skips("wide_lattice")) return;
+    if (region.encloses_space || !(step > region.lattice.step) || skips("wide_lattice")) return;
     const Lattice coarse(box, step, Region::kMargin);
     const PerNode<SquaredRadius> distances =
-        squared_distances(coarse, count_points(coarse, points), kCoarseMaxRadius);
-    const PerNode<SquaredRadius> clearance = clearances(coarse, distances, kCoarseMaxRadius, {});
-    SealedSpaces sealed =
-        enclosed_spaces(coarse, distances, clearance, kWidthRatio, kSingleLayerSquaredDepth);
-    if (sealed.nodes == 0 && !region.encloses_space && !skips("single_layer"))
-        sealed =
-            enclosed_spaces(coarse, distances, clearance, kSingleLayerWidthRatio, kSingleLayerSquaredDepth);
+        squared_distances(coarse, count_points(coarse, points), kCoarseSteps / 2);
+    const PerNode<SquaredRadius> clearance = clearances(coarse, distances, kCoarseSteps / 2, {});
+    const SealedSpaces sealed =
+        enclosed_spaces(coarse, distances, clearance, kSingleLayerWidthRatio, kSingleLayerSquaredDepth);
     if (sealed.nodes == 0) return;
     add_refined(coarse, sealed.inside, region.lattice, inside);
     region.encloses_space = true;
-    region.widest_opening = std::max(region.widest_opening, radius_of_opening(sealed, coarse));
+    region.widest_opening = radius_of_opening(sealed, coarse);
 }
 
 /// Takes the hollows out of \p inside, and sets region.hollows.
@@ -276,38 +272,6 @@ long long points_of_component(long long total) {
     const long long wanted =
         std::max(kSpeckPoints, static_cast<long long>(kComponentShare * static_cast<double>(total)));
     return std::min(wanted, 1 + total / 4);  // so that a cloud of a few points has a component
-}
-
-// Gaps of a surface let points sink in: deeper than this many times the radius of the
-// widest gap, a point is not of the surface.
-constexpr double kDepthOverGap = 2;
-constexpr double kMaxSquaredDepth = 1e6;  // so that it fits into an int
-
-/// The squared depth in lattice steps up to which an isolated point still counts as one of the surface.
-int max_squared_depth(const Region& region, int level) {
-    const double gap = std::sqrt(static_cast<double>(level)) +
-                       region.widest_opening / static_cast<double>(region.lattice.step);
-    const double depth = kDepthOverGap * std::max(gap, 1.0);
-    return static_cast<int>(std::min(depth * depth, kMaxSquaredDepth));
-}
-
-/// The occupied nodes, without the fringe, that are far from all large groups.
-NodeSet isolated_nodes(const Region& region, int level) {
-    const NodeSet large =
-        solid_of(region.lattice, region.distances, region.counts, level, region.min_points).nodes;
-    NodeSet isolated(large.size());
-    for (NodeId i = 0; i < isolated.size(); ++i) isolated[i] = region.counts[i] != 0 && large[i] == 0 ? 1 : 0;
-    return isolated;
-}
-
-/// Removes from \p nodes those in the outer layer of \p solid.
-void remove_surface_nodes(const Region& region, const NodeSet& solid, int level, NodeSet& nodes) {
-    const int max_depth = max_squared_depth(region, level);
-    PerNode<std::uint32_t> outside(solid.size());
-    for (NodeId i = 0; i < solid.size(); ++i) outside[i] = solid[i] == 0 ? 1 : 0;
-    const PerNode<SquaredRadius> depths = squared_distances(region.lattice, outside, Region::kMaxRadius);
-    for (NodeId i = 0; i < nodes.size(); ++i)
-        if (solid[i] != 0 && depths[i] <= max_depth) nodes[i] = 0;
 }
 
 }  // namespace
@@ -355,14 +319,11 @@ Region examine(const std::vector<Point3f>& points, const vcg::Box3f& box, float 
 }
 
 std::vector<std::uint8_t> outliers_of(const std::vector<Point3f>& points, const Region& region,
-                                      const NodeSet& solid, int level) {
-    NodeSet outlying = isolated_nodes(region, level);
-    if (std::find(outlying.begin(), outlying.end(), 1) != outlying.end())
-        remove_surface_nodes(region, solid, level, outlying);
+                                      const NodeSet& solid) {
     std::vector<std::uint8_t> result;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const NodeId node = region.lattice.node_of(points[i]);
-        if (node < outlying.size() && outlying[node] == 0) continue;
+        if (node < solid.size() && (region.counts[node] == 0 || solid[node] != 0)) continue;
         result.resize(points.size(), 0);
         result[i] = 1;
     }

@@ -38,10 +38,9 @@ struct Region {
 /// The fringe of a noisy cloud is left out: nodes with far fewer points than others close by. It would close
 /// narrow gaps between surfaces.
 ///
-/// Spaces with an opening of at most 0.6 of their width are sealed: on the lattice itself those with openings
-/// up to kMaxRadius, on one of about 40 steps per side those with wider ones. If there is neither, the points
-/// are a single layer. Then large hollows are sealed, too, if their opening is at most 0.8 times as wide as
-/// they are (a head scanned down to the neck).
+/// Spaces with an opening of at most kMaxRadius, and 0.6 of their width, are sealed. If there are none, large
+/// spaces are sealed whose opening is at most 0.8 times as wide as they are (a head scanned down to the
+/// neck), found on a lattice of about 40 steps per side.
 ///
 /// A component holds at least 1 % of the points and at least 20, or a quarter of the points if that is less.
 ///
@@ -62,13 +61,10 @@ ThinParts thin_parts(const Region& region, const std::vector<LayerPlace>& places
 /// Points per node of \p lattice; points outside it are not counted. O(nodes + points).
 PerNode<std::uint32_t> count_points(const Lattice& lattice, const std::vector<vcg::Point3f>& points);
 
-/// 1 for each outlier; empty if there are none. A point is an outlier if it lies outside region.lattice, or
-/// if all of these hold:
-/// - its group is too small for a component,
-/// - it is farther than the radius of \p level from all larger groups,
-/// - it lies outside \p solid, or too deep inside to be on the solid's surface.
-/// Fringe points, which examine() leaves out, are never outliers. O(points + nodes).
+/// 1 for each outlier; empty if there are none: the points outside \p solid, whose group is too small for a
+/// component, or outside the lattice. Fringe points, which examine() leaves out, are never outliers.
+/// O(points).
 std::vector<std::uint8_t> outliers_of(const std::vector<vcg::Point3f>& points, const Region& region,
-                                      const NodeSet& solid, int level);
+                                      const NodeSet& solid);
 
 }  // namespace neuralmesh

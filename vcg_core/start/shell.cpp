@@ -159,7 +159,7 @@ Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace
 void set_outliers(const std::vector<Point3f>& points, const Region& region, const ClosedMesh& closed,
                   bool learn_outliers, StartMesh& result) {
     if (skips("lattice_outliers")) return;
-    result.outliers = outliers_of(points, region, closed.solid, closed.level);
+    result.outliers = outliers_of(points, region, closed.solid);
     result.ignored_points = std::count(result.outliers.begin(), result.outliers.end(), 1);
     const double most = ShellOptions::kMaxOutlierShare * static_cast<double>(points.size());
     if (learn_outliers || static_cast<double>(result.ignored_points) > most) result.outliers.clear();

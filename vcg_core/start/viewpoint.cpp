@@ -67,8 +67,6 @@ constexpr double kMostLeft = 0.5;
 /// The centre of the points around a place, from the place, in radii of what is around it. At a straight edge
 /// it is 4 / (3 pi) = 0.42.
 constexpr float kMostAside = 0.2F;
-/// Grazing sight: noise of the normals hides smaller cosines.
-constexpr float kGrazingCosine = 0.05F;
 
 /// A place of the surface with the logarithm of the density of its points.
 struct Sample {
@@ -140,7 +138,7 @@ private:
         for (const Sample& s : samples_) {
             const Point3f sight = sensor - s.position;
             const float squared = std::max(sight.SquaredNorm(), 1e-12F);
-            const float cosine = std::max(std::abs(s.normal * sight) / std::sqrt(squared), kGrazingCosine);
+            const float cosine = std::max(std::abs(s.normal * sight) / std::sqrt(squared), kGrazing);
             left_.push_back(s.density - portable_log(static_cast<double>(cosine / squared)));
         }
         return {mean_deviation(left_), sensor};

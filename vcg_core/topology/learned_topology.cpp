@@ -22,6 +22,7 @@ namespace neuralmesh {
 
 namespace {
 
+/// Ten for each face: that a face of the surface gets none by chance happens once in 20,000 times.
 constexpr std::size_t kSignalsPerVertex = 20;
 /// With fewer points per vertex, faces without any are common. With eight, feline from 20,000 points has two
 /// handles with 10 of 30 seeds instead of 16.
@@ -44,7 +45,7 @@ constexpr std::size_t kMostRims = 4, kMostOfGroup = 5;
 /// wherever parts are closer than its edges are long.
 constexpr std::size_t kMostPerVertex = 40;
 /// Rings by which membranes are widened.
-constexpr std::size_t kWidestWeb = 2;
+constexpr std::size_t kMostRings = 2;
 /// A reconnection that loses more signals than this as the membranes are gains none with wider ones.
 constexpr float kHopeless = -60;
 /// A reconnection gains enough if it explains this share of what the membranes lack, and this many signals.
@@ -95,8 +96,6 @@ private:
     /// The best reconnection of membranes, joined if they are several, if it gains enough; else one without
     /// faces.
     Reconnection of(const Group& group) const;
-    /// The same of two membranes as one: the sides of a web, and the faces between them along its free edge.
-    Reconnection of_web(const Wide& a, const Wide& b) const;
     Reconnection best(const std::vector<Membrane>& membranes) const;
     /// Makes a membrane of \p faces. \return false if it cannot be completed.
     bool make(Membrane& membrane, std::vector<int> faces) const;
@@ -192,7 +191,7 @@ bool Search::make(Membrane& membrane, std::vector<int> faces) const {
 /// Adds the same membrane with the faces around, and around those.
 void Search::widen(Wide& wide) const {
     if (skips("wide_membranes")) return;
-    while (wide.size() <= kWidestWeb) {
+    while (wide.size() <= kMostRings) {
         std::vector<int> faces;
         for (const int f : wide.back().faces)
             for (const VertexId v : surface_.faces[f])
@@ -215,13 +214,10 @@ Group Search::facing(int membrane) const {
     return found;
 }
 
-/// The least gain of a reconnection of membranes that lack so many signals.
-float least_gain(float missing) { return std::max(kLeastGain, kLeastShare * missing); }
-
 Reconnection Search::of(const Group& group) const {
     Reconnection found;
     found.gain = std::numeric_limits<float>::lowest();
-    for (std::size_t ring = 0; ring <= kWidestWeb; ++ring) {
+    for (std::size_t ring = 0; ring <= kMostRings; ++ring) {
         std::vector<Membrane> membranes;
         for (const int i : group) membranes.push_back(wide_[i][std::min(ring, wide_[i].size() - 1)]);
         if (group.size() > 2 && !take_apart(surface_, support_, membranes)) continue;
@@ -229,38 +225,8 @@ Reconnection Search::of(const Group& group) const {
         if (next.gain > found.gain) found = std::move(next);
         if (group.size() == 2 && found.gain < kHopeless) break;
     }
-    if (found.gain < least_gain(missing(group))) found = Reconnection();
-    if (found.added.empty() && group.size() == 2) found = of_web(wide_[group[0]], wide_[group[1]]);
+    if (found.gain < std::max(kLeastGain, kLeastShare * missing(group))) found = Reconnection();
     found.membranes = group;
-    return found;
-}
-
-std::vector<int> faces_of(const Membrane& a, const Membrane& b) {
-    std::vector<int> faces = a.faces;
-    faces.insert(faces.end(), b.faces.begin(), b.faces.end());
-    return faces;
-}
-
-/// Whether their normals differ by clearly more than 90 degrees: the angle at the edges of a cube. With a
-/// bound of 120 degrees, webs of armadillo stay.
-bool are_opposite(const Membrane& a, const Membrane& b) {
-    return a.area.dot(b.area) < -0.1F * a.area.norm() * b.area.norm();
-}
-
-/// A web may have points at its free edge: those of the corner that it spans are nearest to it. The sides of
-/// a web are opposite and lack signals by no accident. So small membranes beside a sharp edge are none.
-Reconnection Search::of_web(const Wide& a, const Wide& b) const {
-    Reconnection found;
-    if (!are_opposite(a.front(), b.front()) ||
-        support_.lack_of(faces_of(a.front(), b.front())) < least_lack(surface_) || skips("membrane_webs"))
-        return found;
-    const float least = least_gain(a.front().missing + b.front().missing);
-    for (std::size_t ring = 1; ring < std::min(a.size(), b.size()); ++ring) {
-        Membrane web;
-        if (!make(web, faces_of(a[ring], b[ring])) || web.rims.size() != 1) continue;
-        Reconnection next = best({web});
-        if (next.gain >= least && next.gain > found.gain) found = std::move(next);
-    }
     return found;
 }
 

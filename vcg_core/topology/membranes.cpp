@@ -18,8 +18,6 @@ namespace {
 constexpr float kLeastArea = 0.2F;
 /// A membrane of more faces is a part of the surface where the density is misjudged.
 constexpr std::size_t kMostFaces = 2000;
-/// Most times that faces are added to make the rims clean.
-constexpr int kMostRepairs = 8;
 
 class Members {
 public:
@@ -170,8 +168,8 @@ bool face_each_other(const Surface& surface, const Membrane& a, const Membrane& 
 
 bool complete(const Surface& surface, const FaceSignals& signals, Membrane& membrane) {
     Members members(surface, membrane.faces);
-    for (int repair = 0; add_islands(surface, members) || add_pinched(surface, signals, members);)
-        if (++repair > kMostRepairs || members.faces().size() > kMostFaces) return false;
+    while (add_islands(surface, members) || add_pinched(surface, signals, members))
+        if (members.faces().size() > kMostFaces) return false;
     membrane.faces = members.faces();
     membrane.rims = rims_of(surface, members);
     membrane.missing = 0;

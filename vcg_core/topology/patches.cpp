@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -188,21 +187,6 @@ Zip Zipper::best() {
     return result;
 }
 
-/// The places of \p rim that may get an edge from \p v: all of a short rim, of a long one the nearest, in the
-/// order of the rim.
-std::vector<std::size_t> turns_to_try(VertexId v, const Rim& rim, const Edges& edges) {
-    constexpr std::size_t kAllOf = 24, kNearest = 12;
-    std::vector<std::size_t> turns(rim.size());
-    std::iota(turns.begin(), turns.end(), std::size_t{0});
-    if (rim.size() <= kAllOf) return turns;
-    std::stable_sort(turns.begin(), turns.end(), [&](std::size_t i, std::size_t j) {
-        return edges.squared_length(v, rim[i]) < edges.squared_length(v, rim[j]);
-    });
-    turns.resize(kNearest);
-    std::sort(turns.begin(), turns.end());
-    return turns;
-}
-
 /// Diagonals of a slit polygon that have the same ends as others, by their corners.
 using Pairs = std::set<std::pair<int, int>>;
 Pairs repeated(const std::vector<Triangle>& faces, const Rim& corners) {
@@ -221,10 +205,9 @@ Pairs repeated(const std::vector<Triangle>& faces, const Rim& corners) {
 
 /// Of the diagonals that would have the same ends all but one are forbidden, until there are none.
 std::vector<Triangle> triangulate(const Slit& slit, const Edges& edges) {
-    constexpr int kMostTries = 8;
     const auto at = [&](int i) { return slit.corners[static_cast<std::size_t>(i)]; };
     Pairs forbidden;
-    for (int attempt = 0; attempt < kMostTries; ++attempt) {
+    for (;;) {
         const auto faces = least_triangulation(size_of(slit.corners), [&](int i, int j) {
             const bool bridge = slit.bridges.count(std::minmax(at(i), at(j))) != 0;
             const bool possible = at(i) != at(j) && !bridge && forbidden.count({i, j}) == 0;
@@ -234,7 +217,6 @@ std::vector<Triangle> triangulate(const Slit& slit, const Edges& edges) {
         if (twice.empty()) return with_vertices(faces, slit.corners);
         forbidden.insert(twice.begin(), twice.end());
     }
-    return {};
 }
 
 /// A ring of faces from \p a to \p b.
@@ -243,17 +225,16 @@ std::vector<Triangle> zip(const Rim& a, const Rim& b, const Edges& edges) {
     if (a.size() > longest || b.size() > longest) return {};
     for (const VertexId v : a)
         if (std::find(b.begin(), b.end(), v) != b.end()) return {};
-    const Rim back(b.rbegin(), b.rend());
     Zip best;
     Rim best_beside;
-    for (const std::size_t turn : turns_to_try(a.front(), back, edges)) {
-        Rim beside = back;
-        std::rotate(beside.begin(), beside.begin() + static_cast<std::ptrdiff_t>(turn), beside.end());
+    Rim beside(b.rbegin(), b.rend());
+    for (std::size_t turn = 0; turn < b.size(); ++turn) {
         Zip next = Zipper(a, beside, edges).best();
         if (next.cost < best.cost) {
             best = std::move(next);
-            best_beside = std::move(beside);
+            best_beside = beside;
         }
+        std::rotate(beside.begin(), beside.begin() + 1, beside.end());
     }
     std::vector<Triangle> faces;
     std::size_t i = 0, j = 0;

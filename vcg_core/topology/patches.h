@@ -38,10 +38,9 @@ private:
 std::vector<Triangle> closing_patches(const std::vector<Rim>& rims, const Edges& edges);
 
 /// Faces between two and more \p rims, a sphere with as many holes, again with the least sum of squared edges
-/// as far as it looks. Between two rims, faces by turns along one and the other: of rims of more than 24
-/// vertices the first vertex of one gets an edge to one of the twelve nearest of the other. Three and more
-/// become one polygon by the shortest edges between them. None as above, if rims share a vertex, or if three
-/// and more have more than twice kLongestRim vertices together. O(n^3)
+/// as far as it looks. Between two rims, faces by turns along one and the other. Three and more become one
+/// polygon by the shortest edges between them. None as above, if rims share a vertex, or if three and more
+/// have more than twice kLongestRim vertices together. O(n^3)
 std::vector<Triangle> joining_patch(const std::vector<Rim>& rims, const Edges& edges);
 
 }  // namespace neuralmesh

@@ -173,7 +173,7 @@ struct Examined {
 
     /// The outliers among the others; empty if outliers_of() is.
     std::vector<int> outliers() const {
-        const std::vector<std::uint8_t> all = outliers_of(points, region, solid, kLevel);
+        const std::vector<std::uint8_t> all = outliers_of(points, region, solid);
         if (all.empty()) return {};
         EXPECT_EQ(all.size(), points.size());
         const auto others = all.begin() + static_cast<std::ptrdiff_t>(surface_points);
@@ -199,8 +199,7 @@ TEST(Outliers, ArePointsFarFromTheSurface) {
     EXPECT_TRUE(Examined({}).outliers().empty());
     using Points = std::vector<Point3f>;
     for (const Points& far : {Points{{0.8F, 0, 0}, {0, 0, -0.9F}},  // outside
-                              Points{{3, 0, 0}, {0, -1e20F, 0}},    // outside the lattice
-                              Points{{0, 0, 0}, {0.2F, 0, 0}}})     // deep inside
+                              Points{{3, 0, 0}, {0, -1e20F, 0}}})   // outside the lattice
         EXPECT_EQ(Examined(far).outliers(), (std::vector<int>{1, 1})) << far[0][0];
     EXPECT_TRUE(Examined({{0.52F, 0, 0}, {0, 0.48F, 0}}).outliers().empty());
     // Each is judged on its own: of these the second one is an outlier.
@@ -244,23 +243,6 @@ TEST(TopologyVote, OccupiedNodesCountAsHalfAStep) {
 TEST(TopologyVote, IsUncertainIfPointsLieInClumps) {
     EXPECT_EQ(persistent_topology({{4, 1, 1}, {16, 1, 1}}).confidence, 1);
     EXPECT_LT(persistent_topology({{9, 1, 1}, {16, 1, 1}}).confidence, 0.5);
-}
-
-TEST(LatticeSurvey, PrefersAFinerLatticeThatIsNotUncertain) {
-    TopologyVote first, other;
-    first.found = true;
-    first.confidence = 0.72;
-    other.confidence = 0.56;
-    EXPECT_TRUE(is_better(other, first, true));
-    EXPECT_FALSE(is_better(other, first, false));
-    other.confidence = 0.45;
-    EXPECT_FALSE(is_better(other, first, true));
-    first.confidence = 0.4;
-    EXPECT_TRUE(is_better(other, first, true));
-    EXPECT_TRUE(is_better(other, first, false));
-    first.found = false;
-    other.confidence = 0;
-    EXPECT_TRUE(is_better(other, first, false));
 }
 
 }  // namespace neuralmesh::region_test

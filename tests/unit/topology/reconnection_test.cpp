@@ -177,46 +177,6 @@ TEST(Reconnection, MembranesOverOneHollowGoTogether) {
     EXPECT_EQ(topology_of(network), (Topology{1, 3, 0}));
 }
 
-/// A torus with a web on the inside, between the columns 27 and 31 of the grid: its free edge reaches towards
-/// the axis. A few points lie at the edge.
-struct Webbed {
-    static constexpr int kColumns = 60, kRows = 24, kMiddleRow = kRows / 2, kFirst = 27, kLast = 31;
-    static bool at_edge(int vertex) {
-        const int column = vertex / kRows, row = vertex % kRows;
-        return column >= kFirst && column <= kLast && std::abs(row - kMiddleRow) <= 1;
-    }
-    static bool is_pulled(int vertex) {
-        const int column = vertex / kRows;
-        return at_edge(vertex) && column > kFirst && column < kLast;
-    }
-
-    Webbed() : shape(shapes::torus_grid(kColumns, kRows)), cloud(shapes::torus_cloud(20000)) {
-        for (int v = 0; v < kColumns * kRows; ++v) {
-            vcg::Point3d& p = shape.positions[static_cast<std::size_t>(v)];
-            if (is_pulled(v)) p = {p[0] * 0.65, p[1] * 0.65, p[2] * 0.1};
-        }
-        Random random(3);
-        for (const auto& face : shape.faces) {
-            if (!std::all_of(face.begin(), face.end(), at_edge)) continue;
-            if (random.unit() > 0.3F) continue;
-            vcg::Point3d middle(0, 0, 0);
-            for (const int v : face) middle += shape.positions[static_cast<std::size_t>(v)] / 3;
-            cloud.push_back(middle);
-        }
-    }
-    Shape shape;
-    Cloud cloud;
-};
-
-TEST(Reconnection, AWebIsCutThoughItsEdgeHasPoints) {
-    const Webbed web;
-    const TargetSpace target = target_of(web.cloud);
-    Network network = network_in_frame(target, web.shape);
-    EXPECT_GT(learn(network, target), 0);
-    EXPECT_EQ(topology_of(network), kRing);
-    for (int v = 0; v < network.slot_count(); ++v) EXPECT_FALSE(Webbed::is_pulled(v) && network.alive(v));
-}
-
 /// A sphere that the points cover only below \p top; both from -1 to 1.
 struct Cut {
     explicit Cut(double top)
