@@ -9,14 +9,12 @@
 
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/thread_team.h"
-#include "vcg_core/fit/crease_moves.h"
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/fit/least_squares.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/point_errors.h"
 #include "vcg_core/fit/points_by_face.h"
 #include "vcg_core/fit/redistribute.h"
-#include "vcg_core/fit/split_gains.h"
 
 namespace neuralmesh {
 

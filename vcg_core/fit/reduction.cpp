@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "vcg_core/base/ablation.h"
-#include "vcg_core/fit/collapse_costs.h"
 #include "vcg_core/fit/fitter.h"
 
 namespace neuralmesh {
