@@ -203,7 +203,7 @@ private:
 
 NeuralMesh learn_to_error(const TargetSpace& given, const Settings& settings, Progress& progress,
                           const OuterStages& stages) {
-    constexpr int kLeast = 4;
+    constexpr int kLeast = 4;       // those of a tetrahedron
     constexpr double kShare = 0.4;  // of the progress that is left, for a trial
     Examination examination(given, settings);
     MonotoneProgress monotone(progress);

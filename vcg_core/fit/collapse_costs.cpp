@@ -171,10 +171,9 @@ private:
         const Ring& ring = network_.ring(v);
         const VertexId first = ring[0], last = ring[ring.valence - 1];
         if (ring.open == 0 || (u != first && u != last)) return 0;
-        /// Evenly along the new edge. Its ends are corners of the faces: their distance is 0.
-        constexpr float kShares[] = {0.25F, 0.5F, 0.75F};
         float sum = 0;
-        for (const float share : kShares) {
+        // Evenly along the new edge. Its ends are corners of the faces: their distance is 0.
+        for (const float share : {0.25F, 0.5F, 0.75F}) {
             const Vector3 p = at(first) + share * (at(last) - at(first));
             const float least = squared_distance_from(surface_, surface_.faces_around(v), p);
             sum += least * std::sqrt(least) / 3;

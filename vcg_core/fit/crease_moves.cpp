@@ -17,7 +17,6 @@ namespace neuralmesh {
 namespace {
 
 // Lengths are in mean lengths of the edges at a vertex. Chosen by tests/experiments/paper/crease_table.py.
-constexpr float kCreaseReach = 1;   ///< a point this far has a quarter of the weight
 constexpr float kFarthest = 0.35F;  ///< from the vertex to the line
 constexpr float kAlike = 0.9F;      ///< cosine above which two planes are one
 constexpr float kTight = 0.03F;  ///< largest distance of the points from their planes, root mean square ...
@@ -46,7 +45,7 @@ public:
         if (!choose_seeds()) return Vector3::Zero();
         const float edge = mean_edge_length_at(surface_.positions, network_.ring(v), v);
         if (!(noise_variance < kNoisiest * kNoisiest * edge * edge)) return Vector3::Zero();
-        collect_points(surface_.positions[v], kCreaseReach * edge);
+        collect_points(surface_.positions[v], edge);
         const float noise = kNoiseShare * noise_variance;
         for (int i = 0; i < kRefinements; ++i)
             if (!refine() || error_ > kHopeless * largest_error(edge, noise)) return Vector3::Zero();
@@ -94,6 +93,7 @@ private:
 
     Plane plane_of(const Side& side) const { return {side.normal, surface_.corner(side.face, 0)}; }
 
+    /// A point as far as \p reach has a quarter of the weight.
     void collect_points(const Vector3& vertex, float reach) {
         samples_.clear();
         reach_ = static_cast<double>(reach);

@@ -33,19 +33,16 @@ constexpr double kLearnedShare = 2;
 constexpr double kCrumpling = 3;
 /// Rounds at the end without a redistribution.
 constexpr int kQuietRounds = 3;
-/// The fit ends when two rounds lower the error by less than this share, but not in the first ones.
-constexpr double kLeastProgress = 0.005;
+/// After so many rounds the mesh is near the points. Then the fit may end, and ends at once where vertices
+/// were inserted that the points do not carry.
 constexpr int kFirstRounds = 4;
+/// It ends when two rounds lower the error by less than this share.
+constexpr double kLeastProgress = 0.005;
 
-/// Rounds after the insertion of vertices that the points do not carry: by then the mesh is near the points.
-constexpr int kRefinedRounds = 4;
-
-/// With precise points (Fitter::has_precise_points()) the points hold the surface from the fifth round on. By
-/// then it is near them, and solutions that let it slide may take it away again: block, clean, 5,000
-/// vertices, by up to 20 % of the error in a round.
+/// Precise points (Fitter::has_precise_points()) hold the surface once it is near them. Solutions that let it
+/// slide may take it away again: block, clean, 5,000 vertices, by up to 20 % of the error in a round.
 /// Open surfaces are left free, because their boundary has to slide to where the points end. So are sheets
 /// that are closed around both sides, where each point would hold the layer that it is nearer to by chance.
-constexpr int kFirstHold = 4;
 constexpr float kHold = 0.3F;
 
 /// 20 rounds for small meshes, where a round is cheap and every vertex counts.
@@ -120,7 +117,7 @@ private:
     }
 
     bool solve(int round, Surface& surface, PointsByFace& points) {
-        const bool hold = holds_ && round >= kFirstHold;
+        const bool hold = holds_ && round >= kFirstRounds;
         const double error = fitter_.solve(points, surface, hold ? kHold : PointToPlaneSystem::kSliding);
         if (round == 0 || error < best_error_) {
             best_ = network_;
@@ -176,7 +173,7 @@ void refine_and_fit(Network& network, const TargetSpace& target, const FitOption
     PartOf fitting(progress, 0.2, 1);
     if (!fitter.untangle_surface(untangling)) return;
     FitOptions of_refined = options;
-    of_refined.rounds = kRefinedRounds;
+    of_refined.rounds = kFirstRounds;
     of_refined.redistribute = false;
     FitRounds(network, fitter, of_refined).run(learned_share, team, fitting);
 }

@@ -16,10 +16,9 @@ namespace neuralmesh {
 
 namespace {
 
-/// Pull of a vertex towards the middle of its ring within the tangent plane, in points per vertex.
-constexpr float kCentring = 2e-3F;
-/// Pull of a vertex to its present position, in points per vertex.
-constexpr float kDamping = 2e-3F;
+/// Pull of a vertex to its present position, and towards the middle of its ring within the tangent plane, in
+/// points per vertex.
+constexpr float kWeakPull = 2e-3F;
 /// Pull of a vertex that lacks points towards the middle of its ring, per missing point.
 constexpr float kRetreat = 8.0F;
 /// A boundary vertex has few points around it, which may miss as many by chance.
@@ -113,7 +112,7 @@ void PointToPlaneSystem::gather(const PerFace<FaceSums>& sums, const Surface& su
 
 void PointToPlaneSystem::regularise(const Surface& surface, float missing_points, VertexId v) {
     const Ring& ring = network_.ring(v);
-    diagonal_[v].add_identity(kDamping * points_per_vertex_);
+    diagonal_[v].add_identity(kWeakPull * points_per_vertex_);
     const Vector3& here = surface.positions[v];
     Vector3 middle = Vector3::Zero();
     Vector3 normal = Vector3::Zero();
@@ -127,7 +126,7 @@ void PointToPlaneSystem::regularise(const Surface& surface, float missing_points
     diagonal_[v].add_identity(retreat);
     force_[v] += retreat * away;
     if (ring.open != 0) return;  // the middle of the ring lies inside: the boundary would shrink
-    const float centring = kCentring * points_per_vertex_;
+    const float centring = kWeakPull * points_per_vertex_;
     diagonal_[v].add_identity(centring);
     diagonal_[v].add(Symmetric3::outer(normal), -centring);
     force_[v] += centring * (away - away.dot(normal) * normal);
@@ -260,7 +259,7 @@ void PointToPlaneSystem::add_boundary_bending(const Surface& surface) {
 
 /// Pulls boundary vertex \p v along the boundary, by the part of \p away in the unit vector \p direction.
 void PointToPlaneSystem::centre_along(const Vector3& direction, const Vector3& away, VertexId v) {
-    const float centring = kCentring * points_per_vertex_;
+    const float centring = kWeakPull * points_per_vertex_;
     diagonal_[v].add(Symmetric3::outer(direction), centring);
     force_[v] += centring * away.dot(direction) * direction;
 }
