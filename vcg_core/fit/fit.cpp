@@ -27,10 +27,6 @@ constexpr std::size_t kMinPoints = 64;
 /// fits that halve the error were refused with .8, which was measured on denser clouds; on those both do the
 /// same.
 constexpr double kLearnedShare = 2;
-/// A crumpled surface is nearer to the points even along a fixed direction. The gain relative to the variance
-/// is about the square of its slopes, which are noise / edge length. A mesh that learning left crumpled must
-/// not win by that.
-constexpr double kCrumpling = 3;
 /// Rounds at the end without a redistribution.
 constexpr int kQuietRounds = 3;
 /// After so many rounds the mesh is near the points. Then the fit may end, and ends at once where vertices
@@ -80,9 +76,7 @@ private:
         const Surface fitted(best_);
         at_start_.relocate(fitted, team);
         const double error = fitter_.error_at(at_start_, fitted);
-        const double edge = static_cast<double>(mean_edge_length(fitted));
-        const double variance = static_cast<double>(fitter_.noise_variance());
-        const double optimism = variance * (learned_share + kCrumpling * variance / (edge * edge));
+        const double optimism = learned_share * static_cast<double>(fitter_.noise_variance());
         report_.improved = options_.noise != nullptr ||
                            error * error < report_.rms_unfitted * report_.rms_unfitted + optimism ||
                            skips("held_out");
