@@ -29,11 +29,13 @@ INERT = [
      r"cloud/nearest_points|start/clearance",
      "a search or an order: an exact result, found faster"),
     (r"base/(logarithm|random|colors_and_normals|even_mesh)\.h:|:k(PiF|White|DegreesPerRadian|DeviationPerMedian|UnitBallVolume|"
-     r"Ln2|Pi|HalfTurn|NeighbourCount|AllNeighbours|MaxLevel)$|:kWithin30Degrees$", "mathematics"),
+     r"Ln2|Pi|HalfTurn|NeighbourCount|AllNeighbours|MaxLevel|NormalQuantile|RegularValence|RegularBoundaryValence)$|"
+     r":kWithin30Degrees$|learn_to_error\.cpp:kLeast$", "mathematics"),
     (r":k(None|NoVertex|NoNormal|Sentinel|FreeSlot|Nobody|Outside|Zero|End|Never|Unset|Unlimited|Far|Middle|Max)$",
      "a mark for nothing"),
     (r":k(Tiny|Rounding|LeastRounding|SquaredRounding|LeastSize|Ridge|Collinear|Margin)$|"
-     r"mesh/self_intersections|local_quadric\.cpp:kLine", "rounding, and division by nothing"),
+     r"mesh/self_intersections|local_quadric\.cpp:kLine|error_search\.cpp:kBits|points_by_face\.cpp:kSteps",
+     "rounding, and division by nothing"),
     (r":k(MaxValence|HighestValence|Stride|Places|WordsAround|Leaf|LeafFaces|Branch|Stack|FilterBits|"
      r"MostBits|MaxNodesPerSide|MaxSquaredDepth|MostSignals|MostParts)$", "sizes of arrays and numbers"),
     (r":k(Prepared|Learned|ShellMade|ReportEvery)$", "shares of the progress"),

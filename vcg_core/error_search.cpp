@@ -16,7 +16,7 @@ constexpr int kFirst = 1000;
 /// Errors from .9 to 1.05 of what is asked for are as asked: they vary by as much with the seed.
 constexpr double kLeastShare = 0.9, kMostShare = 1.05, kAim = 0.97;
 /// Nor do numbers of vertices that differ by less say anything.
-constexpr double kSameNumber = 1.1, kSameError = 1.05;
+constexpr double kSameNumber = 1.1;
 /// The power law holds over a factor of so many vertices.
 constexpr double kStep = 4;
 /// The exponents that surfaces have; below the second the error levels off.
@@ -71,7 +71,7 @@ ErrorSearch::Trial ErrorSearch::best() const {
     double least = trials_.front().error;
     for (const Trial& trial : trials_) least = std::min(least, trial.error);
     return *std::find_if(trials_.begin(), trials_.end(),
-                         [&](const Trial& trial) { return trial.error <= kSameError * least; });
+                         [&](const Trial& trial) { return trial.error <= kMostShare * least; });
 }
 
 int ErrorSearch::extrapolated(const Trial& from, double exponent, int low, int high) const {

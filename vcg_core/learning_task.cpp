@@ -105,8 +105,8 @@ Shell make_shell(const TargetSpace& target, const Settings& settings, Survey& su
     ShellOptions options;
     options.target_vertices = settings.target_vertices;
     // Without the fit, which takes vertices away again, more of them at the start would leave none to split.
-    const int most_wanted = std::min(settings.target_vertices, kMostStartVertices / kMostPerFinal);
-    options.most_vertices = settings.redistributes_vertices() ? kMostPerFinal * most_wanted : 0;
+    if (settings.redistributes_vertices())
+        options.most_vertices = std::min(kMostPerFinal * settings.target_vertices, kMostStartVertices);
     options.threads = settings.threads;
     options.learn_outliers = !settings.remove_outliers || target.is_exact();
     return Shell(survey.points_of(target), survey.of(target), options, progress);

@@ -64,7 +64,7 @@ double points_per_learned(int vertices, double calm) {
 /// has to come at once. With noise of .6 % of the diagonal and 10,000, 5,000 vertices would have 1.1 times
 /// the error.
 double surplus(const Circumstances& given, int vertices, double trust, double calm) {
-    constexpr double kLeast = 4000, kMost = 10000;
+    constexpr double kLeast = 4000, kMost = 10000;  // of calm surfaces, from 2,000 and up to 1,250 vertices
     const double usual = usual_surplus(vertices);
     const double noisy = between(usual, std::max(usual, kLeast), noisy_share(given, vertices));
     const double of_calm = between(kMost, kLeast, falling(vertices, 1250, 2000));
@@ -79,7 +79,7 @@ double hurry(int vertices) { return 0.6 * falling(vertices, 1000, 2000); }
 }  // namespace
 
 int usual_surplus(int vertices) {
-    constexpr int kSurplus = 2500;
+    constexpr int kSurplus = 2500;  // falls to none at 5,000 vertices
     return std::max(0, std::min(3 * vertices, kSurplus - vertices / 2));
 }
 

@@ -21,7 +21,7 @@ Number median(std::vector<Number> values) {
 /// The median of each value, the two before and the two after it.
 template <class Number>
 std::vector<Number> running_median(const std::vector<Number>& values) {
-    constexpr std::size_t kBeside = 2;  // two in a row that are wrong change nothing
+    constexpr std::size_t kBeside = 2;  // two outliers do not change the median of five
     std::vector<Number> result;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const auto begin = values.begin() + static_cast<std::ptrdiff_t>(i - std::min(i, kBeside));

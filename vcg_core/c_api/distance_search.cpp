@@ -21,7 +21,8 @@ namespace neuralmesh::c_api {
 
 namespace {
 
-constexpr std::size_t kBlock = 524288;  ///< points at a time: a quarter as many take half as long again
+constexpr std::size_t kPointsAtATime =
+    524288;                             ///< points at a time: a quarter as many take half as long again
 constexpr std::size_t kChunk = 4096;    ///< points per task of a thread
 /// Points that are further away, in diagonals of the mesh, are looked for at this distance in their
 /// direction, because single precision would not tell faces apart. The face that is nearest to that place is
@@ -91,8 +92,8 @@ DistanceSearch::DistanceSearch(IndexedMesh<double> mesh, ThreadTeam& team)
     : frame_(frame_of(mesh)), mesh_(in_frame(std::move(mesh), frame_)), tree_(surface_of(mesh_), team) {}
 
 void DistanceSearch::measure(const neural_mesh_array& points, ThreadTeam& team, double* distances) const {
-    for (std::size_t begin = 0; begin < points.rows; begin += kBlock)
-        measure_block(points, begin, std::min(points.rows, begin + kBlock), team, distances);
+    for (std::size_t begin = 0; begin < points.rows; begin += kPointsAtATime)
+        measure_block(points, begin, std::min(points.rows, begin + kPointsAtATime), team, distances);
 }
 
 void DistanceSearch::measure_block(const neural_mesh_array& points, std::size_t begin, std::size_t end,

@@ -174,8 +174,7 @@ void BasicStepBatch::compute(const BatchInput& input, int part) {
     steps.compute(input, slabs_, part);
     for (int k = 0; k < steps.count(); ++k) {
         const auto signal = static_cast<std::size_t>(steps.signal(k));
-        steps_[signal] = {static_cast<std::uint16_t>(k), static_cast<std::uint8_t>(part),
-                          static_cast<std::uint8_t>(steps.crosses(k) ? 1 : 0)};
+        steps_[signal] = {static_cast<std::uint16_t>(k), static_cast<std::uint8_t>(part)};
         results_[signal] = {steps.winner(k), steps.delta(k)};
     }
 }
@@ -183,25 +182,19 @@ void BasicStepBatch::compute(const BatchInput& input, int part) {
 /// Moves the vertices in slab \p part by all displacements, in the order of the signals.
 void BasicStepBatch::move_vertices(int part, const Network& network, WinnerSearch& search) {
     std::vector<WinnerSearch::ChangedCell>& changed = changed_[static_cast<std::size_t>(part)];
-    const auto move = [&](VertexId v, const Four& by) {
-        search.place(v, load_xyz(&network.slots()[v]) + by, changed);
-    };
     for (const Step& step : steps_) {
-        if (step.part != part && step.crosses == 0) continue;
         const ComputedSteps& steps = parts_[step.part];
+        const std::uint8_t* slab = steps.crosses(step.k) ? steps.slabs_of(step.k) : nullptr;
+        if (step.part != part && slab == nullptr) continue;
         const Four* by = steps.displacements(step.k);
-        const VertexId winner = steps.winner(step.k);
-        if (step.crosses == 0) {
-            move(winner, by[0]);
-            for (const VertexId v : network.ring(winner)) move(v, *++by);
-            continue;
-        }
-        const std::uint8_t* slab = steps.slabs_of(step.k);
-        if (*slab == part) move(winner, by[0]);
-        for (const VertexId v : network.ring(winner)) {
+        const auto move_if_here = [&](VertexId v) {
+            if (slab == nullptr || *slab++ == part)
+                search.place(v, load_xyz(&network.slots()[v]) + *by, changed);
             ++by;
-            if (*++slab == part) move(v, *by);
-        }
+        };
+        const VertexId winner = steps.winner(step.k);
+        move_if_here(winner);
+        for (const VertexId v : network.ring(winner)) move_if_here(v);
     }
 }
 

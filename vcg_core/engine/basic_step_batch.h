@@ -125,7 +125,7 @@ private:
     /// A step: number k of a part.
     struct Step {
         std::uint16_t k;
-        std::uint8_t part, crosses;
+        std::uint8_t part;
     };
 
     void compute(const BatchInput& input, int part);

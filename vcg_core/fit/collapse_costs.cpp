@@ -2,8 +2,6 @@
 // Copyright the Neural Mesh authors
 
 // The quadric error (Garland and Heckbert 1997) chooses what is worth measuring, the points measure it.
-#include "vcg_core/fit/collapse_costs.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +10,7 @@
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/face_rules.h"
+#include "vcg_core/fit/redistribute.h"
 
 namespace neuralmesh {
 
@@ -38,7 +37,7 @@ public:
         : network_(network), surface_(surface), points_(points), support_(support) {}
 
     Collapse cheapest(VertexId v) const {
-        Collapse best{Collapse::kForbidden, v, -1};
+        Collapse best{Support::kForbidden, v, -1};
         std::array<std::pair<float, VertexId>, Ring::kMaxValence> order;
         std::size_t count = 0;
         for (VertexId u : network_.ring(v))
@@ -62,7 +61,7 @@ public:
     float estimate(VertexId v) const {
         const Support::Patch around = patch_of(v);
         if (around.missing_points > 0 || network_.ring(v).valence == 0 || !(around.twice_area > 0)) return 0;
-        float least = Collapse::kForbidden;
+        float least = Support::kForbidden;
         for (VertexId u : network_.ring(v)) least = std::min(least, quadric(v, u));
         float weight = 0;
         for (int f : surface_.faces_around(v)) weight += points_.weight(f);
@@ -172,10 +171,9 @@ private:
         const Ring& ring = network_.ring(v);
         const VertexId first = ring[0], last = ring[ring.valence - 1];
         if (ring.open == 0 || (u != first && u != last)) return 0;
-        /// Evenly along the new edge. Its ends are corners of the faces: their distance is 0.
-        constexpr float kShares[] = {0.25F, 0.5F, 0.75F};
         float sum = 0;
-        for (const float share : kShares) {
+        // Evenly along the new edge. Its ends are corners of the faces: their distance is 0.
+        for (const float share : {0.25F, 0.5F, 0.75F}) {
             const Vector3 p = at(first) + share * (at(last) - at(first));
             const float least = squared_distance_from(surface_, surface_.faces_around(v), p);
             sum += least * std::sqrt(least) / 3;
@@ -197,7 +195,7 @@ std::vector<Collapse> find_collapses(const Network& network, const Surface& surf
     const CollapseCosts costs(network, surface, points, support);
     PerVertex<float> estimates(network.slot_count());
     parallel_for(estimates.size(), kCostChunk, team, [&](VertexId v) {
-        estimates[v] = network.alive(v) ? costs.estimate(v) : Collapse::kForbidden;
+        estimates[v] = network.alive(v) ? costs.estimate(v) : Support::kForbidden;
     });
     std::vector<float> sorted = estimates.vector();
     const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(
@@ -206,7 +204,7 @@ std::vector<Collapse> find_collapses(const Network& network, const Surface& surf
     std::vector<Collapse> collapses(sorted.size());
     parallel_for(estimates.size(), kCostChunk, team, [&](VertexId v) {
         collapses[static_cast<std::size_t>(v)] =
-            estimates[v] <= *last ? costs.cheapest(v) : Collapse{Collapse::kForbidden, v, -1};
+            estimates[v] <= *last ? costs.cheapest(v) : Collapse{Support::kForbidden, v, -1};
     });
     std::stable_sort(collapses.begin(), collapses.end(),
                      [](const Collapse& x, const Collapse& y) { return x.cost < y.cost; });

@@ -17,7 +17,6 @@ namespace neuralmesh {
 namespace {
 
 // Lengths are in mean lengths of the edges at a vertex. Chosen by tests/experiments/paper/crease_table.py.
-constexpr float kCreaseReach = 1;   ///< a point this far has a quarter of the weight
 constexpr float kFarthest = 0.35F;  ///< from the vertex to the line
 constexpr float kAlike = 0.9F;      ///< cosine above which two planes are one
 constexpr float kTight = 0.03F;  ///< largest distance of the points from their planes, root mean square ...
@@ -30,7 +29,6 @@ constexpr int kFewestPoints = 10;     ///< of a plane
 /// vertices longer (tests/experiments/accuracy/compare_accuracy.py).
 constexpr int kRingPoints = 256;
 constexpr int kRefinements = 4;
-constexpr float kHopeless = 4;  ///< times the largest squared error, after which no refinement helps
 constexpr int kVerticesAtATime = 64;
 
 /// The two planes around one vertex after another.
@@ -46,10 +44,10 @@ public:
         if (!choose_seeds()) return Vector3::Zero();
         const float edge = mean_edge_length_at(surface_.positions, network_.ring(v), v);
         if (!(noise_variance < kNoisiest * kNoisiest * edge * edge)) return Vector3::Zero();
-        collect_points(surface_.positions[v], kCreaseReach * edge);
+        collect_points(surface_.positions[v], edge);
         const float noise = kNoiseShare * noise_variance;
         for (int i = 0; i < kRefinements; ++i)
-            if (!refine() || error_ > kHopeless * largest_error(edge, noise)) return Vector3::Zero();
+            if (!refine()) return Vector3::Zero();
         if (!are_better_than_smooth(edge, noise)) return Vector3::Zero();
         const Vector3 way = way_to_line();
         return way.norm() < kFarthest * edge ? way : Vector3::Zero();
@@ -94,6 +92,7 @@ private:
 
     Plane plane_of(const Side& side) const { return {side.normal, surface_.corner(side.face, 0)}; }
 
+    /// A point as far as \p reach has a quarter of the weight.
     void collect_points(const Vector3& vertex, float reach) {
         samples_.clear();
         reach_ = static_cast<double>(reach);
@@ -129,7 +128,6 @@ private:
             int count = 0;
         };
         std::array<Sums, 2> sums;
-        double error = 0;
         for (const Sample& s : samples_) {
             Sums& of_plane = sums[nearer_plane(s)];
             const Eigen::Vector3d p = s.place.cast<double>();
@@ -148,10 +146,8 @@ private:
             const Eigen::Matrix3d scatter = s.squares - s.weight * mean * mean.transpose();
             const PrincipalAxes spread = principal_axes(scatter);
             const Vector3 normal = spread.axes.col(0).cast<float>();
-            error += spread.values[0];
             planes_[k] = {normal.dot(planes_[k].normal) < 0 ? Vector3(-normal) : normal, mean.cast<float>()};
         }
-        error_ = static_cast<float>(error / (sums[0].weight + sums[1].weight));
         return planes_[0].normal.dot(planes_[1].normal) < kAlike;
     }
 
@@ -224,7 +220,6 @@ private:
     std::vector<Sample> samples_;
     double reach_ = 0;
     std::array<Plane, 2> planes_;
-    float error_ = 0;  ///< mean squared distance of the points from the planes last fitted to them
 };
 
 /// There, points beyond the boundary belong to the faces, too.

@@ -27,23 +27,18 @@ constexpr std::size_t kMinPoints = 64;
 /// fits that halve the error were refused with .8, which was measured on denser clouds; on those both do the
 /// same.
 constexpr double kLearnedShare = 2;
-/// A crumpled surface is nearer to the points even along a fixed direction. The gain relative to the variance
-/// is about the square of its slopes, which are noise / edge length. A mesh that learning left crumpled must
-/// not win by that.
-constexpr double kCrumpling = 3;
 /// Rounds at the end without a redistribution.
 constexpr int kQuietRounds = 3;
 /// The fit ends when two rounds lower the error by less than this share.
 constexpr double kLeastProgress = 0.005;
-/// Rounds after the insertion of vertices that the points do not carry: by then the mesh is near the points.
-constexpr int kRefinedRounds = 4;
+/// After so many rounds the mesh is near the points. The fit ends then where vertices were inserted that the
+/// points do not carry.
+constexpr int kFirstRounds = 4;
 
-/// With precise points (Fitter::has_precise_points()) the points hold the surface from the fifth round on. By
-/// then it is near them, and solutions that let it slide may take it away again: block, clean, 5,000
-/// vertices, by up to 20 % of the error in a round.
+/// Precise points (Fitter::has_precise_points()) hold the surface once it is near them. Solutions that let it
+/// slide may take it away again: block, clean, 5,000 vertices, by up to 20 % of the error in a round.
 /// Open surfaces are left free, because their boundary has to slide to where the points end. So are sheets
 /// that are closed around both sides, where each point would hold the layer that it is nearer to by chance.
-constexpr int kFirstHold = 4;
 constexpr float kHold = 0.3F;
 
 /// 20 rounds for small meshes, where a round is cheap and every vertex counts.
@@ -81,9 +76,7 @@ private:
         const Surface fitted(best_);
         at_start_.relocate(fitted, team);
         const double error = fitter_.error_at(at_start_, fitted);
-        const double edge = static_cast<double>(mean_edge_length(fitted));
-        const double variance = static_cast<double>(fitter_.noise_variance());
-        const double optimism = variance * (learned_share + kCrumpling * variance / (edge * edge));
+        const double optimism = learned_share * static_cast<double>(fitter_.noise_variance());
         report_.improved = options_.noise != nullptr ||
                            error * error < report_.rms_unfitted * report_.rms_unfitted + optimism ||
                            skips("held_out");
@@ -118,7 +111,7 @@ private:
     }
 
     bool solve(int round, Surface& surface, PointsByFace& points) {
-        const bool hold = holds_ && round >= kFirstHold;
+        const bool hold = holds_ && round >= kFirstRounds;
         const double error = fitter_.solve(points, surface, hold ? kHold : PointToPlaneSystem::kSliding);
         if (round == 0 || error < best_error_) {
             best_ = network_;
@@ -174,7 +167,7 @@ void refine_and_fit(Network& network, const TargetSpace& target, const FitOption
     PartOf fitting(progress, 0.2, 1);
     if (!fitter.untangle_surface(untangling)) return;
     FitOptions of_refined = options;
-    of_refined.rounds = kRefinedRounds;
+    of_refined.rounds = kFirstRounds;
     of_refined.redistribute = false;
     FitRounds(network, fitter, of_refined).run(learned_share, team, fitting);
 }

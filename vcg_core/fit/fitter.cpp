@@ -13,9 +13,10 @@
 #include "vcg_core/base/median.h"
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/boundary.h"
+#include "vcg_core/fit/crease_moves.h"
 #include "vcg_core/fit/edge_flips.h"
-#include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/noise.h"
+#include "vcg_core/fit/redistribute.h"
 #include "vcg_core/fit/sound_meshes.h"
 
 namespace neuralmesh {

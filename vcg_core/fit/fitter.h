@@ -9,14 +9,12 @@
 
 #include "vcg_core/base/progress.h"
 #include "vcg_core/base/thread_team.h"
-#include "vcg_core/fit/crease_moves.h"
 #include "vcg_core/fit/fit.h"
 #include "vcg_core/fit/least_squares.h"
 #include "vcg_core/fit/move_limits.h"
 #include "vcg_core/fit/point_errors.h"
 #include "vcg_core/fit/points_by_face.h"
 #include "vcg_core/fit/redistribute.h"
-#include "vcg_core/fit/split_gains.h"
 
 namespace neuralmesh {
 
@@ -102,7 +100,7 @@ private:
     bool reduce_by_volume(int vertices, double error, Surface& surface, PointsByFace points,
                           Progress& progress);
     bool reduce_by_costs(int vertices, Surface& surface, Progress& progress);
-    bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
+    bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count);
 
     Network& network_;
     const FitOptions options_;

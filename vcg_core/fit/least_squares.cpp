@@ -16,10 +16,9 @@ namespace neuralmesh {
 
 namespace {
 
-/// Pull of a vertex towards the middle of its ring within the tangent plane, in points per vertex.
-constexpr float kCentring = 2e-3F;
-/// Pull of a vertex to its present position, in points per vertex.
-constexpr float kDamping = 2e-3F;
+/// Pull of a vertex to its present position, and towards the middle of its ring within the tangent plane, in
+/// points per vertex.
+constexpr float kWeakPull = 2e-3F;
 /// Pull of a vertex that lacks points towards the middle of its ring, per missing point.
 constexpr float kRetreat = 8.0F;
 /// A boundary vertex has few points around it, which may miss as many by chance.
@@ -113,7 +112,7 @@ void PointToPlaneSystem::gather(const PerFace<FaceSums>& sums, const Surface& su
 
 void PointToPlaneSystem::regularise(const Surface& surface, float missing_points, VertexId v) {
     const Ring& ring = network_.ring(v);
-    diagonal_[v].add_identity(kDamping * points_per_vertex_);
+    diagonal_[v].add_identity(kWeakPull * points_per_vertex_);
     const Vector3& here = surface.positions[v];
     Vector3 middle = Vector3::Zero();
     Vector3 normal = Vector3::Zero();
@@ -127,10 +126,10 @@ void PointToPlaneSystem::regularise(const Surface& surface, float missing_points
     diagonal_[v].add_identity(retreat);
     force_[v] += retreat * away;
     if (ring.open != 0) return;  // the middle of the ring lies inside: the boundary would shrink
-    const float centring = kCentring * points_per_vertex_;
-    diagonal_[v].add_identity(centring);
-    diagonal_[v].add(Symmetric3::outer(normal), -centring);
-    force_[v] += centring * (away - away.dot(normal) * normal);
+    const float pull = kWeakPull * points_per_vertex_;
+    diagonal_[v].add_identity(pull);
+    diagonal_[v].add(Symmetric3::outer(normal), -pull);
+    force_[v] += pull * (away - away.dot(normal) * normal);
 }
 
 /// \return false if the quad has no area
@@ -179,12 +178,10 @@ void PointToPlaneSystem::add_bending(const Surface& surface, const VertexNoise& 
         if (!noise.variances.empty())
             scale = std::max(scale, std::sqrt(mean_of(noise.variances, term.corner)));
         term.weight = points_per_vertex_ / (1 + (gaps[i] / scale) * (gaps[i] / scale));
-        if (!noise.stiffness.empty()) stiffen(term, mean_of(noise.stiffness, term.corner));
-        for (std::size_t k = 0; k < 4; ++k) {
-            const float c = term.coefficient[k];
-            bending_force_[term.corner[k]] -= term.weight * c * term.gap;
-            bending_diagonal_[term.corner[k]] += term.weight * c * c;
-        }
+        term.add_to(bending_force_, bending_diagonal_, term.weight);
+        if (noise.stiffness.empty()) continue;
+        term.stiffness = mean_of(noise.stiffness, term.corner);
+        term.add_to(force_, stiff_diagonal_, term.stiffness * term.weight);
     }
 }
 
@@ -199,15 +196,6 @@ void PointToPlaneSystem::index_terms() {
     for (std::size_t t = 0; t < bending_terms_.size(); ++t)
         for (std::size_t k = 0; k < 4; ++k)
             terms_by_vertex_[next[bending_terms_[t].corner[k]]++] = {t, bending_terms_[t].coefficient[k]};
-}
-
-void PointToPlaneSystem::stiffen(BendingTerm& term, float stiffness) {
-    term.stiffness = stiffness;
-    for (std::size_t k = 0; k < 4; ++k) {
-        const float c = term.coefficient[k];
-        force_[term.corner[k]] -= term.stiffness * term.weight * c * term.gap;
-        stiff_diagonal_[term.corner[k]] += term.stiffness * term.weight * c * c;
-    }
 }
 
 void PointToPlaneSystem::add_target(const BoundaryTarget& target) {
@@ -260,9 +248,9 @@ void PointToPlaneSystem::add_boundary_bending(const Surface& surface) {
 
 /// Pulls boundary vertex \p v along the boundary, by the part of \p away in the unit vector \p direction.
 void PointToPlaneSystem::centre_along(const Vector3& direction, const Vector3& away, VertexId v) {
-    const float centring = kCentring * points_per_vertex_;
-    diagonal_[v].add(Symmetric3::outer(direction), centring);
-    force_[v] += centring * away.dot(direction) * direction;
+    const float pull = kWeakPull * points_per_vertex_;
+    diagonal_[v].add(Symmetric3::outer(direction), pull);
+    force_[v] += pull * away.dot(direction) * direction;
 }
 
 PerVertex<Vector3> PointToPlaneSystem::right_side(float lambda) const {

@@ -140,6 +140,15 @@ private:
         Vector3 gap;
         float weight;         ///< c_e
         float stiffness = 0;  ///< s_e
+
+        /// Adds the part of the term, which counts \p times, in the right side and in the diagonal.
+        void add_to(PerVertex<Vector3>& force, PerVertex<float>& diagonal, float times) const {
+            for (std::size_t k = 0; k < corner.size(); ++k) {
+                const float c = coefficient[k];
+                force[corner[k]] -= times * c * gap;
+                diagonal[corner[k]] += times * c * c;
+            }
+        }
     };
     /// The part of a face: blocks of the pairs of corners 00, 11, 22, 01, 12, 20, right sides of the corners.
     struct FaceSums {
@@ -160,7 +169,6 @@ private:
                                   BendingTerm& term);
     void add_bending(const Surface& surface, const VertexNoise& noise, ThreadTeam& team);
     void index_terms();
-    void stiffen(BendingTerm& term, float stiffness);
     void add_target(const BoundaryTarget& target);
     void add_boundary_bending(const Surface& surface);
     void centre_along(const Vector3& direction, const Vector3& away, VertexId v);

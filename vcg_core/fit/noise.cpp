@@ -44,7 +44,8 @@ Spread spread_of(const Surface& surface, const PointsByFace& points, int face, c
 
 /// The spread is this quantile of the distances, divided by that of the absolute values of a standard normal
 /// deviate. The median would not see a crease that takes part of the points.
-constexpr float kQuantile = 0.75F, kNormalQuantile = 1.15F;
+constexpr float kQuantile = 0.75F;
+constexpr float kNormalQuantile = 1.15F;
 /// Points closer than this share of the mean edge are not astray: they do not harm, and many of those at
 /// creases are farther away than the points around.
 constexpr float kLeastEdges = 0.06F;
@@ -80,9 +81,7 @@ float noise_variance(const Surface& surface, const PointsByFace& points, ThreadT
 }
 
 PerVertex<float> local_variances(const Network& network, const Surface& surface, const PointsByFace& points) {
-    constexpr int kMinPoints = 3;       ///< fewer than above: the sums are over several faces
-    constexpr int kRingsOfNormals = 2;  ///< as in point_errors.cpp
-    constexpr int kSpreads = 1;         ///< the variance is that of the place
+    constexpr int kMinPoints = 3;  ///< fewer than above: the sums are over several faces
     const PerVertex<Vector3> normals = area_vectors_around(network, surface, kRingsOfNormals);
     PerVertex<Spread> spreads(surface.positions.size());
     for (int f = 0; f < surface.face_count(); ++f) {
@@ -92,7 +91,7 @@ PerVertex<float> local_variances(const Network& network, const Surface& surface,
         const Spread spread = spread_of(surface, points, f, normal);
         for (const VertexId v : t) spreads[v] += spread;
     }
-    spread_over_rings(network, spreads, kSpreads);
+    spread_over_rings(network, spreads, 1);
     PerVertex<float> variances(spreads.size(), 0);
     for (const VertexId v : network.vertices())
         if (spreads[v].count > 0) variances[v] = spreads[v].squares / spreads[v].count;

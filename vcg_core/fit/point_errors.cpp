@@ -19,8 +19,7 @@ namespace {
 constexpr std::size_t kHeldOutChunk = 512;
 
 PerVertex<Vector3> smoothed_normals(const Network& network, const Surface& surface) {
-    constexpr int kRings = 2;  ///< takes out most of the noise
-    PerVertex<Vector3> normals = area_vectors_around(network, surface, kRings);
+    PerVertex<Vector3> normals = area_vectors_around(network, surface, kRingsOfNormals);
     for (Vector3& n : normals) n.normalize();
     return normals;
 }

@@ -11,11 +11,45 @@
 #include <vector>
 
 #include "vcg_core/base/progress.h"
-#include "vcg_core/fit/collapse_costs.h"
-#include "vcg_core/fit/split_gains.h"
+#include "vcg_core/base/thread_team.h"
+#include "vcg_core/fit/points_by_face.h"
+#include "vcg_core/fit/support.h"
 #include "vcg_core/mesh/network.h"
 
 namespace neuralmesh {
+
+/// The cheapest half-edge collapse of a vertex.
+struct Collapse {
+    float cost;  ///< rise of the sum of squared distances of the points
+    VertexId gone;
+    VertexId into;  ///< -1 and a cost of Support::kForbidden: the vertex cannot go, or was not examined
+};
+
+/// The cheapest collapse of every slot, cheapest first. Examines two fifths of the vertices, those with the
+/// smallest quadric errors, and for each the three neighbours of smallest quadric error. Each cost is
+/// measured on about 64 points of the star, by their distances from the faces that replace it. kCollapseRules
+/// of face_rules.h hold. \p surface is that of the network. O(vertices log vertices). The result does not
+/// depend on the number of threads.
+std::vector<Collapse> find_collapses(const Network& network, const Surface& surface,
+                                     const PointsByFace& points, ThreadTeam& team);
+
+/// A new vertex on an edge.
+struct EdgeSplit {
+    float gain;  ///< drop of the sum of squared distances of the points on the edge's two faces
+    VertexId a, b;
+    Vector3 position;
+};
+
+/// The splits of edges that gain at least \p least_gain, in points of weight 1, times the mean of
+/// \p variances at the edge's ends (empty: 1), most gain first, by linear least
+/// squares over the offset of the new vertex from the middle of its edge, along the mean normal of the edge's
+/// faces. The new vertex of a boundary edge also follows the edge's BoundaryTarget, which counts the distance
+/// between the boundary and where the points end; such an edge is that of a face (a, b, c). \p surface is
+/// that of the network. O(points + vertices).
+/// The result does not depend on the number of threads.
+std::vector<EdgeSplit> find_splits(const Network& network, const Surface& surface, const PointsByFace& points,
+                                   float least_gain, ThreadTeam& team,
+                                   const PerVertex<float>& variances = {});
 
 /// A collapse that was carried out.
 struct DoneCollapse {
@@ -35,15 +69,11 @@ std::vector<DoneCollapse> redistribute(Network& network, const std::vector<Colla
 /// topology stays. \return their number
 int insert(Network& network, const std::vector<EdgeSplit>& splits, int max_count);
 
-/// Carries out the cheapest \p collapses, at most \p max_count. No two have a vertex in common, and none has
-/// a \p barred one. The topology stays.
+/// Carries out the cheapest \p collapses, at most \p max_count. They may have neighbours in common, but none
+/// removes a vertex whose faces, or faces beyond its ring, are new: so the cost of each still holds. None has
+/// a \p barred vertex. The topology stays.
 std::vector<DoneCollapse> reduce(Network& network, const std::vector<Collapse>& collapses, int max_count,
                                  const PerVertex<char>& barred);
-
-/// The same with more collapses at once: they may have neighbours in common, but none removes a vertex whose
-/// faces, or faces beyond its ring, are new. So the cost of each still holds.
-std::vector<DoneCollapse> reduce_densely(Network& network, const std::vector<Collapse>& collapses,
-                                         int max_count, const PerVertex<char>& barred);
 
 /// Reduces \p network to \p vertices vertices, or more if no other edge may collapse: the edge that sweeps
 /// the least squared volume first, to the place where that is least while the enclosed volume stays. Between

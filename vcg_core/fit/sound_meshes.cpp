@@ -16,12 +16,13 @@ namespace neuralmesh {
 namespace {
 
 constexpr int kRounds = 10;        ///< during the first four the neighbourhoods widen
-constexpr float kLongestMove = 1;  ///< of a vertex, in mean lengths of its edges
 constexpr int kRestoredRings = 6;  ///< around what remains; they get their old positions back
-constexpr int kSweeps = 2;         ///< of smoothing per round
 constexpr int kMaxPairs = 100;     ///< of overlapping face boxes per face; a smooth surface has six
 constexpr int kMaxRings = 3;       ///< around the self-intersections
 constexpr float kStep = 0.5F;      ///< of the way to the middle of the ring
+/// Of smoothing, per round. With eight, half of an aerial survey is 1.02 times as far from its other half
+/// once it is unfolded, and .6 % more of the mesh faces the sky.
+constexpr int kSweeps = 2;
 
 /// 1 for the vertices of \p intersections and of \p rings rings around them.
 PerVertex<char> surroundings(const Network& network, const std::vector<SelfIntersection>& intersections,
@@ -59,12 +60,12 @@ void smooth(const Network& network, const std::vector<SelfIntersection>& interse
     }
 }
 
-/// Shortens the moves from \p start to \p positions to kLongestMove.
+/// Shortens the moves from \p start to \p positions to the mean length of the edges of their vertex.
 void limit_moves(const Network& network, const PerVertex<Vector3>& start, PerVertex<Vector3>& positions) {
     for (const VertexId v : network.vertices()) {
         const Vector3 move = positions[v] - start[v];
         if (move.isZero()) continue;
-        const float longest = kLongestMove * mean_edge_length_at(start, network.ring(v), v);
+        const float longest = mean_edge_length_at(start, network.ring(v), v);
         if (move.norm() > longest) positions[v] = start[v] + (longest / move.norm()) * move;
     }
 }
@@ -76,10 +77,6 @@ void restore_around(const Network& network, const std::vector<SelfIntersection>&
     for (VertexId v = 0; v < positions.size(); ++v)
         if (where[v] != 0) positions[v] = start[v];
 }
-
-/// With eight, half of an aerial survey is 1.02 times as far from its other half, and .6 % more of the mesh
-/// faces the sky.
-constexpr int kUnfoldingSweeps = 2;
 
 /// 1 for the vertices of faces that are turned away.
 PerVertex<char> folded(const Network& network, const Surface& surface) {
@@ -148,11 +145,11 @@ void unfold(Network& network) {
     if (!network.viewer() || network.face_count() == 0) return;
     Surface surface(network);
     const PerVertex<char> inside = folded(network, surface);
-    for (int sweep = 0; sweep < kUnfoldingSweeps; ++sweep) {
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
         PerVertex<Vector3> moved = surface.positions;
         for (const VertexId v : network.vertices())
             if (inside[v] != 0 && network.ring(v).open == 0)
-                moved[v] += way_to_middle(network.ring(v), v, surface) / 2;
+                moved[v] += kStep * way_to_middle(network.ring(v), v, surface);
         surface.positions = std::move(moved);
     }
     place_vertices(network, surface.positions);

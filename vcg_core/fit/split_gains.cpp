@@ -3,14 +3,13 @@
 
 // The offset of a new vertex lowers a point's distance from its face by offset x phi, where phi is the new
 // vertex's hat function at the point's foot.
-#include "vcg_core/fit/split_gains.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "vcg_core/base/parallel_for.h"
 #include "vcg_core/fit/boundary.h"
+#include "vcg_core/fit/redistribute.h"
 
 namespace neuralmesh {
 
@@ -61,14 +60,14 @@ EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const Per
                    float least_gain, VertexId a, VertexId b) {
     HatSums both;
     Vector3 normal = Vector3::Zero();
-    std::vector<int> faces;  // one at a boundary edge, else two
-    for (const FaceCorner& side : {corner_of_edge(surface, a, b), corner_of_edge(surface, b, a)}) {
-        if (side.face < 0) continue;
+    const FaceCorner left = corner_of_edge(surface, a, b), right = corner_of_edge(surface, b, a);
+    const std::array<int, 2> faces{left.face, right.face < 0 ? left.face : right.face};
+    for (const FaceCorner& side : {left, right}) {
+        if (side.face < 0) continue;  // right of a boundary edge
         const HatSums& of_side = sums[side.face][side.corner];
         both.phi_residual += of_side.phi_residual;
         both.phi_phi += of_side.phi_phi;
         normal += unit_normal(surface, side.face);
-        faces.push_back(side.face);
     }
     const Vector3& at_a = surface.positions[a];
     const Vector3& at_b = surface.positions[b];
@@ -76,7 +75,7 @@ EdgeSplit split_of(const Surface& surface, const PointsByFace& points, const Per
     const float bound = kMaxOffset * (at_a - at_b).norm();
     const float offset = std::clamp(both.phi_residual / both.phi_phi, -bound, bound);
     const float gain = both.phi_residual * both.phi_residual / both.phi_phi;
-    const bool enough = gain >= least_gain * points.mean_weight(faces.front(), faces.back());
+    const bool enough = gain >= least_gain * points.mean_weight(faces[0], faces[1]);
     const Vector3 middle = 0.5F * (at_a + at_b);
     Vector3 way = offset * normal.normalized();
     // Along its line of sight a vertex turns no face away.

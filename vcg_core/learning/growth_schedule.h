@@ -102,12 +102,11 @@ private:
 /// mesh has converged. The deltas before normalisation do fall; degrees() is their mean, converted to an
 /// angle. In the dialog the bound is called stop_below_mean_counter.
 ///
-/// The memory of ten signals per vertex is a compromise. A few vertices at the sharpest places have most of
-/// the sum, so a mean over few signals, such as C_delta = 1000, falls below a bound by chance long before the
-/// mesh does. A longer memory lags behind the growth, which doubles the vertices in 100 signals per vertex.
 class NormalTurn {
 public:
-    /// A tenth of those in which growth doubles the vertices.
+    /// The memory is a compromise. A few vertices at the sharpest places have most of the sum, so a mean over
+    /// few signals, such as C_delta = 1000, falls below a bound by chance long before the mesh does. A longer
+    /// memory lags behind the growth, which doubles the vertices in 100 signals per vertex.
     static constexpr int kSignalsPerVertex = 10;
 
     /// Adds the \p delta of a signal (see eq 2) that a mesh of \p vertices vertices has learned. O(1).

@@ -56,6 +56,7 @@ std::vector<std::vector<VertexId>> boundary_loops(int vertices, const std::vecto
 }
 
 float smallest_sphere_diameter(const std::vector<Point3f>& points) {
+    // n steps leave the radius at most 1 / sqrt(n) too large (Badoiu and Clarkson 2003).
     constexpr int kSteps = 100;
     Point3f centre = points.front();
     const auto farthest = [&] {

@@ -68,9 +68,8 @@ void collapse_short_edge(const Scaled& scaled, VertexId v, float squared_bound) 
 /// Quickly reduces a mesh of many more than \p vertices vertices, to no fewer than that. Every sweep over the
 /// vertices collapses edges shorter than a bound that grows from sweep to sweep. O(n) per sweep.
 void collapse_in_sweeps(const Scaled& scaled, int vertices, float squared_bound) {
-    // The last bound on lengths is a hundred times the first one.
-    constexpr int kSweeps = 24;
-    constexpr float kGrowth = 1.5F;
+    constexpr float kGrowth = 1.5F;  // of the squared lengths
+    constexpr int kSweeps = 24;      // then the bound is 130 times as long as at first
     for (int sweep = 0; sweep < kSweeps; ++sweep, squared_bound *= kGrowth)
         for (const VertexId v : scaled.net.vertices()) {
             if (scaled.net.vertex_count() <= vertices) return;

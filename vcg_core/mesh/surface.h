@@ -130,8 +130,11 @@ void spread_over_rings(const Network& network, PerVertex<Value>& values, int tim
     }
 }
 
+/// Rings over which the noise is averaged out of normals, mostly.
+constexpr int kRingsOfNormals = 2;
+
 /// Around every vertex the area vectors of the faces, summed over \p rings rings as by spread_over_rings(): a
-/// normal from which most of the noise is gone, of any length. O(rings x vertices).
+/// normal of any length. O(rings x vertices).
 PerVertex<Vector3> area_vectors_around(const Network& network, const Surface& surface, int rings);
 
 /// Points per area around every vertex: \p points on the faces over the areas of these, both summed over \p

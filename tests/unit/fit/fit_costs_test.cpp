@@ -6,7 +6,6 @@
 #include "vcg_core/fit/edge_flips.h"
 #include "vcg_core/fit/face_rules.h"
 #include "vcg_core/fit/redistribute.h"
-#include "vcg_core/fit/split_gains.h"
 
 namespace neuralmesh::fit_costs_test {
 
@@ -150,7 +149,7 @@ Collapse free_collapse(const Network& network, const EdgeSplit& split) {
         if ((network.position(v) - middle).Norm() > 0.3F && network.ring(v).open == 0 &&
             network.can_collapse(v, network.ring(v)[0]))
             return {0, v, network.ring(v)[0]};
-    return {Collapse::kForbidden, 0, -1};
+    return {Support::kForbidden, 0, -1};
 }
 
 TEST(FindSplits, GainIsTheMeasuredDrop) {

@@ -8,8 +8,7 @@
 
 #include "tests/unit/support/prelude.h"
 #include "tests/unit/support/referee.h"
-#include "vcg_core/fit/collapse_costs.h"
-#include "vcg_core/fit/points_by_face.h"
+#include "vcg_core/fit/redistribute.h"
 
 namespace neuralmesh {
 
