@@ -66,16 +66,25 @@ void find_radius(const NearestPoints& cloud, const DepthSteps& steps, std::vecto
     }
 }
 
-/// Every place and those around it.
-std::vector<std::vector<Place>> places_around(const NearestPoints& index, ThreadTeam& team) {
+/// For every place those around it, and itself, whose density is no other.
+std::vector<std::vector<Place>> places_around(const NearestPoints& index,
+                                              const std::vector<SurveyedPlace>& places, ThreadTeam& team) {
     constexpr int kAtATime = 64;
-    std::vector<std::vector<Place>> around(index.size());
-    parallel_for(static_cast<int>(index.size()), kAtATime, team, [&](int i) {
+    // A place is sparser than its surroundings by right if two others are so, too; one alone lies between two
+    // depths.
+    constexpr int kCompany = 2;
+    constexpr float kOtherDensity = 3;  // in spacings
+    std::vector<std::vector<Place>> around(places.size());
+    parallel_for(static_cast<int>(places.size()), kAtATime, team, [&](int i) {
         std::vector<NearestPoints::Neighbour> near;
         index.nearest(static_cast<Place>(i), kTwoRings, near);
-        std::vector<Place>& all = around[static_cast<std::size_t>(i)];
-        all.push_back(static_cast<Place>(i));
-        for (const NearestPoints::Neighbour& n : near) all.push_back(n.place);
+        std::vector<Place> all{static_cast<Place>(i)}, alike = all;
+        for (const NearestPoints::Neighbour& n : near) {
+            all.push_back(n.place);
+            if (kOtherDensity * places[n.place].spacing > places[all.front()].spacing)
+                alike.push_back(n.place);
+        }
+        around[all.front()] = alike.size() > kCompany ? std::move(alike) : std::move(all);
     });
     return around;
 }
@@ -206,7 +215,7 @@ SurfaceSurvey::SurfaceSurvey(const NearestPoints& cloud, ThreadTeam& team) : ind
         place(i).spacing = spacing_at(cloud, place(i).place, near);
     });
     sparse_radius_ = radius_of_sparse_part(places_);
-    const std::vector<std::vector<Place>> around = places_around(index_, team);
+    const std::vector<std::vector<Place>> around = places_around(index_, places_, team);
     smooth(around, places_, &SurveyedPlace::spacing);
     const DepthSteps steps(cloud);
     parallel_for(count, kAtATime, team, [&](int i) {
