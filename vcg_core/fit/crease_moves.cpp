@@ -29,6 +29,7 @@ constexpr int kFewestPoints = 10;     ///< of a plane
 /// vertices longer (tests/experiments/accuracy/compare_accuracy.py).
 constexpr int kRingPoints = 256;
 constexpr int kRefinements = 4;
+constexpr float kHopeless = 4;  ///< times the largest squared error, after which no refinement helps
 constexpr int kVerticesAtATime = 64;
 
 /// The two planes around one vertex after another.
@@ -47,7 +48,7 @@ public:
         collect_points(surface_.positions[v], edge);
         const float noise = kNoiseShare * noise_variance;
         for (int i = 0; i < kRefinements; ++i)
-            if (!refine()) return Vector3::Zero();
+            if (!refine() || error_ > kHopeless * largest_error(edge, noise)) return Vector3::Zero();
         if (!are_better_than_smooth(edge, noise)) return Vector3::Zero();
         const Vector3 way = way_to_line();
         return way.norm() < kFarthest * edge ? way : Vector3::Zero();
@@ -128,6 +129,7 @@ private:
             int count = 0;
         };
         std::array<Sums, 2> sums;
+        double error = 0;
         for (const Sample& s : samples_) {
             Sums& of_plane = sums[nearer_plane(s)];
             const Eigen::Vector3d p = s.place.cast<double>();
@@ -146,8 +148,10 @@ private:
             const Eigen::Matrix3d scatter = s.squares - s.weight * mean * mean.transpose();
             const PrincipalAxes spread = principal_axes(scatter);
             const Vector3 normal = spread.axes.col(0).cast<float>();
+            error += spread.values[0];
             planes_[k] = {normal.dot(planes_[k].normal) < 0 ? Vector3(-normal) : normal, mean.cast<float>()};
         }
+        error_ = static_cast<float>(error / (sums[0].weight + sums[1].weight));
         return planes_[0].normal.dot(planes_[1].normal) < kAlike;
     }
 
@@ -220,6 +224,7 @@ private:
     std::vector<Sample> samples_;
     double reach_ = 0;
     std::array<Plane, 2> planes_;
+    float error_ = 0;  ///< mean squared distance of the points from the planes last fitted to them
 };
 
 /// There, points beyond the boundary belong to the faces, too.
