@@ -158,7 +158,7 @@ private:
 
     /// What an iteration of conjugate gradients changes.
     struct Iteration;
-    Iteration first_iteration(const Four& lambdas) const;
+    Iteration first_iteration(const Four& lambdas, ThreadTeam& team) const;
     PerVertex<FourVectors> solutions(const Four& lambdas, const Accuracy& accuracy, ThreadTeam& team) const;
     void multiply(const Four& lambdas, const PerVertex<FourVectors>& u, ThreadTeam& team,
                   std::vector<FourVectors>& forces, PerVertex<FourVectors>& result) const;

@@ -79,12 +79,13 @@ struct PointToPlaneSystem::Iteration {
     PerVertex<FourVectors> u, residual, scaled, step;
 };
 
-PointToPlaneSystem::Iteration PointToPlaneSystem::first_iteration(const Four& lambdas) const {
+PointToPlaneSystem::Iteration PointToPlaneSystem::first_iteration(const Four& lambdas,
+                                                                  ThreadTeam& team) const {
     const int n = diagonal_.size();
     Iteration at{PerVertex<Symmetric<Four>>(n), PerVertex<FourVectors>(n), PerVertex<FourVectors>(n),
                  PerVertex<FourVectors>(n), PerVertex<FourVectors>(n)};
-    for (VertexId v = 0; v < n; ++v) {
-        if (!network_.alive(v)) continue;
+    parallel_for(n, kSolverChunk, team, [&](VertexId v) {
+        if (!network_.alive(v)) return;
         for (int k = 0; k < kLanes; ++k) {
             Symmetric3 block = diagonal_[v];
             block.add_identity(lambdas[k] * bending_diagonal_[v] + stiff_diagonal_[v]);
@@ -96,14 +97,14 @@ PointToPlaneSystem::Iteration PointToPlaneSystem::first_iteration(const Four& la
         at.residual[v] = lambdas * lanes_of(bending_force_[v]);
         at.residual[v] += lanes_of(force_[v]);
         at.step[v] = at.scaled[v] = at.inverse[v] * at.residual[v];
-    }
+    });
     return at;
 }
 
 /// A lane is done at the end of its own iterations: it stays as it is while the others go on.
 PerVertex<FourVectors> PointToPlaneSystem::solutions(const Four& lambdas, const Accuracy& accuracy,
                                                      ThreadTeam& team) const {
-    Iteration at = first_iteration(lambdas);
+    Iteration at = first_iteration(lambdas, team);
     const auto for_rows = [&](const auto& body) { parallel_for(at.u.size(), kSolverChunk, team, body); };
     PerVertex<FourVectors> image(at.u.size());
     std::vector<FourVectors> forces;
