@@ -211,6 +211,15 @@ TEST(OppositeLayers, AreNotFoundWhereTheyAreFarOrOne) {
     EXPECT_LT(share_of(two_spheres(0.5)), 0.1);
 }
 
+// Views of one surface that do not fit lie in such layers. Taken for walls, an open scan would be closed.
+TEST(OppositeLayers, AreNoWallsWhereTheirNoiseIsAsWideAsTheirPointsAreApart) {
+    const double spacing = std::sqrt(4 * M_PI / kPointsOfWall);
+    Cloud cloud = two_spheres(4);
+    Random random(4);
+    for (vcg::Point3d& p : cloud) p *= 1 + 0.7 * spacing * shapes::normal(random);
+    EXPECT_LT(share_of(cloud), 0.15);
+}
+
 TEST(OppositeLayers, OfOneLayerAreNone) {
     EXPECT_LT(share_of(shapes::sphere_cloud(kPointsOfWall)), 0.01);
     EXPECT_LT(share_of(shapes::plane_cloud(kPointsOfWall)), 0.01);
