@@ -32,8 +32,8 @@ inline constexpr const char* kStages[] = {
     // topology
     "membrane_groups", "wide_membranes",
     // the fit
-    "strays", "cut_faces", "volume_reduction", "hold", "crease_moves", "boundary_targets", "notches", "webs",
-    "held_out", "refine"};
+    "strays", "cut_faces", "volume_reduction", "dense_collapses", "hold", "crease_moves", "boundary_targets",
+    "notches", "webs", "held_out", "refine"};
 
 #ifdef NEURALMESH_ABLATION
 

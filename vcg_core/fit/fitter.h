@@ -100,7 +100,7 @@ private:
     bool reduce_by_volume(int vertices, double error, Surface& surface, PointsByFace points,
                           Progress& progress);
     bool reduce_by_costs(int vertices, Surface& surface, Progress& progress);
-    bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count);
+    bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
 
     Network& network_;
     const FitOptions options_;

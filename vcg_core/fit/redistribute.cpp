@@ -93,6 +93,19 @@ void carry_out(Network& network, const EdgeSplit& split) {
     network.split(place.at, place.first, place.count, to_vcg(split.position));
 }
 
+/// Carries out collapses, in their order, that touch no \p touched vertex and not each other, as long as
+/// goes_on(number done, next) is true.
+template <class GoesOn>
+std::vector<DoneCollapse> collapse_apart(Network& network, const std::vector<Collapse>& collapses,
+                                         PerVertex<char> touched, const GoesOn& goes_on) {
+    std::vector<DoneCollapse> done;
+    for (const Collapse& collapse : collapses) {
+        if (collapse.into < 0 || !goes_on(static_cast<int>(done.size()), collapse)) break;
+        if (collapse_untouched(network, collapse, touched)) done.push_back({collapse.gone, collapse.into});
+    }
+    return done;
+}
+
 /// A pass splits edges longer than this share of the longest one.
 constexpr float kLong = 0.7F;
 /// Shorter edges, as a share of the longest one, are not split.
@@ -159,11 +172,11 @@ std::vector<DoneCollapse> redistribute(Network& network, const std::vector<Colla
     // Splits are chosen first, since there are many cheap collapses but few places with large errors.
     PerVertex<char> touched = barred;
     const std::vector<EdgeSplit> chosen = choose_splits(network, splits, max_pairs, touched);
-    std::vector<DoneCollapse> done;
-    for (const Collapse& collapse : collapses) {
-        if (done.size() == chosen.size() || !(collapse.cost < chosen[done.size()].gain)) break;
-        if (collapse_untouched(network, collapse, touched)) done.push_back({collapse.gone, collapse.into});
-    }
+    const std::vector<DoneCollapse> done =
+        collapse_apart(network, collapses, touched, [&](int count, const Collapse& next) {
+            const auto i = static_cast<std::size_t>(count);
+            return i < chosen.size() && next.cost < chosen[i].gain;
+        });
     for (std::size_t i = 0; i < done.size(); ++i) carry_out(network, chosen[i]);
     return done;
 }
@@ -177,6 +190,12 @@ int insert(Network& network, const std::vector<EdgeSplit>& splits, int max_count
 
 std::vector<DoneCollapse> reduce(Network& network, const std::vector<Collapse>& collapses, int max_count,
                                  const PerVertex<char>& barred) {
+    return collapse_apart(network, collapses, barred,
+                          [&](int count, const Collapse&) { return count < max_count; });
+}
+
+std::vector<DoneCollapse> reduce_densely(Network& network, const std::vector<Collapse>& collapses,
+                                         int max_count, const PerVertex<char>& barred) {
     PerVertex<char> touched(network.slot_count(), 0);
     std::vector<DoneCollapse> done;
     const auto is_barred = [&](VertexId v) { return barred[v] != 0; };

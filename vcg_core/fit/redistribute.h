@@ -69,11 +69,15 @@ std::vector<DoneCollapse> redistribute(Network& network, const std::vector<Colla
 /// topology stays. \return their number
 int insert(Network& network, const std::vector<EdgeSplit>& splits, int max_count);
 
-/// Carries out the cheapest \p collapses, at most \p max_count. They may have neighbours in common, but none
-/// removes a vertex whose faces, or faces beyond its ring, are new: so the cost of each still holds. None has
-/// a \p barred vertex. The topology stays.
+/// Carries out the cheapest \p collapses, at most \p max_count. No two have a vertex in common, and none has
+/// a \p barred one. The topology stays.
 std::vector<DoneCollapse> reduce(Network& network, const std::vector<Collapse>& collapses, int max_count,
                                  const PerVertex<char>& barred);
+
+/// The same with more collapses at once: they may have neighbours in common, but none removes a vertex whose
+/// faces, or faces beyond its ring, are new. So the cost of each still holds.
+std::vector<DoneCollapse> reduce_densely(Network& network, const std::vector<Collapse>& collapses,
+                                         int max_count, const PerVertex<char>& barred);
 
 /// Reduces \p network to \p vertices vertices, or more if no other edge may collapse: the edge that sweeps
 /// the least squared volume first, to the place where that is least while the enclosed volume stays. Between

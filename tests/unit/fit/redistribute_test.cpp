@@ -69,7 +69,7 @@ TEST_F(OnACube, BarredVerticesAreLeftAlone) {
     EXPECT_FALSE(redistribute(network, collapses, splits, 1000, barred).empty());
     expect_barred_untouched();
     network = scene.network;
-    EXPECT_FALSE(reduce(network, collapses, 10000, barred).empty());
+    EXPECT_FALSE(reduce_densely(network, collapses, 10000, barred).empty());
     EXPECT_EQ(network.validate(), "");
     expect_barred_untouched();
 }
@@ -126,6 +126,22 @@ TEST(Redistribute, SplitsBoundaryEdgesOnTheBoundary) {
     EXPECT_GT(splits, 20);
 }
 
+TEST_F(OnACube, ReduceRemovesTheCheapestThatDoNotTouch) {
+    for (const std::size_t max_count : {1, 20, 10000}) {
+        network = scene.network;
+        const auto done = reduce(network, collapses, static_cast<int>(max_count), none);
+        expect_sound(done.size());
+        EXPECT_LE(done.size(), max_count);
+        EXPECT_EQ(done.front().gone, collapses.front().gone);
+        PerVertex<char> touched = none;
+        for (const DoneCollapse& collapse : done) {
+            EXPECT_EQ(std::exchange(touched[collapse.gone], 1), 0);
+            for (const VertexId u : scene.network.ring(collapse.gone))
+                EXPECT_EQ(std::exchange(touched[u], 1), 0);
+        }
+    }
+}
+
 /// The corners of the faces around \p v and of those beyond its ring, as costs are measured on them.
 std::set<std::array<VertexId, 3>> measured_faces(const Network& network, VertexId v) {
     std::set<std::array<VertexId, 3>> faces;
@@ -143,10 +159,10 @@ std::set<std::array<VertexId, 3>> measured_faces(const Network& network, VertexI
     return faces;
 }
 
-TEST_F(OnACube, ReduceRemovesOnlyWhatIsAsMeasured) {
+TEST_F(OnACube, ReduceDenselyRemovesOnlyWhatIsAsMeasured) {
     for (const std::size_t max_count : {1, 20, 10000}) {
         network = scene.network;
-        const auto done = reduce(network, collapses, static_cast<int>(max_count), none);
+        const auto done = reduce_densely(network, collapses, static_cast<int>(max_count), none);
         expect_sound(done.size());
         EXPECT_LE(done.size(), max_count);
         EXPECT_EQ(done.front().gone, collapses.front().gone);
