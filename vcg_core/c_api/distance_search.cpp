@@ -21,9 +21,9 @@ namespace neuralmesh::c_api {
 
 namespace {
 
-constexpr std::size_t kPointsAtATime =
-    524288;                             ///< points at a time: a quarter as many take half as long again
-constexpr std::size_t kChunk = 4096;    ///< points per task of a thread
+/// A quarter as many take half as long again.
+constexpr std::size_t kPointsAtATime = 524288;
+constexpr std::size_t kChunk = 4096;  ///< points per task of a thread
 /// Points that are further away, in diagonals of the mesh, are looked for at this distance in their
 /// direction, because single precision would not tell faces apart. The face that is nearest to that place is
 /// at most some 1e-4 diagonals further from the point than the nearest one, a ten-millionth of the distance.

@@ -89,9 +89,9 @@ std::vector<std::vector<Place>> places_around(const NearestPoints& index,
     return around;
 }
 
-/// Replaces a number of every place by the median of the places \p around it that are no clutter, which takes
-/// out what is chance at one of them: leaves
-/// above the ground say nothing of it. Where only clutter is around, by that of all.
+/// Replaces a number of every place by the median of the places \p around it, which takes out what is chance
+/// at one of them. Clutter does not count, since leaves above the ground say nothing of it; where only
+/// clutter is around, it does.
 void smooth(const std::vector<std::vector<Place>>& around, std::vector<SurveyedPlace>& places,
             float SurveyedPlace::*number) {
     // The median of fewer is one of them.
