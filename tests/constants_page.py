@@ -61,7 +61,7 @@ SUBJECT = re.compile(
     r"|PointsPer(Part|Node)"
     r"|(target|final|wanted|fewest)_vertices|most_wanted|\bcarried\b|grow_to|reduce_to|VerticesToHold|DenseFrom|ByVolumeFrom")
 BOUND = re.compile(r"^(?=.*([<>]|\b(clamp|min|max)\())(?=.*(\bk[A-Z]\w*|(?<![\w.])([2-9]|1\d)\d*\b))|\?.*\bk[A-Z]\w*|\? \d+ : \d+")
-NO_RESULT = ("learning/learning_state.cpp",)
+NO_RESULT = ("learning/memory_order.h",)
 CONSTANT = re.compile(r"^\s*(?:inline |static )*constexpr (?!const char)([\w:<>]+) (k[A-Z].*)$")
 DECLARED = re.compile(r"(k[A-Z]\w*)(?:\[\w*\])? ?(?:= ?|(?=\{))((?:\{.*?\}|[^,{]|,(?! k[A-Z]))+)")
 FUNCTION = re.compile(r"\bconstexpr [\w:<>]+ \w+\(")

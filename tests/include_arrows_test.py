@@ -12,7 +12,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 ABOVE_ALL = {"the top", "c_api"}  # the files directly in vcg_core/, and the interface for C, may include all
 MAY_INCLUDE = {  # beside its own files
-    "learning": {"topology", "engine", "mesh", "cloud", "base"},
+    "learning": {"paper", "topology", "engine", "mesh", "cloud", "base"},
+    "paper": {"engine", "mesh", "cloud", "base"},
     "topology": {"mesh", "cloud", "base"},
     "engine": {"mesh", "cloud", "base"},
     "start": {"mesh", "cloud", "base"},

@@ -3,7 +3,7 @@
 
 #include "vcg_core/feature_measures.h"
 
-#include "vcg_core/learning/counters.h"
+#include "vcg_core/paper/counters.h"
 
 namespace neuralmesh {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "vcg_core/base/colors_and_normals.h"
-#include "vcg_core/learning/learning_constants.h"
+#include "vcg_core/paper/constants.h"
 
 namespace neuralmesh {
 

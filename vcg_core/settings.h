@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "vcg_core/learning/learning_constants.h"
+#include "vcg_core/paper/constants.h"
 
 namespace neuralmesh {
 

@@ -29,7 +29,7 @@ PER_CYCLE = 4
 PARTS = {
     "start mesh": (["start_mesh"], ["prepare("]),
     "landing, settling": (["landing", "settling"], ["Learner::settle("]),
-    "growth": (["growth"], ["void neuralmesh::Learner::learn_batch<neuralmesh::Learner::grow(", "Learner::learn_topology("]),
+    "growth": (["growth"], ["PaperLearner::grow("]),
     "reduction": (["reduction"], ["Fitter::reduce_to("]),
     "rounds of the fit": (["rounds"], ["(anonymous namespace)::FitRounds::run("]),
 }

@@ -134,8 +134,7 @@ bool is_widely_surrounded(const Network& network, VertexId v) {
 }
 
 /// Whether a signal lies in the mouth of the notch: then the surface goes on there.
-bool is_signalled(LearningState& state, const Notch& notch) {
-    const Network& network = state.network;
+bool is_signalled(const Network& network, BoundarySignals& won, const Notch& notch) {
     const vcg::Point3f& before = network.position(notch.before);
     const vcg::Point3f& after = network.position(notch.after);
     const vcg::Point3f& here = network.position(notch.v);
@@ -151,7 +150,7 @@ bool is_signalled(LearningState& state, const Notch& notch) {
     };
     const VertexId corners[] = {notch.v, notch.before, notch.after};
     return std::any_of(std::begin(corners), std::end(corners),
-                       [&](VertexId u) { return state.boundary_signals.any_of(u, in_mouth); });
+                       [&](VertexId u) { return won.any_of(u, in_mouth); });
 }
 
 /// Joins the neighbours of the notch along the boundary, at the one farther from it.
@@ -181,7 +180,7 @@ bool is_in_short_loop(const Network& network, VertexId v) {
 }
 
 /// \return whether the boundary at \p v was changed
-bool mend_notch(LearningState& state, VertexId v, bool may_remove) {
+bool mend_notch(LearningState& state, BoundarySignals& won, VertexId v, bool may_remove) {
     Network& network = state.network;
     if (!network.can_fill_notch(v) || skips("learned_notches")) return false;
     const Ring& ring = network.ring(v);
@@ -190,14 +189,14 @@ bool mend_notch(LearningState& state, VertexId v, bool may_remove) {
     if (!(notch.cosine > kNotch) || !is_widely_surrounded(network, v)) return false;
     const bool in_short_loop = is_in_short_loop(network, v);
     if (is_slit(network, notch)) return may_remove && !in_short_loop && close_slit(state, notch);
-    if (in_short_loop && !is_signalled(state, notch)) return false;
+    if (in_short_loop && !is_signalled(network, won, notch)) return false;
     network.fill_notch(v);
     return true;
 }
 
 }  // namespace
 
-int mend_boundary_faces(LearningState& state, bool may_remove) {
+int mend_boundary_faces(LearningState& state, BoundarySignals& won, bool may_remove) {
     int changed = 0;
     const auto on_boundary = [&](VertexId v) {
         return state.network.alive(v) && state.network.ring(v).open != 0 && !skips("boundary_faces");
@@ -205,7 +204,7 @@ int mend_boundary_faces(LearningState& state, bool may_remove) {
     for (const VertexId v : state.network.vertices()) {
         const Ring& ring = state.network.ring(v);
         if (on_boundary(v) && mend(state, {v, ring[0], ring[1]}, may_remove)) ++changed;
-        if (on_boundary(v) && mend_notch(state, v, may_remove)) ++changed;
+        if (on_boundary(v) && mend_notch(state, won, v, may_remove)) ++changed;
     }
     return changed;
 }

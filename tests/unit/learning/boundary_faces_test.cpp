@@ -13,8 +13,8 @@ using vcg::Point3f;
 
 constexpr float kHeight = 0.8660254F;  ///< of an equilateral triangle
 
-LearnerOptions options() {
-    LearnerOptions result;
+GrowthOptions options() {
+    GrowthOptions result;
     result.grow_to = 200;
     return result;
 }
@@ -74,8 +74,9 @@ using Signals = std::vector<std::pair<VertexId, Point3f>>;
 /// Mends \p network. \return the number of faces changed
 int mend(Network& network, bool may_remove, const Signals& won = {}) {
     LearningState state(options(), network);
-    for (const auto& [winner, signal] : won) state.boundary_signals.add(winner, signal);
-    const int changed = mend_boundary_faces(state, may_remove);
+    BoundarySignals signals;
+    for (const auto& [winner, signal] : won) signals.add(winner, signal);
+    const int changed = mend_boundary_faces(state, signals, may_remove);
     network = state.network;
     EXPECT_EQ(network.validate(), "");
     EXPECT_EQ(network.euler_characteristic(), 1);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/learning/connectivity_steps.h"
+#include "vcg_core/paper/connectivity_steps.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
 
-#include "vcg_core/cloud/surface_survey.h"
 #include "vcg_core/mesh/flips.h"
 
 namespace neuralmesh {
@@ -83,14 +82,6 @@ bool split_along_longest_edge(LearningState& state, VertexId v) {
     return true;
 }
 
-/// Whether the edges of \p v are as short as the noise of the points allows.
-bool is_fine_enough(const LearningState& state, VertexId v) {
-    const SurfaceSurvey* noise = state.options.noise;
-    return noise != nullptr &&
-           squared_mean_edge(state.network, v) <
-               static_cast<double>(noise->orderly_at(state.network.position(v)).least_squared_edge());
-}
-
 /// The neighbour into which \p gone collapses at the least cost; -1 if no collapse is legal.
 VertexId best_collapse(const Network& network, VertexId gone) {
     const Ring& ring = network.ring(gone);
@@ -111,17 +102,17 @@ VertexId best_collapse(const Network& network, VertexId gone) {
 
 }  // namespace
 
-bool vertex_split(LearningState& state) {
-    bool any_fine = false;
+bool vertex_split(LearningState& state, const std::function<bool(VertexId)>& may_split) {
+    bool any_refused = false;
     for (int tried = 0; tried < kMostTried; ++tried) {
         const VertexId v = state.utility_counters.highest();
         if (v < 0) break;
-        const bool fine = is_fine_enough(state, v);
-        if (!fine && split_along_longest_edge(state, v)) return true;
-        any_fine = any_fine || fine;
+        const bool refused = !may_split(v);
+        if (!refused && split_along_longest_edge(state, v)) return true;
+        any_refused = any_refused || refused;
         state.utility_counters.defer(v);
     }
-    state.splits_refused += any_fine ? 1 : 0;
+    state.splits_refused += any_refused ? 1 : 0;
     return false;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-// The constants of the learning, with the paper's symbols, and why it ends: what a caller sees of it.
+// The constants of the learning, with the paper's symbols, and why it ends.
 #pragma once
 
 namespace neuralmesh {
@@ -41,6 +41,12 @@ struct LearningConstants {
     int settling_signals_per_vertex = 60;  ///< signals after the last split
     int random_seed = 1;
     int threads = 0;  ///< 0: one per core
+};
+
+/// The constants, and how far a network grows.
+struct GrowthOptions : LearningConstants {
+    double stop_below_turn = 0;  ///< alpha_t of eq 8, in degrees as NormalTurn measures; 0: off
+    int grow_to = 10000;         ///< vertices at which growth ends
 };
 
 }  // namespace neuralmesh

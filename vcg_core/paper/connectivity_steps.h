@@ -5,19 +5,20 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
-#include "vcg_core/learning/learning_state.h"
+#include "vcg_core/paper/learning_state.h"
 
 namespace neuralmesh {
 
 /// Splits the mature vertex with the highest utility counter. Where its star cannot be halved, tries the next
-/// highest, up to 32. So it does with a vertex whose edges are as short as options.noise allows: there noise
-/// turns the normals. \return whether a vertex was split. O(log n), and O(log places) with options.noise.
+/// highest, up to 32. So it does with a vertex that, by \p may_split, is not to be split. \return whether a
+/// vertex was split. O(log n).
 ///
 /// How to split follows Ivrissimtzis et al., "Using growing cell structures for surface reconstruction"
 /// (2003): from the longest edge e of the star walk equally far both ways to the edges e1 and e2 that halve
 /// it; split along e1 and e2; put the new vertex at the midpoint of e.
-bool vertex_split(LearningState& state);
+bool vertex_split(LearningState& state, const std::function<bool(VertexId)>& may_split);
 
 /// Removes the vertices that existed at signal \p since and have not won since then, each by the half-edge
 /// collapse that leaves the most regular valences. Vertices without a legal collapse stay, and so do boundary

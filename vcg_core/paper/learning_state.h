@@ -6,15 +6,14 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "vcg_core/engine/basic_step_batch.h"
 #include "vcg_core/engine/batch_limit.h"
 #include "vcg_core/engine/winner_search.h"
-#include "vcg_core/learning/counters.h"
-#include "vcg_core/learning/learner_options.h"
 #include "vcg_core/mesh/network.h"
+#include "vcg_core/paper/constants.h"
+#include "vcg_core/paper/counters.h"
 
 namespace neuralmesh {
 
@@ -60,37 +59,10 @@ private:
     PerVertex<std::int64_t> last_active_;
 };
 
-/// The signals that boundary vertices have won, by their winners: they tell a notch in the boundary from an
-/// opening of the cloud.
-class BoundarySignals {
-public:
-    void add(VertexId winner, const vcg::Point3f& signal) {
-        won_.emplace_back(winner, signal);
-        sorted_ = false;
-    }
-    void clear() { won_.clear(); }
-
-    /// Whether \p accepts any signal that \p winner has won. O(log n), and O(n log n) after signals were
-    /// added.
-    template <class Accepts>
-    bool any_of(VertexId winner, const Accepts& accepts) {
-        const auto earlier = [](const Won& a, const Won& b) { return a.first < b.first; };
-        if (!sorted_) std::stable_sort(won_.begin(), won_.end(), earlier);
-        sorted_ = true;
-        const auto range = std::equal_range(won_.begin(), won_.end(), Won(winner, {}), earlier);
-        return std::any_of(range.first, range.second, [&](const Won& won) { return accepts(won.second); });
-    }
-
-private:
-    using Won = std::pair<VertexId, vcg::Point3f>;
-    std::vector<Won> won_;
-    bool sorted_ = true;
-};
-
 /// What the steps of the paper read and change. Change the connectivity only through the members below: they
 /// keep the winner search and the counters consistent with the network.
 struct LearningState {
-    LearningState(const LearnerOptions& the_options, Network start);
+    LearningState(const GrowthOptions& the_options, Network start);
     LearningState(const LearningState&) = delete;
     LearningState& operator=(const LearningState&) = delete;
 
@@ -105,36 +77,22 @@ struct LearningState {
     /// Flips edges of \p v where that brings valences closer to 6 and hardly changes the surface. Does
     /// nothing to the letter of the paper.
     void regularise(VertexId v);
-    /// Keeps vertices that are near in space near in memory: renumbers them along a space-filling curve
-    /// whenever the network has grown by a quarter, and leaves free ids between them for new ones. The
-    /// vertices that a Basic Step visits then share cache lines and pages, and those that different threads
-    /// visit do not. Results change only where they depend on the order of ids, as ties and the order of
-    /// collapses do. Small networks fit into the cache and keep their order. O(n log n) then, O(1) otherwise.
-    void reorder_while_growing();
-    /// The same, without free ids, if there were splits or collapses since the last time: for a long phase
-    /// without them. O(n log n).
-    void reorder_at_rest();
+    /// As UtilityCounters::renumber(), for everything.
+    void renumber(const std::vector<VertexId>& order);
 
     /// True if options switch off all that the paper does not have: maturity, batches, edge flips.
     bool to_the_letter() const { return options.min_wins_per_split == 0; }
 
-    const LearnerOptions options;
+    const GrowthOptions options;
     Network network;
     WinnerSearch search;
     UtilityCounters utility_counters;
     FeatureCounters feature_counters;
     Activity activity;
-    BoundarySignals boundary_signals;  ///< won since the boundaries were last mended
-    std::int64_t signals = 0;          ///< learned so far
+    std::int64_t signals = 0;  ///< learned so far
     std::int64_t splits = 0;
     std::int64_t collapses = 0;
-    std::int64_t splits_refused = 0;  ///< because the points carry no shorter edges
-
-private:
-    void reorder(int free_ids);
-
-    int ordered_vertices_ = 0;           ///< when last renumbered
-    std::int64_t ordered_changes_ = -1;  ///< splits and collapses when last renumbered
+    std::int64_t splits_refused = 0;  ///< of vertices that may not be split
 };
 
 }  // namespace neuralmesh

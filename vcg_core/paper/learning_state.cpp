@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Copyright the Neural Mesh authors
 
-#include "vcg_core/learning/learning_state.h"
+#include "vcg_core/paper/learning_state.h"
 
 #include <map>
 #include <utility>
@@ -14,7 +14,6 @@ namespace {
 
 /// Flips are allowed if the normals of both faces before and after differ by less than 18 degrees.
 constexpr float kLeastCosineOfFlip = 0.95F;
-constexpr int kLeastOrdered = 2048;  ///< vertices of a network that outgrows a core's first cache
 
 bool is_flat(const FlipNormals& normals) {
     for (vcg::Point3f n : normals.before) {
@@ -27,7 +26,7 @@ bool is_flat(const FlipNormals& normals) {
 
 }  // namespace
 
-LearningState::LearningState(const LearnerOptions& the_options, Network start)
+LearningState::LearningState(const GrowthOptions& the_options, Network start)
     : options(the_options),
       network(std::move(start)),
       search(network),
@@ -83,21 +82,7 @@ void LearningState::regularise(VertexId v) {
     if (!to_the_letter()) flip_edges_for_valence(network, v, {is_flat});
 }
 
-void LearningState::reorder_while_growing() {
-    const int n = network.vertex_count();
-    if (n >= kLeastOrdered && n >= ordered_vertices_ + ordered_vertices_ / 4)
-        reorder(std::min(n / 4, options.grow_to - n));
-}
-
-void LearningState::reorder_at_rest() {
-    if (network.vertex_count() >= kLeastOrdered && ordered_changes_ != splits + collapses) reorder(0);
-}
-
-void LearningState::reorder(int free_ids) {
-    ordered_vertices_ = network.vertex_count();
-    ordered_changes_ = splits + collapses;
-    const std::vector<VertexId> order = interleave_free(morton_order(network), free_ids);
-    boundary_signals.clear();  // their winners get other numbers
+void LearningState::renumber(const std::vector<VertexId>& order) {
     network.renumber(order);
     utility_counters.renumber(order);
     feature_counters.renumber(order);
