@@ -24,6 +24,7 @@ compile_packages="ca-certificates cmake g++ libeigen3-dev libglew-dev libqt5open
     qtbase5-dev xz-utils"
 venv_packages="python3-venv"
 demo_packages="glmark2-data libgl1-mesa-dri python3-numpy python3-pil xauth xvfb"
+figures_packages="xdotool"
 bench_packages="libcgal-dev"  # CGAL's surface reconstruction is timed beside ours
 test_packages="binutils libbenchmark-dev libgtest-dev valgrind"
 release_packages="debootstrap lintian qemu-user wine64"
@@ -252,7 +253,7 @@ bench() {
 }
 
 figures() {
-    need $compile_packages $demo_packages $test_packages $venv_packages
+    need $compile_packages $demo_packages $figures_packages $test_packages $venv_packages
     need_venv
     compile plugins
     local plugin="$build/plugins/pymeshlab-2025.7/libfilter_neuralmesh.so"
@@ -264,6 +265,8 @@ figures() {
     for table in features crease_table; do
         "$venv/bin/python" "tests/experiments/paper/$table.py" --plugin "$plugin" --out out/figures
     done
+    say "Pictures of MeshLab"
+    "$venv/bin/python" tests/experiments/pictures/host_pictures.py --build "$build"
 }
 
 mkdir -p "$build"

@@ -52,11 +52,12 @@ def environment(folder):
 
 
 @functools.lru_cache(maxsize=1)
-def display():
+def display(screen="1280x1024x24"):
     """The display of an X server without a screen, which is started once and ends with this program. xvfb-run would
-    start one for each call, and sometimes fails to end it."""
+    start one for each call, and sometimes fails to end it. Without -noreset it would turn away a program that starts just
+    after the last one has ended."""
     reading, writing = os.pipe()
-    xvfb = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x1024x24", "-nolisten", "tcp"],
+    xvfb = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", screen, "-nolisten", "tcp", "-noreset"],
                             pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     atexit.register(xvfb.terminate)
     os.close(writing)
