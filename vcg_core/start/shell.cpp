@@ -140,6 +140,16 @@ void set_mesh(ClosedMesh& closed, const Region& region, std::size_t points, cons
     copy_mesh(network, result);
 }
 
+/// Of \p places those where the points show a surface. In closed models limbs as thin as the points are apart
+/// have no enclosed space beside them, and are no sheet: nothing is seen there.
+std::vector<LayerPlace> orderly(const std::vector<LayerPlace>& places, Surveys& surveys) {
+    const SurfaceSurvey& survey = surveys.surface();
+    std::vector<LayerPlace> result;
+    for (const LayerPlace& place : places)
+        if (!survey.at(place.position).clutter) result.push_back(place);
+    return result;
+}
+
 Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace>& places, Surveys& surveys) {
     Enclosure result;
     result.encloses_space = survey.region.encloses_space;
@@ -150,9 +160,12 @@ Enclosure enclosure_of(const LatticeSurvey& survey, const std::vector<LayerPlace
     if ((result.encloses_space && result.sheet_share <= kMostSheet) || skips("walled")) return result;
     result.walled = share_on_thin_walls(places, surveys) > kWalled;
     result.encloses_space |= result.walled;
+    if (thin.places.empty()) return result;
     // A body may have thin parts beside openings: what is left is a sheet.
-    const double walls = share_on_thin_walls(thin.places, surveys) / kWallsFound;
-    result.sheet_share *= std::max(0.0, 1 - walls);
+    const std::vector<LayerPlace> orderly_places = orderly(thin.places, surveys);
+    const double walls = share_on_thin_walls(orderly_places, surveys) / kWallsFound;
+    result.sheet_share *= std::max(0.0, 1 - walls) * static_cast<double>(orderly_places.size()) /
+                          static_cast<double>(thin.places.size());
     return result;
 }
 

@@ -114,6 +114,18 @@ TEST(Shell, ThinPartsOfABodyAreNoSheet) {
     EXPECT_GT(shell(cloud).sheet_share, kMostSheet);
 }
 
+TEST(Shell, PartsThatShowNoSurfaceAreNoSheet) {
+    // A ball on a pin, which is as thick as two points are apart: no place of it shows a surface.
+    constexpr double kHalf = 1.5707963267948966, kPin = 0.07;
+    std::vector<std::array<double, 2>> profile{{0, -3}, {kPin, -3}};
+    for (double v = -kHalf + kPin; v < kHalf - kPin / 2; v += (kHalf - kPin) / 24)
+        profile.push_back({std::cos(v), std::sin(v)});
+    profile.insert(profile.end(), {{kPin, 3}, {0, 3}});
+    const StartMesh pin = shell_of_samples(shell_shapes::revolve(profile, 96, false), 4000);
+    EXPECT_TRUE(pin.encloses_space);
+    EXPECT_LT(pin.sheet_share, kMostSheet);
+}
+
 TEST(Shell, NoiseDoesNotMakeHandles) {
     const double diagonal = 2 * std::sqrt(1.3 * 1.3 * 2 + 0.3 * 0.3);
     for (const double noise : {0.001, 0.003, 0.006})
