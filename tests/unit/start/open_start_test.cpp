@@ -128,6 +128,21 @@ TEST(OpenStart, RefusesWhatIsNoSurface) {
     EXPECT_NE(refusal(shapes::plane_cloud(99)).find("too few"), std::string::npos);
 }
 
+TEST(OpenStart, KeepsWhatIsFoundInPointsThatShowLittle) {
+    // A square: three quarters of it are noisier than the survey looks far, and the mesh is found all the
+    // same.
+    Cloud cloud = shapes::plane_cloud(20000);
+    Random random(1);
+    for (vcg::Point3d& p : cloud)
+        if (p[0] < 0.25) p[2] += 0.05 * shapes::normal(random);
+    const TargetSpace target = target_of(cloud);
+    Surveys surveys(target.positions(), 1);
+    EXPECT_GT(surveys.surface().clutter(), 0.5);
+    const OpenStart start = start_of(cloud);
+    EXPECT_LT(start.left_out, 0.1);
+    EXPECT_EQ(start.components, 1);
+}
+
 TEST(OpenStart, KeepsASmallSheetButNoClump) {
     // Half a sphere, and apart from it .7 % of the points: on a small square, or in a ball.
     Cloud half = open_shapes::sphere_below(0, 40000);
