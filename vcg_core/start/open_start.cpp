@@ -18,6 +18,7 @@
 #include "vcg_core/mesh/network.h"
 #include "vcg_core/mesh/non_manifold_vertices.h"
 #include "vcg_core/mesh/simplify.h"
+#include "vcg_core/mesh/triangle.h"
 #include "vcg_core/start/consolidated_points.h"
 #include "vcg_core/start/orientation.h"
 #include "vcg_core/start/point_triangulation.h"
@@ -203,12 +204,33 @@ double diagonal_of(const std::vector<Point3f>& positions) {
     return static_cast<double>(box.Diag());
 }
 
-/// Fills holes up to options.close_holes_up_to, or where that is negative, up to kGapRadii radii; and all, if
-/// none that is left is wider than options.closed_up_to.
+/// Whether \p loop ends its part of \p mesh, rather than leaves a hole in it: less of the part faces where
+/// what fills it would face than is missing there. A sheet, or half a sphere, has nothing that does; a sphere
+/// with a small hole has its half.
+bool ends_its_part(const IndexedMesh<float>& mesh, const std::vector<VertexId>& loop, DisjointSets& parts) {
+    const auto position = [&](VertexId v) { return mesh.positions[at(v)]; };
+    const Point3f from = position(loop.front());
+    Point3f missing(0, 0, 0);  // twice the area vector of what fills it
+    for (std::size_t i = 1; i + 1 < loop.size(); ++i)
+        missing += area_vector(from, position(loop[i + 1]), position(loop[i]));
+    const auto enough = static_cast<double>(missing.SquaredNorm());
+    double facing = 0;
+    for (const Triangle& f : mesh.faces) {
+        if (parts.find(f[0]) != parts.find(loop.front())) continue;
+        const Point3f area = area_vector(position(f[0]), position(f[1]), position(f[2]));
+        facing += std::max(0.0, static_cast<double>(missing * area));
+        if (facing >= enough) return false;
+    }
+    return true;
+}
+
+/// Fills holes up to options.close_holes_up_to, or where that is negative, up to kGapRadii radii if it does
+/// not end a part; and all, if none that is left is wider than options.closed_up_to.
 void fill_small_holes(Sheet& sheet, const OpenStartOptions& options, OpenStart& result) {
     IndexedMesh<float>& mesh = sheet.mesh;
     const auto loops = boundary_loops(static_cast<int>(mesh.positions.size()), mesh.faces);
     HoleFiller filler(mesh, loops, kHighestValence);
+    DisjointSets parts = parts_of(mesh);
     std::vector<const std::vector<VertexId>*> left;
     double widest = 0;
     for (const std::vector<VertexId>& loop : loops) {
@@ -218,7 +240,9 @@ void fill_small_holes(Sheet& sheet, const OpenStartOptions& options, OpenStart& 
         const double most = options.close_holes_up_to >= 0 ? std::max(options.close_holes_up_to, gap)
                                                            : static_cast<double>(kGapRadii * radius);
         const double diameter = diameter_of(loop, mesh.positions);
-        if (diameter <= most && filler.fill(loop)) continue;
+        const bool is_hole =
+            diameter <= most && (options.close_holes_up_to >= 0 || !ends_its_part(mesh, loop, parts));
+        if (is_hole && filler.fill(loop)) continue;
         left.push_back(&loop);
         // Half a radius of surface, on both sides, is beyond the last vertices.
         widest = std::max(widest, diameter - static_cast<double>(radius));

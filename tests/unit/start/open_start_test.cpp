@@ -143,6 +143,18 @@ TEST(OpenStart, KeepsWhatIsFoundInPointsThatShowLittle) {
     EXPECT_EQ(start.components, 1);
 }
 
+TEST(OpenStart, EndsAPartWhereItsPointsEnd) {
+    // The boundary of a part is no hole in it, though it is as narrow as one: a small square beside half a
+    // sphere, and half a sphere so noisy that six radii reach across it.
+    Cloud islands = open_shapes::sphere_below(0, 40000);
+    for (const vcg::Point3d& p : shapes::plane_cloud(60)) islands.push_back(p * 0.2 + vcg::Point3d(0, 0, 1));
+    EXPECT_EQ(start_of(islands).components, 2);
+    EXPECT_EQ(start_of(islands).loops, 2);
+    EXPECT_EQ(start_of(open_shapes::sphere_below(0, 8000, 0.25)).loops, 1);
+    // A hole in a sphere is filled.
+    EXPECT_EQ(start_of(open_shapes::sphere_below(0.95, 1000)).loops, 0);
+}
+
 TEST(OpenStart, KeepsASmallSheetButNoClump) {
     // Half a sphere, and apart from it .7 % of the points: on a small square, or in a ball.
     Cloud half = open_shapes::sphere_below(0, 40000);
