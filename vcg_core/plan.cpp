@@ -103,7 +103,8 @@ Plan plan_for(const Circumstances& given) {
     plan.grow_to = std::max(
         {plan.carried, least, static_cast<int>(given.exact ? learned : std::min(learned, supported))});
     const double kept = static_cast<double>(plan.carried) / plan.grow_to;
-    if (!skips("settling_surplus")) plan.settling_share = kept;
+    // Half of the signals where most vertices stay: with more the network follows the noise.
+    if (!skips("settling_surplus")) plan.settling_share = std::min(kept, 0.5);
     const double noisy = given.closed && !given.exact ? 1 - falling(given.noise, 0.1, 0.15) : 0;
     if (skips("brief_learning")) return plan;
     plan.growth_share = std::max(0.5, (1 - hurry(plan.carried) * (1 - kept)) * between(1, 0.5, noisy));

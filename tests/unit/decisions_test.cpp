@@ -86,6 +86,11 @@ TEST(Plan, TheMoreIsRemovedAndTheLargerTheNoiseTheFewerSignalsDo) {
     EXPECT_LT(plan_for(circumstances(6000, 20000, 0.2)).growth_share, 0.6 * calm);
 }
 
+TEST(Plan, VerticesSettleForHalfTheSignalsWhereMostStay) {
+    EXPECT_EQ(plan_for(circumstances(50000, 1000000)).settling_share, 0.5);
+    EXPECT_LT(plan_for(circumstances(500, 100000)).settling_share, 0.2);
+}
+
 TEST(Plan, NothingIsRemovedThatTheFitMayNotRedistribute) {
     Circumstances given = circumstances(500, 100000);
     given.redistributes = false;

@@ -98,7 +98,7 @@ private:
     /// \return whether the fit has converged
     bool first_round() {
         Surface surface(network_);
-        PointsByFace points = fitter_.locate_points(surface);
+        PointsByFace points = fitter_.begin_rounds(surface);
         // Sheets that are closed around both sides are not redistributed.
         holds_ = options_.redistribute && !surface.has_boundary() && fitter_.has_precise_points(surface) &&
                  !skips("hold");

@@ -35,6 +35,8 @@ public:
 
     /// Assigns the fitted points to their nearest faces and finds the held-out points, all by exact search.
     PointsByFace locate_points(const Surface& surface);
+    /// The same. The next solutions are stiff, to take out what learning followed of the noise.
+    PointsByFace begin_rounds(const Surface& surface);
     /// Assigns the fitted points to their nearest faces by walks from the last ones.
     PointsByFace assign_faces(const Surface& surface);
     /// Makes \p surface that of the network, of which edges or faces have changed, and assigns the points to
@@ -97,8 +99,7 @@ private:
     void set_points_aside();
     bool wants_reduction(int vertices, int at_start, Progress& progress) const;
     /// \param error that of the last solution
-    bool reduce_by_volume(int vertices, double error, Surface& surface, PointsByFace points,
-                          Progress& progress);
+    bool reduce_by_volume(int vertices, Surface& surface, PointsByFace points, Progress& progress);
     bool reduce_by_costs(int vertices, Surface& surface, Progress& progress);
     bool remove_vertices(const Surface& surface, const PointsByFace& points, int max_count, bool dense);
 
@@ -112,6 +113,7 @@ private:
     float noise_variance_ = 0;    ///< from the last assignment
     PerVertex<float> variances_;  ///< of the noise around each vertex, from the last assignment
     PerVertex<float> rounding_variances_;  ///< the part that the points of one step share
+    float stiffness_ = 1;                  ///< times the least weight under noise
     float least_weight_;        ///< of bending; falls, as in the first rounds points may be with wrong faces
     float bending_weight_ = 0;  ///< the last choice; 0: none yet
     IntersectionGuard guard_;   ///< has accepted the present surface

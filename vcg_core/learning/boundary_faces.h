@@ -52,7 +52,8 @@ private:
 /// - Any other folded face is flipped with a neighbour, if that unfolds it.
 /// - A notch of less than a right angle is filled by a face: splits would deepen it. If its sides meet or
 ///   overlap, they are joined, and a vertex less is left, if \p may_remove. A boundary of few edges is all
-///   corners: there a notch is filled only if boundary vertices have \p won signals in it, and none is joined.
+///   corners: there a notch is filled only if boundary vertices have \p won signals in it, and none is
+///   joined.
 ///
 /// O(n). \return the number of faces and notches changed
 int mend_boundary_faces(LearningState& state, BoundarySignals& won, bool may_remove);

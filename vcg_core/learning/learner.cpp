@@ -40,7 +40,8 @@ StopReason Learner::begin_and_grow(Progress& progress) {
     growth_begin_ = signals();
     look_for_notches();
     if (options_.learn_topology)
-        topology_stages_.emplace(network().vertex_count(), std::min(options_.grow_to, most_examined(target_)));
+        topology_stages_.emplace(network().vertex_count(),
+                                 std::min(options_.grow_to, most_examined(target_)));
     const StopReason reason = grow(progress);
     mends_notches_ = false;
     return reason;

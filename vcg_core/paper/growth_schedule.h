@@ -21,8 +21,8 @@ public:
 
     bool split_due(std::int64_t signals) const { return signals % constants_.signals_per_split == 0; }
     bool collapse_due(std::int64_t signals) const {
-        return collapses_ && signals - last_collapse_ >= std::int64_t{vertices_at_collapse_} *
-                                                             constants_.signals_per_collapse;
+        return collapses_ && signals - last_collapse_ >=
+                                 std::int64_t{vertices_at_collapse_} * constants_.signals_per_collapse;
     }
     void collapsed(std::int64_t signals, int vertices) {
         last_collapse_ = signals;

@@ -6,6 +6,7 @@
 #include "tests/unit/fit/fit_scene.h"
 #include "tests/unit/support/open_shapes.h"
 #include "tests/unit/support/runs.h"
+#include "vcg_core/fit/fitter.h"
 #include "vcg_core/mesh/self_intersections.h"
 
 namespace neuralmesh::redistribute_test {
@@ -214,6 +215,23 @@ TEST(Refine, SplitsBoundaryEdgesToo) {
     refine(network, 2000, NewVertices::curved, unwatched());
     // A boundary edge was .25 or more; edges of an even mesh are about .024.
     EXPECT_LT(edge_lengths(network).second, 0.06);
+}
+
+/// On a ball with even vertices only noise, of a fifth of an edge, says where a vertex would be better.
+TEST(Redistribution, FollowsNoNoise) {
+    const TargetSpace target = target_of(shapes::sphere_cloud(50000, 0.015));
+    Network network = network_in_frame(target, shapes::icosphere(4));
+    Random random(1);
+    Fitter fitter(network, choose_points(target, 100000, random), FitOptions(), one_thread());
+    Surface surface(network);
+    PointsByFace points = fitter.locate_points(surface);
+    const std::vector<Triangle> before = network.faces();
+    fitter.redistribute_vertices(surface, points);
+    int kept = 0;
+    const std::set<Triangle> faces(before.begin(), before.end());
+    for (const Triangle& f : network.faces()) kept += faces.count(f) > 0 ? 1 : 0;
+    EXPECT_GT(kept, 0.99 * static_cast<double>(before.size()));
+    EXPECT_EQ(network.validate(), "");
 }
 
 TEST(Refine, EndsWhenProgressAsksToStop) {

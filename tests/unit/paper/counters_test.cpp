@@ -2,9 +2,9 @@
 // Copyright the Neural Mesh authors
 
 // Counters, and the turn of normals.
+#include "vcg_core/paper/counters.h"
 #include "tests/unit/support/prelude.h"
 #include "vcg_core/base/random.h"
-#include "vcg_core/paper/counters.h"
 #include "vcg_core/paper/growth_schedule.h"
 
 namespace neuralmesh::counters_test {
