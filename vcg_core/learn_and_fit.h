@@ -54,7 +54,7 @@ public:
 
     /// The network of the last call grows on, if it has too few vertices for as many as \p vertices. If \p
     /// progress asks to stop, the result has at most \p vertices. Fractions of \p progress run from kPrepared
-    /// to 1. Cost: see growth_schedule.h and fit.h.
+    /// to 1. Cost: see growth_limits.h and fit.h.
     LearnedNetwork with(int vertices, MonotoneProgress& progress);
     /// \p finer, a result, reduced to \p vertices and fitted again. Fractions of \p progress run from 0 to 1.
     /// Cost: see fit.h. \pre settings.redistributes_vertices()

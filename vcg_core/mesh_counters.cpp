@@ -25,7 +25,7 @@ namespace {
 /// six of 10.
 constexpr int kSignalsPerRound = 20;
 
-/// The network of a given mesh. It is in the order into which learning would bring it (learning_state.h), so
+/// The network of a given mesh. It is in the order into which learning would bring it (memory_order.h), so
 /// that ids stay the same.
 struct WorkingCopy {
     Network network;
