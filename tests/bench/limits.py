@@ -25,13 +25,13 @@ import numpy as np
 CACHES = ["--cache-sim=yes", "--I1=32768,8,64", "--D1=49152,12,64", "--LL=2097152,16,64"]
 LINE = 64
 PER_CYCLE = 4
-# Each part: the counters of run_parts, and the functions that do its work, by how their signatures begin.
+# Each part: the counters of run_parts, and the function that does its work, by how its signature begins.
 PARTS = {
-    "start mesh": (["start_mesh"], ["prepare("]),
-    "landing, settling": (["landing", "settling"], ["Learner::settle("]),
-    "growth": (["growth"], ["PaperLearner::grow("]),
-    "reduction": (["reduction"], ["Fitter::reduce_to("]),
-    "rounds of the fit": (["rounds"], ["(anonymous namespace)::FitRounds::run("]),
+    "start mesh": (["start_mesh"], "prepare("),
+    "landing, settling": (["landing", "settling"], "Learner::settle("),
+    "growth": (["growth"], "PaperLearner::grow("),
+    "reduction": (["reduction"], "Fitter::reduce_to("),
+    "rounds of the fit": (["rounds"], "(anonymous namespace)::FitRounds::run("),
 }
 
 
@@ -59,17 +59,12 @@ def counts(program, vertices):
         text = subprocess.run(["callgrind_annotate", "--inclusive=yes", "--threshold=100", "--show=Ir,ILmr,DLmr,DLmw",
                                file], stdout=subprocess.PIPE, text=True, check=True).stdout
     result = {}
-    for part, (_, begins) in PARTS.items():
-        instructions = misses = 0
-        for begin in begins:
-            name = begin if begin.startswith("void") else "neuralmesh::" + begin
-            lines = [line for line in text.splitlines() if ":" + name in line]
-            if not lines:
-                raise SystemExit(f"callgrind has not found {name}: is it inlined?")
-            figures = [int(n.replace(",", "")) for n in re.findall(r"([\d,]+) \([ \d.]+%\)", lines[0])]
-            instructions += figures[0]
-            misses += sum(figures[1:])
-        result[part] = instructions, misses
+    for part, (_, begin) in PARTS.items():
+        lines = [line for line in text.splitlines() if ":neuralmesh::" + begin in line]
+        if not lines:
+            raise SystemExit(f"callgrind has not found {begin}: is it inlined?")
+        instructions, *misses = (int(n.replace(",", "")) for n in re.findall(r"([\d,]+) \([ \d.]+%\)", lines[0]))
+        result[part] = instructions, sum(misses)
     return result
 
 

@@ -51,8 +51,7 @@ std::optional<StopReason> Learner::between_steps(bool collapsed, Progress& progr
     if (memory_order_.renew_while_growing(state_)) boundary_signals_.clear();
     const bool examines = topology_stages_ && topology_stages_->pass(network().vertex_count());
     if (examines && !learn_topology(topology_stages_->over(), progress)) return StopReason::cancelled;
-    if (!forced_ && signals() >= growth_begin_ + growth_budget(options_)) {
-        forced_ = true;
+    if (!forced() && signals() >= growth_begin_ + growth_budget(options_)) {
         schedule_.end_collapses();
         state_.utility_counters.waive_maturity();
     }

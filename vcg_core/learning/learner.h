@@ -54,7 +54,7 @@ public:
     /// Changes of the topology while it grew.
     int topology_changes() const { return topology_changes_; }
     /// True if growth had to be forced: see growth_budget().
-    bool forced() const { return forced_; }
+    bool forced() const { return schedule_.has_ended_collapses(); }
 
 private:
     void look_at(const std::vector<StepResult>& steps, const vcg::Point3f* signals) override;
@@ -71,7 +71,6 @@ private:
     BoundarySignals boundary_signals_;  ///< won since the boundaries were last mended
     bool mends_notches_ = false;        ///< needs the signals that boundary vertices win
     std::int64_t growth_begin_ = 0;     ///< in signals
-    bool forced_ = false;
     Saturation saturation_;
     std::optional<TopologyStages> topology_stages_;
     Random topology_random_;

@@ -31,6 +31,7 @@ public:
     std::int64_t last_collapse() const { return last_collapse_; }
     /// From now on no collapse is due.
     void end_collapses() { collapses_ = false; }
+    bool has_ended_collapses() const { return !collapses_; }
 
 private:
     const LearningConstants& constants_;

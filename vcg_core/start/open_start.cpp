@@ -214,9 +214,10 @@ bool ends_its_part(const IndexedMesh<float>& mesh, const std::vector<VertexId>& 
     for (std::size_t i = 1; i + 1 < loop.size(); ++i)
         missing += area_vector(from, position(loop[i + 1]), position(loop[i]));
     const auto enough = static_cast<double>(missing.SquaredNorm());
+    const auto part = parts.find(loop.front());
     double facing = 0;
     for (const Triangle& f : mesh.faces) {
-        if (parts.find(f[0]) != parts.find(loop.front())) continue;
+        if (parts.find(f[0]) != part) continue;
         const Point3f area = area_vector(position(f[0]), position(f[1]), position(f[2]));
         facing += std::max(0.0, static_cast<double>(missing * area));
         if (facing >= enough) return false;

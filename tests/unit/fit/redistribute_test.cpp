@@ -217,7 +217,7 @@ TEST(Refine, SplitsBoundaryEdgesToo) {
     EXPECT_LT(edge_lengths(network).second, 0.06);
 }
 
-/// On a ball with even vertices only noise, of a fifth of an edge, says where a vertex would be better.
+/// On a ball with even vertices only noise, of up to a fifth of an edge, says where a vertex would be better.
 TEST(Redistribution, FollowsNoNoise) {
     const TargetSpace target = target_of(shapes::sphere_cloud(50000, 0.015));
     Network network = network_in_frame(target, shapes::icosphere(4));
